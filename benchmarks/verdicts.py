@@ -1,8 +1,8 @@
 """Verdicts on recordings of three real machines, with the right speed and bearing, with wrong ones, and with ones to be searched.
 
 ``python -m benchmarks.verdicts REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them; the
-model is the reference model. "Wrong" is the share of recordings with another fault than the true one, or any on a healthy machine, and
-"called healthy" that of faulty ones among all. The second table shows, at the right speed and bearing, how often the lines agree with the
+model is the reference model. "Damaged" is the share of faulty recordings whose part is not named, "wrong" that of recordings with another
+fault than the true one, or any on a healthy machine, "damaged" included, and "called healthy" that of faulty ones among all. The second table shows, at the right speed and bearing, how often the lines agree with the
 class that the classifier is sure of. ``--missed`` prints instead how many faulty recordings are called healthy by their length, which is
 `MISSED` of `features.diagnosis.wording`.
 """
@@ -17,7 +17,7 @@ import numpy as np
 
 from benchmarks.speed import Recording, real_corpora, recordings
 from features.baselines import Model
-from features.baselines.predictions import UNSURE
+from features.baselines.predictions import DAMAGED, UNSURE
 from features.diagnosis import ANY_RATE, Diagnosis, Given, Recorded, diagnose_recording
 from features.faults import CLASSES, HEALTHY
 from features.indicators import Orders
@@ -32,7 +32,7 @@ OTHERS = ("6203", "6205", "6303", "6210", "6006")
 """Wrong bearings: the first four whose number of balls differs from the true one."""
 SEARCHED = (0.6, 1.4)  # range of speeds over the label
 WITHOUT_FAULT = ("noise", "tones", "shaft", "modulated", "gears")
-ANSWERS = ("right", UNSURE, "wrong", "called healthy")
+ANSWERS = ("right", DAMAGED, UNSURE, "wrong", "called healthy")
 
 LENGTHS = (0.5, 2.0, 10.0)  # s, of the recordings of `missed`
 FS, SECONDS = 12_000.0, 3.0  # of the signals without a fault
@@ -85,6 +85,8 @@ def answer(verdict: str, fault: str) -> str:
     """One of ``ANSWERS``."""
     if verdict in (fault, UNSURE):
         return "right" if verdict == fault else UNSURE
+    if verdict == DAMAGED and fault != HEALTHY:
+        return DAMAGED
     return "called healthy" if verdict == HEALTHY else "wrong"
 
 

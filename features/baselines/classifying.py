@@ -9,7 +9,7 @@ from features.band import band_of
 from features.baselines.calibration import Calibration
 from features.baselines.colour import Colour
 from features.baselines.estimators import class_probabilities
-from features.baselines.predictions import Predictions, predictions
+from features.baselines.predictions import Predictions, impulsiveness_of, predictions
 from features.baselines.records import FloatArray, feature_rows, title_of
 from features.baselines.references import colour_of, relative_to
 from features.channels import channels_of
@@ -93,7 +93,16 @@ def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset |
     each, whole = (
         np.stack([estimator_probabilities(used, some, title_of(table)) for some in values]) for values in (rows, means)
     )
-    return predictions(each, used.classes, recording, used.calibration, of_recordings=whole, colour=colour)
+    impulsiveness = impulsiveness_of([one.to_numpy() for one in means], used.features)
+    return predictions(
+        each,
+        used.classes,
+        recording,
+        used.calibration,
+        of_recordings=whole,
+        colour=colour,
+        impulsiveness=impulsiveness,
+    )
 
 
 def _rows(table: xr.Dataset, model: Fitted) -> "DataFrame":

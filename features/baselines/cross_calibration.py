@@ -5,12 +5,20 @@ from typing import Literal
 
 import numpy as np
 
-from features.baselines.calibration import UNCALIBRATED, Calibration, fit_calibration
+from features.baselines.calibration import (
+    HEALTHY_SHARE,
+    IMPULSIVENESS,
+    UNCALIBRATED,
+    Calibration,
+    fit_calibration,
+)
 from features.baselines.estimators import UNTRAINED, Estimator
 from features.baselines.fitting import fits
 from features.baselines.own import Maker
 from features.baselines.records import Records
 from features.baselines.tracks import Split, grouped_splits
+from features.faults import HEALTHY
+from gen.corpus import FAULTS
 
 FOLDS = 3  # at most; each costs a training on two thirds of the records
 
@@ -40,7 +48,17 @@ def fit_and_calibrate(
     probabilities = np.zeros((len(truth), len(classes)))
     for (_, test), fold in zip(splits, folds, strict=True):
         probabilities[test] = fold.probabilities
-    return whole.estimator, fit_calibration(probabilities, truth, by)
+    calibration = fit_calibration(probabilities, truth, by)
+    return whole.estimator, calibration.model_copy(update={"impulsive": _impulsive(records)})
+
+
+def _impulsive(records: Records) -> float | None:
+    """Limit of the impulsiveness of healthy records, None without the feature or such records."""
+    if IMPULSIVENESS not in getattr(records.features, "columns", ()):
+        return None
+    values = records.features[IMPULSIVENESS].to_numpy()[records.fault == FAULTS.index(HEALTHY)]
+    known = values[np.isfinite(values)]
+    return float(np.quantile(known, HEALTHY_SHARE)) if known.size else None
 
 
 def calibration_splits(records: Records, seed: int) -> tuple[Literal["rig", "specimen"], list[Split]] | None:

@@ -51,7 +51,7 @@ from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
 
-FORMAT = 5
+FORMAT = 6
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 _TRAINING = ("corpus", "records", "seed", "widths", "digests", "versions")
 _STORED = ("estimator", "name", "classes", "features", "groups", "band", *_TRAINING, "calibration")

@@ -6,17 +6,18 @@ A record far from its healthy reference in colour is never answered healthy: man
 line. Its probabilities stay, because states of the machine change the colour too, and tell of no fault.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from features.baselines.calibration import Calibration, calibrate, combine
+from features.baselines.calibration import IMPULSIVENESS, Calibration, calibrate, combine
 from features.baselines.colour import Colour
 from features.faults import HEALTHY
 from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULTS
 
-UNSURE = "unsure"
+UNSURE, DAMAGED = "unsure", "damaged"
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,8 @@ class Predictions:
         Number of the recording of each record, from 0 and without a gap; in ``by_recording``, 0, 1, 2, ....
     distance
         Of the colour from that of the healthy reference, in scatters of healthy recordings, shape (record,); 0 without a reference.
+    impulsive
+        Of recordings, whether they are more impulsive than nearly all healthy records of the training, shape (recording,).
     by_recording
         The same by recording, with the records of each combined; None in itself.
     """
@@ -44,6 +47,7 @@ class Predictions:
     threshold: float
     recording: IntArray
     distance: FloatArray
+    impulsive: np.ndarray
     by_recording: "Predictions | None" = None
 
     @property
@@ -71,6 +75,7 @@ def predictions(
     *,
     of_recordings: FloatArray | None = None,
     colour: Colour | None = None,
+    impulsiveness: FloatArray | None = None,
 ) -> Predictions:
     """Predictions from the probabilities of an estimator, which are calibrated and combined here.
 
@@ -91,6 +96,8 @@ def predictions(
         their records.
     colour
         Change of each record from its healthy reference; None without one.
+    impulsiveness
+        Of each recording, as `impulsiveness_of`; None if it is not known.
     """
     every = np.arange(len(recording))
     records = _over_channels(probabilities, calibration)
@@ -98,9 +105,23 @@ def predictions(
 
     def coloured(pooled: FloatArray, numbers: IntArray) -> Predictions:
         distance = np.zeros(len(pooled)) if colour is None else colour.distances(numbers)
-        return Predictions(classes, pooled, calibration.threshold, np.arange(len(pooled)), distance)
+        calm = np.zeros(len(pooled), np.bool_)
+        return Predictions(classes, pooled, calibration.threshold, np.arange(len(pooled)), distance, calm)
 
-    return replace(coloured(records, every), recording=recording, by_recording=coloured(whole, recording))
+    recordings = coloured(whole, recording)
+    if impulsiveness is not None and calibration.impulsive is not None:
+        recordings = replace(recordings, impulsive=impulsiveness > calibration.impulsive)
+    return replace(coloured(records, every), recording=recording, by_recording=recordings)
+
+
+def impulsiveness_of(means: Sequence[FloatArray], features: Sequence[str]) -> FloatArray | None:
+    """Impulsiveness of recordings, shape (recording,), from the mean features of each channel, shape (recording, feature).
+
+    It is the mean over windows and channels, as the classifier takes all features; None without the feature.
+    """
+    if IMPULSIVENESS not in features:
+        return None
+    return np.mean([one[:, features.index(IMPULSIVENESS)] for one in means], axis=0)
 
 
 def _over_channels(probabilities: FloatArray, calibration: Calibration) -> FloatArray:

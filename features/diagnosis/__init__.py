@@ -14,6 +14,7 @@ wording  sentences
 verdict  agreement of classifier and lines
 answer   verdict, probabilities and evidence of a recording
 arrays   one call for a recording that is at hand as an array
+corpora  verdicts on the recordings of a corpus, counted
 ======== ==================================================================================
 """
 

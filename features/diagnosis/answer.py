@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from features.band import Band
+from features.baselines.calibration import HEALTHY_SHARE
 from features.baselines.plain import PlainModel
-from features.baselines.predictions import UNSURE, Predictions, predictions
+from features.baselines.predictions import DAMAGED, UNSURE, Predictions, impulsiveness_of, predictions
 from features.definitions import GROUPS
 from features.diagnosis.evidence import Line, find_evidence
 from features.diagnosis.levels import ACCELERATION, Levels, levels_of
@@ -26,6 +27,7 @@ from features.diagnosis.verdict import judge
 from features.diagnosis.wording import (
     answer_in_words,
     candidates,
+    damaged_in_words,
     different_classes,
     listed,
     missed_faults,
@@ -85,7 +87,7 @@ class Diagnosis(Shown):
     Attributes
     ----------
     verdict
-        A class of the model, or "unsure".
+        A class of the model, "damaged" for a fault whose part is not known, or "unsure".
     probabilities
         Of each class that the model can predict, combined over windows and channels; all equal if there is no prediction.
     threshold
@@ -186,7 +188,9 @@ def diagnose_recording(
     judged = [_judge(used, pair, model, references) for pair in found.pairs]
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
     diagnosis = _conclude(judged, found, given, strange)
-    advice = diagnosis.advice + (_advice(used, bool(healthy)) if diagnosis.verdict in (UNSURE, HEALTHY) else ())
+    advice = diagnosis.advice + (
+        _advice(used, bool(healthy)) if diagnosis.verdict in (UNSURE, DAMAGED, HEALTHY) else ()
+    )
     sentence = diagnosis.sentence
     if len(used.signals) > 1:
         sentence = f"{sentence[:-1]}; channels {listed([*used.signals], 'and')}, as axes of one housing."
@@ -275,7 +279,9 @@ def _judge(recording: Recorded, pair: Pair, model: "Model | PlainModel", referen
     whole = predicted.by_recording
     assert whole is not None  # noqa: S101 - only the predictions by recording have none
     probabilities = dict(zip(whole.classes, map(float, whole.probabilities[0]), strict=True))
-    verdict, why = judge(probabilities, whole.threshold, lines, float(whole.distance[0]))
+    verdict, why = judge(
+        probabilities, whole.threshold, lines, float(whole.distance[0]), impulsive=bool(whole.impulsive[0])
+    )
     return Judged(pair, verdict, why, probabilities, whole.threshold, len(predicted.probabilities), lines, spectra)
 
 
@@ -295,12 +301,13 @@ def _predict(
         known = xr.concat(numbered, "record", combine_attrs="override")
         return predict(_table(recording, recording.signals, pair, model, UNKNOWN), model, known)
     rows = [_rows(recording, name, pair, model) for name in recording.signals]
+    means = [mean_row(some)[None] for some in rows]
     each, whole = (
-        np.stack([_probabilities(model, some, recording.name) for some in values])
-        for values in (rows, [mean_row(some)[None] for some in rows])
+        np.stack([_probabilities(model, some, recording.name) for some in values]) for values in (rows, means)
     )
     alone = np.zeros(each.shape[1], dtype=np.intp)
-    return predictions(each, model.classes, alone, model.calibration, of_recordings=whole)
+    impulsiveness = impulsiveness_of(means, model.features)
+    return predictions(each, model.classes, alone, model.calibration, of_recordings=whole, impulsiveness=impulsiveness)
 
 
 def _probabilities(model: "Model | PlainModel", rows: FloatArray, where: str) -> FloatArray:
@@ -371,6 +378,8 @@ def _conclude(judged: list[Judged], found: Found, given: Given, strange: float |
     told = pair_in_words(first.pair, given, len(judged) - 1)
     if why:
         sentence = f"Unsure ({candidates(first.probabilities)}): {why}; {told}."
+    elif verdict == DAMAGED:
+        sentence = f"{damaged_in_words(first.probabilities, HEALTHY_SHARE)}; {told}."
     else:
         sentence = answer_in_words(verdict, first.probabilities, first.lines) + f"; {told}."
         advice = (WATCH,) if verdict == HEALTHY and first.lines else ()

@@ -2,9 +2,14 @@
 
 A class is answered if the classifier is sure of it and the lines do not tell another:
 
-- A fault needs lines of its own family. Balls often show none: then no part but the cage, which goes round with them, may
-  show lines. Lines of balls have no sidebands at the shaft rate 15 dB above the floor that are higher than those at the rate
-  of the cage: such lines come from the inner race of another bearing.
+- A fault needs lines of its own family, because all else is the same at a wrong speed and with a wrong bearing; for balls,
+  those of the cage, which goes round with them, suffice. A class without lines of its own, such as several faults, needs lines
+  of any part.
+- Lines of the inner race have a sideband at the shaft rate, because it turns through the load zone. The highest such sideband
+  of the outer race is lower than its highest line, because it stands still. That of balls is below 15 dB or below those at
+  the rate of the cage. Other lines come from another part or another bearing.
+- "Damaged" is answered if no line stands out, all faults together are as probable as an answer must be, and the signal is more
+  impulsive than 99 of 100 healthy records of the training. A strange colour is no reason for it.
 - "Healthy" falls to plain lines of a part: a fundamental and a harmonic, or three harmonics, one of them 15 dB above the
   floor. From a probability of .85 on they must be 25 dB above it, since healthy bearings have faint lines of all parts. It
   also falls to a strange colour, if there is a healthy recording to compare with.
@@ -14,9 +19,9 @@ A class is answered if the classifier is sure of it and the lines do not tell an
 
 from collections.abc import Mapping, Sequence
 
-from features.baselines.predictions import UNSURE
+from features.baselines.predictions import DAMAGED, UNSURE
 from features.diagnosis.evidence import Line
-from features.diagnosis.wording import by_family, family_in_words
+from features.diagnosis.wording import by_family, family_in_words, faulty, line_of
 from features.faults import CLASSES, HEALTHY, SHAFT, SIDES
 
 PLAIN = 15.0  # dB, level of lines that contradict a class
@@ -26,16 +31,24 @@ SURE = 0.85  # probability
 
 
 def judge(
-    probabilities: Mapping[str, float], threshold: float, lines: Sequence[Line], distance: float = 0.0
+    probabilities: Mapping[str, float],
+    threshold: float,
+    lines: Sequence[Line],
+    distance: float = 0.0,
+    *,
+    impulsive: bool = False,
 ) -> tuple[str, str]:
-    """Class or "unsure", and for the latter a clause with the reason.
+    """Class, "damaged" or "unsure", and for the latter a clause with the reason.
 
-    ``distance`` is that of the colour from the healthy recordings, as in `features.baselines.colour`.
+    ``distance`` is that of the colour from the healthy recordings, as in `features.baselines.colour`, and ``impulsive`` is of
+    `features.baselines.predictions.Predictions`.
     """
     likely = max(probabilities, key=lambda name: probabilities[name])
     families = by_family(lines)
     if likely == HEALTHY and families and _answers(next(iter(families.values()))):
         return next(iter(families)), ""
+    if impulsive and not families and faulty(probabilities) >= threshold:
+        return DAMAGED, ""
     if likely == HEALTHY and distance > 1:
         return UNSURE, (
             f"healthy is the likeliest, but the spectral colour differs {distance:.1f} times as much from that of the healthy recording "
@@ -43,33 +56,34 @@ def judge(
         )
     if probabilities[likely] < threshold:
         return UNSURE, _doubt(families, threshold)
-    if likely != HEALTHY and not CLASSES[likely].evidence:
-        return likely, ""
     if likely in families:
         foreign = _foreign_sidebands(families[likely])
         return (UNSURE, f"the classifier says {likely}, but {foreign}") if foreign else (likely, "")
-    others = {fault: held for fault, held in families.items() if fault != CLASSES[likely].companion}
+    if families.keys() == {CLASSES[likely].companion}:
+        return likely, ""
     if likely == HEALTHY:
         level = OBVIOUS if probabilities[likely] >= SURE else PLAIN
-        others = {fault: held for fault, held in others.items() if _plain(held, level)}
-        agree = not others
-    else:
-        agree = bool(CLASSES[likely].companion) and not others
-    if agree:
+        families = {fault: held for fault, held in families.items() if _plain(held, level)}
+    if not CLASSES[likely].evidence and bool(families) != (likely == HEALTHY):
         return likely, ""
-    if not others:
-        return UNSURE, f"the classifier says {likely}, but no {CLASSES[likely].lines[0].label} line stands out"
-    fault, held = next(iter(others.items()))
+    if not families:
+        return UNSURE, f"the classifier says {likely}, but no {line_of(likely)} line stands out"
+    fault, held = next(each for each in families.items() if each[0] != CLASSES[likely].companion)
     return UNSURE, f"the classifier says {likely}, but {family_in_words(held)}, which tells of {fault}"
 
 
 def _foreign_sidebands(lines: Sequence[Line]) -> str:
-    """Clause on sidebands at the shaft rate that tell of another part."""
-    own = CLASSES[lines[0].fault].side
-    highest = {side: max((line.level for line in lines if line.side == side), default=0.0) for side in SIDES}
-    if own == SHAFT.base or highest[SHAFT.base] < max(PLAIN, highest[own]):
-        return ""
-    return f"{family_in_words(lines)}, as the inner race of another bearing would show"
+    """Clause on sidebands at the shaft rate, or their absence, that tell of another part; empty if they fit the family."""
+    fault = lines[0].fault
+    highest = {side: max((line.level for line in lines if line.side == side), default=0.0) for side in ("", *SIDES)}
+    shaft = highest[SHAFT.base]
+    if fault == "inner" and not shaft:
+        return f"{family_in_words(lines)} without sidebands at the rate of the shaft, which an inner race has"
+    if fault == "outer" and shaft >= highest[""]:
+        return f"{family_in_words(lines)} that are higher than the lines, as no outer race has"
+    if fault == "ball" and shaft >= max(PLAIN, highest[CLASSES[fault].side]):
+        return f"{family_in_words(lines)}, as the inner race of another bearing would show"
+    return ""
 
 
 def _plain(lines: Sequence[Line], level: float) -> bool:

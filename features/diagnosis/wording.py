@@ -12,7 +12,6 @@ AT_END = 0.002  # distance of a speed from the end of the search, relative
 MISSED = ((0.5, (15, 86), (0, 288)), (2.0, (12, 86), (0, 288)), (10.0, (10, 86), (0, 288)))
 """Length of recordings [s], and how many faulty ones of how many were called healthy, without and with a healthy recording of the
 machine: of CWRU, MFPT and UESTC, by ``python -m benchmarks.verdicts REAL --missed``."""
-PARTS = tuple(row.part for row in CLASSES.values() if row.part)
 
 
 def family_in_words(lines: Sequence[Line]) -> str:
@@ -37,21 +36,27 @@ def by_family(lines: Sequence[Line]) -> dict[str, list[Line]]:
 
 
 def reasons(verdict: str, lines: Sequence[Line]) -> str:
-    """Why the verdict is what it is: its own lines, or that there are none, and the lines of other families."""
+    """Why a class is the verdict: its own lines, or for "healthy" that there are none, and the lines of other families."""
     families = by_family(lines)
     own = families.pop(verdict, None)
     others = "; ".join(family_in_words(held) for held in families.values())
     if verdict == HEALTHY:
         if others:
             return f"although {others}"
-        return f"no line of {listed(PARTS, 'or')} stands {LEAST_LEVEL:g} dB above the floor"
+        return NO_LINE
     if own:
         return family_in_words(own) + (f"; also {others}" if others else "")
-    name = CLASSES[verdict].lines[0].label if CLASSES[verdict].evidence else "fault"
-    resting = (
-        f"no {name} line stands {LEAST_LEVEL:g} dB above the floor, so this rests on fainter features of the signal"
-    )
-    return resting + (f", and {others}" if others else "")
+    return others
+
+
+def line_of(fault: str) -> str:
+    """Name of the line that tells a class; "fault" for a class without a line of its own."""
+    return CLASSES[fault].lines[0].label if CLASSES[fault].evidence else "fault"
+
+
+def faulty(probabilities: Mapping[str, float]) -> float:
+    """Sum of the probabilities of all faults."""
+    return sum(probability for fault, probability in probabilities.items() if fault != HEALTHY)
 
 
 def probability_in_words(probability: float) -> str:
@@ -78,6 +83,14 @@ def answer_in_words(verdict: str, probabilities: Mapping[str, float], lines: Seq
     if likely == verdict:
         return f"{CLASSES[verdict].words} ({told}): {reasons(verdict, lines)}"
     return f"{CLASSES[verdict].words}: {reasons(verdict, lines)}, although the classifier alone says {likely} ({told})"
+
+
+def damaged_in_words(probabilities: Mapping[str, float], share: float) -> str:
+    """The same for a fault whose part is not known, in a signal more impulsive than a share of the healthy training records."""
+    return (
+        f"Damaged (probability of a fault {probability_in_words(faulty(probabilities))}): the signal is more impulsive than "
+        f"{100 * share:g} of 100 healthy records of the training, and {NO_LINE}, so that the part is not known"
+    )
 
 
 def missed_faults(seconds: float, *, compared: bool) -> tuple[int, int]:
@@ -149,3 +162,6 @@ def _bearing(pair: Pair) -> str:
 def listed(words: Sequence[str], last: str) -> str:
     """Words such as "x, y and z"."""
     return f"{', '.join(words[:-1])} {last} {words[-1]}" if len(words) > 1 else words[0]
+
+
+NO_LINE = f"no line of {listed([row.part for row in CLASSES.values() if row.part], 'or')} stands {LEAST_LEVEL:g} dB above the floor"

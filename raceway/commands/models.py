@@ -160,7 +160,8 @@ def evaluate(
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
     scored together, by the mean of their features. The interval is a bootstrap over specimens. A record is answered if
     its largest probability reaches the threshold of the model, and otherwise the answer is "unsure". Recordings of class unknown are not
-    scored; the answer for each of them is listed.
+    scored; the answer for each of them is listed. --json also has verdicts: the number of recordings by true class and verdict, which
+    are those of raceway diagnose at the speeds of DIR.
 
     With --reference, records are compared with healthy records of their rig: those of a corpus, which may be DIR itself, or a recording
     (.csv, .npy, .mat, .wav, ...) of the bearing of DIR. Records of the reference are left out of the scores. A "healthy" is answered only
@@ -173,6 +174,7 @@ def evaluate(
       raceway evaluate pump --model model.skops --reference new.csv --reference-rate 12000 --reference-rpm 1480
     """
     from features.baselines import Model, count_unknown, unlabelled_answers
+    from features.diagnosis import count_verdicts
     from gen import open_corpus
     from raceway.studies.reference_model import load_reference_model
 
@@ -195,7 +197,9 @@ def evaluate(
     warn_of_seen("the model", scores)
     if as_json:
         facts = {"corpus": corpus, "model": source, "estimator": loaded.name, **show.plain(scores)}
-        show.as_json(facts | {"unknown": show.plain(answers)})
+        show.as_json(
+            facts | {"verdicts": count_verdicts(corpus, table, loaded, healthy), "unknown": show.plain(answers)}
+        )
         return
     show.text(f"{loaded.name} trained on {loaded.corpus}, tested on {corpus}:", "")
     if scores.reference:

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.speed import recordings
 from benchmarks.verdicts import ERRORS, RIGHT, SEEDS, WITHOUT_FAULT, answer, conditions, rows, without_fault
-from features.baselines.predictions import UNSURE
+from features.baselines.predictions import DAMAGED, UNSURE
 from features.diagnosis.evidence import find_evidence
 from features.diagnosis.search import find_pairs, mean_spectra
 from features.diagnosis.spectrum import band_spectra
@@ -26,9 +26,13 @@ def test_every_recording_is_diagnosed_at_right_wrong_and_unknown_speeds_and_bear
 
 
 def test_a_row_has_the_shares_of_all_answers():
-    answers = Counter(answer(verdict, "inner") for verdict in ("inner", UNSURE, "outer", "healthy"))
-    assert list(rows("A", {RIGHT: answers})) == [f"| A | {RIGHT} | 4 | 25.0 | 25.0 | 25.0 | 25.0 |"]
+    answers = Counter(answer(verdict, "inner") for verdict in ("inner", DAMAGED, UNSURE, "outer", "healthy"))
+    assert list(rows("A", {RIGHT: answers})) == [f"| A | {RIGHT} | 5 | 20.0 | 20.0 | 20.0 | 20.0 | 20.0 |"]
     assert answer("healthy", "healthy") == "right"
+
+
+def test_damaged_is_an_alarm_on_a_healthy_machine():
+    assert answer(DAMAGED, "healthy") == "wrong"
 
 
 @pytest.mark.parametrize("kind", WITHOUT_FAULT)

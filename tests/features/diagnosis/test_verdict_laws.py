@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from features.baselines.predictions import UNSURE
+from features.baselines.predictions import DAMAGED, UNSURE
 from features.diagnosis import Given, Pair, Recorded
 from features.diagnosis.answer import LONGEST, Judged, _conclude, _usable
 from features.diagnosis.evidence import Line
@@ -28,25 +28,30 @@ def line(fault, harmonic=1, level=PLAIN + 1, side=""):
     return Line(fault, f"{harmonic}", harmonic, 3.0 * harmonic, 75.0 * harmonic, level, (1000.0, 3000.0), side)
 
 
+OF_INNER = [line("inner"), line("inner", level=8.0, side="shaft")]
 PLAIN_OUTER = [line("outer", level=OBVIOUS - 1), line("outer", 2)]
 
 
 @pytest.mark.parametrize(
     ("name", "lines", "expected"),
     [
-        ("inner", [line("inner")], "inner"),
+        ("inner", OF_INNER, "inner"),
+        ("inner", [line("inner"), line("inner", 2)], UNSURE),
         ("inner", [], UNSURE),
         ("inner", PLAIN_OUTER, UNSURE),
-        ("inner", [*PLAIN_OUTER, line("inner", level=10.0)], "inner"),
-        ("ball", [], "ball"),
+        ("inner", [*PLAIN_OUTER, *OF_INNER], "inner"),
+        ("outer", [*PLAIN_OUTER, line("outer", level=OBVIOUS - 2, side="shaft")], "outer"),
+        ("outer", [*PLAIN_OUTER, line("outer", level=OBVIOUS, side="shaft")], UNSURE),
+        ("ball", [], UNSURE),
         ("ball", [line("cage"), line("cage", 2)], "ball"),
+        ("ball", [line("cage"), line("outer", level=10.0)], UNSURE),
         ("ball", [line("outer", level=10.0)], UNSURE),
         ("ball", [line("ball"), line("ball", side="ftf")], "ball"),
         ("ball", [line("ball"), line("ball", side="ftf"), line("ball", level=PLAIN + 5, side="shaft")], UNSURE),
         ("ball", [line("ball"), line("ball", level=PLAIN - 1, side="shaft")], "ball"),
     ],
 )
-def test_a_fault_needs_lines_of_its_own_and_balls_none_of_another_part(name, lines, expected):
+def test_a_fault_needs_lines_of_its_own_with_sidebands_that_fit_and_balls_take_those_of_the_cage(name, lines, expected):
     assert judge(probabilities(name), 0.5, lines)[0] == expected
 
 
@@ -65,6 +70,35 @@ def test_a_fault_needs_lines_of_its_own_and_balls_none_of_another_part(name, lin
 )
 def test_healthy_falls_to_plain_lines_and_if_it_is_sure_to_obvious_ones(likely, lines, expected):
     assert judge(probabilities("healthy", likely), 0.5, lines)[0] == expected
+
+
+FAINT = {"healthy": 0.45, "inner": 0.2, "outer": 0.15, "ball": 0.2}
+
+
+@pytest.mark.parametrize("distance", [0.0, 3.0])
+@pytest.mark.parametrize("chances", [FAINT, *(probabilities(fault) for fault in ("inner", "outer", "ball"))])
+def test_a_fault_without_any_line_is_damaged_if_the_signal_is_impulsive_and_else_unsure(chances, distance):
+    assert judge(chances, 0.5, [], distance, impulsive=True) == (DAMAGED, "")
+    assert judge(chances, 0.5, [], distance)[0] == UNSURE
+
+
+@pytest.mark.parametrize("fault", ["inner", "outer", "ball"])
+def test_lines_of_any_part_are_never_answered_damaged(fault):
+    for lines in (OF_INNER, PLAIN_OUTER, [line("cage")]):
+        assert judge(probabilities(fault), 0.5, lines, impulsive=True) == judge(probabilities(fault), 0.5, lines)
+
+
+def test_an_impulsive_signal_and_a_strange_colour_alone_are_not_damaged():
+    assert judge(probabilities("healthy"), 0.5, [], impulsive=True)[0] == "healthy"
+    assert judge(probabilities("healthy"), 0.5, [], 3.0, impulsive=True)[0] == UNSURE
+    assert judge(FAINT, 0.6, [], impulsive=True)[0] == UNSURE
+
+
+def test_several_faults_need_lines_of_some_part():
+    chances = {"healthy": 0.05, "compound": 0.95}
+    assert judge(chances, 0.5, OF_INNER) == ("compound", "")
+    assert judge(chances, 0.5, []) == (UNSURE, "the classifier says compound, but no fault line stands out")
+    assert judge(chances, 0.5, [], impulsive=True) == (DAMAGED, "")
 
 
 COMB = [line("outer", harmonic, level=ANSWER + 1 if harmonic == 2 else 12.0) for harmonic in (1, 2, 3, 5)]
