@@ -2,9 +2,9 @@
 
 ``python -m benchmarks.verdicts REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them; the
 model is the reference model. "Damaged" is the share of faulty recordings whose part is not named, "wrong" that of recordings with another
-fault than the true one, or any on a healthy machine, "damaged" included, and "called healthy" that of faulty ones among all. The second table shows, at the right speed and bearing, how often the lines agree with the
-class that the classifier is sure of. ``--missed`` prints instead how many faulty recordings are called healthy by their length, which is
-`MISSED` of `features.diagnosis.wording`.
+fault than the true one, or any on a healthy machine, "damaged" included, and "called healthy" that of faulty ones among all. The second
+table shows, at the right speed and bearing, how often the lines agree with the class that the classifier is sure of. ``--missed`` prints
+instead how many faulty recordings are called healthy by their length, which is `MISSED` of `features.diagnosis.wording`.
 """
 
 import argparse

@@ -317,6 +317,13 @@ def test_evaluate_gives_the_figures_over_the_classes_present(run, told, tiny_cor
     shown = run("evaluate", tiny_corpus, "--model", model).stdout
     (line,) = (line.split() for line in shown.splitlines() if line.startswith("balanced accuracy"))
     assert line[2] == f"{scores['balanced_accuracy']:.3f}"
+    counts = {fault: sum(of_fault.values()) for fault, of_fault in scores["verdicts"].items()}
+    assert counts == dict(zip(scores["classes"], map(sum, scores["by_recording"]["confusion"]), strict=True))
+    assert {name for of_fault in scores["verdicts"].values() for name in of_fault} <= {
+        *scores["model_classes"],
+        "damaged",
+        "unsure",
+    }
     (line,) = (line.split() for line in shown.splitlines() if line.startswith("false alarms on healthy"))
     assert line[4] == f"{scores['false_alarms']:.3f}"
 

@@ -8,7 +8,7 @@ import xarray as xr
 from sklearn.exceptions import NotFittedError
 
 from features.baselines import UNSURE, Model, predict
-from features.baselines.calibration import COVERAGE, UNCALIBRATED
+from features.baselines.calibration import COVERAGE, HEALTHY_SHARE, IMPULSIVENESS, UNCALIBRATED
 from features.baselines.cross_calibration import calibration_splits, fit_and_calibrate
 from features.baselines.predictions import predictions
 from features.baselines.records import features_of, labelled_records
@@ -181,3 +181,33 @@ def test_a_fault_that_one_channel_does_not_show_is_known_from_the_others():
 def test_a_model_is_trained_on_one_channel():
     with pytest.raises(CorpusError, match="a model is trained on one channel; give the feature table of one"):
         Model("logistic_regression").fit(channels(windowed(), windowed()))
+
+
+def with_impulsiveness(table: xr.Dataset, values: np.ndarray) -> xr.Dataset:
+    """The table with a further feature of its own group."""
+    more = table.isel(feature=[-1]).assign_coords(feature=[IMPULSIVENESS])
+    more = more.assign(features=(("record", "feature"), values[:, None]))
+    return xr.concat([table, more], "feature", data_vars="minimal", coords="minimal", compat="override")
+
+
+def test_recordings_are_impulsive_whose_mean_exceeds_99_of_100_healthy_training_records():
+    train, tested = windowed(), windowed(seed=1)
+    values = np.random.default_rng(2).standard_normal(96)
+    model = Model("logistic_regression").fit(with_impulsiveness(train, values))
+    limit = np.quantile(values[train.fault.values == 0], HEALTHY_SHARE)
+    assert model.calibration.impulsive == pytest.approx(limit)
+    recording = tested.recording.values
+    offsets = np.tile([-9.0, 3.0, 3.0, 3.0], 24)  # one window far from the others counts as in the mean
+    for above in (1e-6, -1e-6):
+        found = predict(with_impulsiveness(tested, limit + offsets + np.where(recording == 5, above, -1.0)), model)
+        assert found.by_recording is not None
+        np.testing.assert_array_equal(found.by_recording.impulsive[found.recording], (above > 0) & (recording == 5))
+    assert not found.impulsive.any()
+
+
+def test_a_model_without_the_feature_calls_nothing_impulsive():
+    model = Model("logistic_regression").fit(windowed())
+    assert model.calibration.impulsive is None
+    found = predict(windowed(seed=1), model).by_recording
+    assert found is not None
+    assert not found.impulsive.any()
