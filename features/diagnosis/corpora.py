@@ -72,8 +72,9 @@ def count_verdicts(
 def _lines(signals: np.ndarray, record: xr.Dataset) -> list[Line] | None:
     """Lines of a recording, shape (channel, time), with the labels of its first record; None if no channel can show any."""
     fs, rate = float(record["sample_rate"]), float(record["rate"])
-    orders = Orders(*(np.asarray(float(record[name])) for name in Orders._fields))
-    known = np.isfinite([rate, *orders]).all() and min(rate, *orders) > 0
+    values = [float(record[name]) for name in Orders._fields]
+    orders = Orders(*map(np.asarray, values))
+    known = np.isfinite([rate, *values]).all() and min(rate, *values) > 0
     finite = [x for x in signals if known and np.isfinite(x).all()]
     useful = [x for x in finite if not quality_of(x, fs, rate, orders).useless]
     spectra = [spectrum for x in useful for spectrum in band_spectra(x, fs, rate)]

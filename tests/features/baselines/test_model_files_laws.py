@@ -73,7 +73,7 @@ def test_a_type_that_is_renamed_in_the_file_is_refused_by_name(files, tmp_path):
         (b"\x80\x04K*.", "not a readable model"),
         (skops.io.dumps({"raceway_model": 99}), "not a model of this version"),
         (skops.io.dumps([1, 2]), "not a model of this version"),
-        (skops.io.dumps({"raceway_model": 5, "estimator": 3}), "not a complete model"),
+        (skops.io.dumps({"raceway_model": 6, "estimator": 3}), "not a complete model"),
     ],
 )
 def test_a_file_that_is_no_model_is_refused(content, sentence, tmp_path):

@@ -141,7 +141,16 @@ def test_below_the_threshold_the_reason_names_the_strongest_lines():
 
 def judged(name, pair):
     spectrum = [object()]
-    return Judged(pair, name, "" if name != UNSURE else "no reason", probabilities(name), 0.5, 4, [], spectrum)
+    return Judged(
+        pair,
+        name,
+        "" if name != UNSURE else "no reason",
+        probabilities("healthy" if name == DAMAGED else name),
+        0.5,
+        4,
+        [],
+        spectrum,
+    )
 
 
 def pair(rate, bearing="6205"):
@@ -172,6 +181,17 @@ def test_a_comb_that_is_not_explained_makes_every_verdict_unsure_and_names_what_
     found = concluded(name, strange=4.21)
     assert found.verdict == UNSURE
     assert "4.21 orders" in found.sentence
+
+
+def test_damaged_tells_the_probability_of_any_fault_and_why_no_part_is_named():
+    found = concluded(DAMAGED)
+    assert found.verdict == DAMAGED
+    assert found.sentence.startswith(
+        "Damaged (probability of a fault 0.09): the signal is more impulsive than 99 of 100 healthy"
+    )
+    assert "no line of inner race, outer race, balls or cage stands 10 dB above the floor" in found.sentence
+    assert "check the bearing designation" in found.advice[0]
+    assert concluded(DAMAGED, "outer", given=GIVEN._replace(rates=(RATE, 2 * RATE))).verdict == UNSURE
 
 
 def test_a_long_recording_is_used_from_its_beginning():
