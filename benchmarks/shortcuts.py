@@ -22,7 +22,7 @@ from sklearn.metrics import roc_auc_score
 from sklearn.model_selection import GroupKFold, cross_val_predict
 
 from features import open_waveforms
-from gen import generate
+from gen import generate, read_recipe
 from gen.corpus import FAULTS, UNKNOWN_CODE, is_single_file
 
 FloatArray = NDArray[np.float64]
@@ -69,7 +69,7 @@ def read_records(corpus: Path | str) -> Records:
     shortcuts = {name: np.stack([one[name] for one in each]) for name in each[0]}
     for name, variables in STORED.items():
         if all(variable in labels for variable in variables):
-            shortcuts[name] = np.column_stack([labels[variable].values for variable in variables])
+            shortcuts[name] = np.stack([labels[variable].values for variable in variables], axis=1)
     return Records(
         shortcuts, labels["fault"].values != FAULTS.index("healthy"), labels["rig"].values, labels["specimen"].values
     )
@@ -87,7 +87,9 @@ def permuted(records: Records, rng: np.random.Generator) -> NDArray[np.bool_]:
 def score(values: FloatArray, faulty: NDArray[np.bool_], rig: NDArray[np.int_], seed: int) -> float:
     """AUC of extra trees on ``values`` of shape (record, number), with the records of a rig in one fold."""
     trees = ExtraTreesClassifier(100, min_samples_leaf=10, random_state=seed)
-    found = cross_val_predict(trees, values, faulty, groups=rig, cv=GroupKFold(FOLDS), method="predict_proba")
+    found = np.asarray(
+        cross_val_predict(trees, values, faulty, groups=rig, cv=GroupKFold(FOLDS), method="predict_proba")
+    )
     return float(roc_auc_score(faulty, found[:, 1]))
 
 
@@ -100,6 +102,18 @@ def scores(records: Records, seed: int, permutations: int) -> Iterator[tuple[str
         yield name, score(values, records.faulty, records.rig, seed), null
 
 
+def read_source(source: str, seeds: int, records: int) -> Iterator[Records]:
+    """Records of a corpus, for each seed; or of a corpus that is made from a recipe with each seed."""
+    if Path(source).is_dir() or is_single_file(Path(source)):
+        yield from [read_records(source)] * seeds
+        return
+    recipe = read_recipe(source, records=records)
+    for seed in range(seeds):
+        with tempfile.TemporaryDirectory() as folder:
+            made = generate(recipe, Path(folder) / "corpus", workers=2, seed=recipe.seed + seed)
+            yield read_records(made.path)
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -108,22 +122,15 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=1, help="number of seeds, of a recipe and of the trees")
     parser.add_argument("--permutations", type=int, default=5, help="of the labels, per seed")
     options = parser.parse_args()
-    found: dict[str, list[float]] = {}
-    null: dict[str, list[float]] = {}
-    made = not (Path(options.source).is_dir() or is_single_file(Path(options.source)))
-    records = None if made else read_records(options.source)
-    for seed in range(options.seeds):
-        if made:
-            with tempfile.TemporaryDirectory() as folder:
-                path = Path(folder) / "corpus"
-                generate(options.source, path, workers=2, seed=20260 + seed, records=options.records)
-                records = read_records(path)
-        for name, auc, aucs in scores(records, seed, options.permutations):
-            found.setdefault(name, []).append(auc)
-            null.setdefault(name, []).extend(aucs)
+    found: dict[str, tuple[list[float], list[float]]] = {}
+    for seed, records in enumerate(read_source(options.source, options.seeds, options.records)):
+        for name, auc, null in scores(records, seed, options.permutations):
+            aucs, nulls = found.setdefault(name, ([], []))
+            aucs.append(auc)
+            nulls += null
     print("| shortcut | AUC | permuted labels |\n|---|---:|---:|")
-    for name, aucs in found.items():
-        print(f"| {name} | {spread(aucs)} | {spread(null[name])} |")
+    for name, (aucs, nulls) in found.items():
+        print(f"| {name} | {spread(aucs)} | {spread(nulls)} |")
 
 
 def spread(values: list[float]) -> str:

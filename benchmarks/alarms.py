@@ -1,0 +1,197 @@
+"""Answers to recordings with and without a healthy recording of their machine: alarms on healthy bearings, and faults that are missed.
+
+``python -m benchmarks.alarms REAL`` with REAL a folder that holds ``limerick/healthy.nc``, healthy bearings in machines that are well and
+not well, and ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them; the model is the reference model. The first table counts the
+verdicts on the healthy bearings by axis: alone, by the condition of the machine, and compared with one other recording, whose condition and
+speed are the same or others. The second has the other sets, alone and compared with each healthy recording of their set, with balanced
+accuracy and log-loss of the probabilities. An alarm is a healthy bearing that is called anything but healthy and unsure.
+"""
+
+import argparse
+import json
+import tempfile
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from benchmarks.speed import real_corpora, recordings
+from features.baselines import Model
+from features.baselines.predictions import UNSURE
+from features.diagnosis import Given, Recorded, diagnose_recording
+from features.faults import CLASSES, HEALTHY
+from features.indicators import Orders
+from gen.physics.bearing import orders
+from gen.physics.catalogue import CATALOGUE
+from gen.support.units import rpm_to_hertz
+from raceway.studies.reference_model import load_reference_model
+
+BEARING = "ER-12K"  # of the machine of limerick
+GRAVITY = 9.80665  # m s-2
+ALONE, ALL = "none", "all"  # kind of reference, and condition
+AXES = ("x", "y", "z")
+OUTCOMES = ("right", UNSURE, "called healthy", "wrong fault", "alarm")
+LEAST = 1e-9  # of a probability in the log-loss
+
+
+class Answer(NamedTuple):
+    """Answer to one recording; ``title`` names its set and axis, ``reference`` the kind of healthy recording it is compared with."""
+
+    title: str
+    reference: str
+    condition: str
+    fault: str
+    verdict: str
+    probabilities: Mapping[str, float]
+
+
+class Healthy(NamedTuple):
+    """Recording of a healthy bearing, as `diagnose_recording` takes it, and the condition of its machine."""
+
+    recorded: Recorded
+    given: Given
+    condition: str
+
+    def compared_with(self, other: "Healthy") -> str:
+        """Kind of reference that another recording is."""
+        condition, speed = (
+            "same" if same else "other"
+            for same in (self.condition == other.condition, self.given.rates == other.given.rates)
+        )
+        return f"{condition} condition, {speed} speed"
+
+
+def healthy_recordings(file: Path, axes: Iterable[str]) -> list[Healthy]:
+    """Recordings of some axes of ``limerick``."""
+    bearings = {BEARING: Orders(*map(np.asarray, orders(CATALOGUE[BEARING])))}
+    found = []
+    with xr.open_dataset(file) as opened:
+        for place in range(opened.sizes["recording"]):
+            one = opened.isel(recording=place)
+            signals = {axis: GRAVITY * one["acceleration"].values[AXES.index(axis)] for axis in axes}
+            rate = rpm_to_hertz(float(one["shaft_rpm"]))
+            recorded = Recorded(signals, float(opened.attrs["sample_rate_hz"]), f"recording {place}")
+            found.append(Healthy(recorded, Given(bearings, (rate, rate)), str(one["condition"].values)))
+    return found
+
+
+def of_machines(title: str, each: list[Healthy], model: Model, references: int) -> Iterator[Answer]:
+    """Answers to healthy recordings: alone, and with ``references`` others of each kind, drawn at random."""
+    rng = np.random.default_rng(0)
+    for one in each:
+        kinds: dict[str, list[Healthy]] = {}
+        for other in each:
+            if other is not one:
+                kinds.setdefault(one.compared_with(other), []).append(other)
+        found = diagnose_recording(one.recorded, one.given, model)
+        yield Answer(title, ALONE, one.condition, HEALTHY, found.verdict, found.probabilities)
+        for kind, others in sorted(kinds.items()):
+            for chosen in rng.choice(len(others), min(references, len(others)), replace=False):
+                found = diagnose_recording(one.recorded, one.given, model, healthy=[others[chosen].recorded])
+                yield Answer(title, kind, one.condition, HEALTHY, found.verdict, found.probabilities)
+
+
+def of_corpus(title: str, corpus: Path, model: Model) -> Iterator[Answer]:
+    """Answers to all recordings of a set, alone and with each other recording of it that is healthy."""
+    each = list(recordings(corpus))
+    recorded = [Recorded({"": one.x.ravel()}, one.fs) for one in each]
+    healthy = [place for place, one in enumerate(each) if one.fault == HEALTHY]
+    for place, one in enumerate(each):
+        given = Given({"own": Orders(*map(np.asarray, one.orders))}, (one.label, one.label))
+        for reference in (None, *healthy):
+            if reference != place:
+                references = [] if reference is None else [recorded[reference]]
+                found = diagnose_recording(recorded[place], given, model, healthy=references)
+                kind = ALONE if reference is None else "one healthy recording"
+                yield Answer(title, kind, "", one.fault, found.verdict, found.probabilities)
+
+
+def outcome(answer: Answer) -> str:
+    """One of ``OUTCOMES``, or the verdict itself if it is that of a fault in no part."""
+    if answer.verdict in (answer.fault, UNSURE):
+        return "right" if answer.verdict == answer.fault else UNSURE
+    if HEALTHY in (answer.fault, answer.verdict):
+        return "alarm" if answer.fault == HEALTHY else "called healthy"
+    return "wrong fault" if answer.verdict in CLASSES else answer.verdict
+
+
+def scores(answers: Iterable[Answer]) -> dict[str, float]:
+    """Balanced accuracy and log-loss of the probabilities."""
+    right: dict[str, list[bool]] = {}
+    losses = []
+    for one in answers:
+        right.setdefault(one.fault, []).append(
+            max(one.probabilities, key=lambda name: one.probabilities[name]) == one.fault
+        )
+        losses.append(-np.log(max(one.probabilities.get(one.fault, 0.0), LEAST)))
+    balanced = np.mean([np.mean(hits) for hits in right.values()])
+    return {"balanced accuracy": round(float(balanced), 3), "log-loss": round(float(np.mean(losses)), 3)}
+
+
+def counted(answers: Iterable[Answer]) -> list[dict[str, Any]]:
+    """One row for each set, axis and kind of reference; and, of machines without a reference, for each condition."""
+    groups: dict[tuple[str, str, str], list[Answer]] = {}
+    for one in answers:
+        groups.setdefault((one.title, one.reference, ALL), []).append(one)
+        if one.condition and one.reference == ALONE:
+            groups.setdefault((one.title, one.reference, one.condition), []).append(one)
+    titles = list(dict.fromkeys(title for title, _, _ in groups))
+
+    def place(key: tuple[str, str, str]) -> tuple[int, bool, str, bool, str]:
+        title, reference, condition = key
+        return titles.index(title), reference != ALONE, reference, condition != ALL, condition
+
+    rows = []
+    for title, reference, condition in sorted(groups, key=place):
+        held = groups[title, reference, condition]
+        machines = bool(held[0].condition)
+        counts = Counter(one.verdict if machines else outcome(one) for one in held)
+        row = {
+            "set": title,
+            "reference": reference,
+            "condition": condition,
+            "answers": len(held),
+            "counts": dict(counts),
+        }
+        rows.append(row if machines else row | scores(held))
+    return rows
+
+
+def table(rows: list[dict[str, Any]], first: Iterable[str]) -> Iterator[str]:
+    """Lines of a table; the counts that ``first`` names stand before the others that occur."""
+    counts = list(dict.fromkeys([*first, *sorted({name for row in rows for name in row["counts"]})]))
+    scored = [name for name in ("balanced accuracy", "log-loss") if name in rows[0]]
+    yield f"| set | healthy reference | condition | answers | {' | '.join([*counts, *scored])} |"
+    yield f"|---|---|---|{'---:|' * (1 + len(counts) + len(scored))}"
+    for row in rows:
+        cells = [row["answers"], *(row["counts"].get(name, 0) for name in counts), *(row[name] for name in scored)]
+        yield f"| {row['set']} | {row['reference']} | {row['condition']} | {' | '.join(map(str, cells))} |"
+
+
+def main() -> None:
+    """Print both tables, or their rows as JSON."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("real", type=Path)
+    parser.add_argument("--references", type=int, default=2, help="per kind and recording of limerick; 24 are all")
+    parser.add_argument("--json", action="store_true", help="print the rows as JSON")
+    options = parser.parse_args()
+    model, _ = load_reference_model()
+    machines: list[Answer] = []
+    for axes in (*AXES, "".join(AXES)):
+        each = healthy_recordings(options.real / "limerick" / "healthy.nc", axes)
+        machines += of_machines(f"limerick {axes}", each, model, options.references)
+    sets: list[Answer] = []
+    with tempfile.TemporaryDirectory() as name:
+        for title, corpus in real_corpora(options.real, Path(name)).items():
+            sets += of_corpus(title, corpus, model)
+    if options.json:
+        print(json.dumps(counted(machines) + counted(sets), indent=1))
+        return
+    print(*table(counted(machines), (HEALTHY, UNSURE)), "", *table(counted(sets), OUTCOMES), sep="\n")
+
+
+if __name__ == "__main__":
+    main()
