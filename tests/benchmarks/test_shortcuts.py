@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from benchmarks.shortcuts import TINY, Records, in_signal, permuted, read_records, scores
+from benchmarks.shortcuts import STORED, TINY, Records, in_signal, permuted, read_records, scores
+from features import open_waveforms
+from gen import open_corpus, torch_dataset
 
 RIGS, SPECIMENS, EACH = 20, 6, 3
 
@@ -54,3 +56,10 @@ def test_a_corpus_has_shortcuts_in_its_signals_and_its_variables(tiny_corpus):
     assert {"rms", "tries", "clipped samples"} <= set(records.shortcuts)
     assert all(len(values) == len(records.faulty) == 48 for values in records.shortcuts.values())
     assert records.faulty.sum() == 36
+
+
+def test_loaders_give_estimators_no_variable_of_a_shortcut(tiny_corpus):
+    shortcuts = {variable for variables in STORED.values() for variable in variables}
+    assert shortcuts <= set(open_corpus(tiny_corpus).variables)
+    for loader in (open_waveforms(tiny_corpus), torch_dataset(tiny_corpus)):
+        assert not shortcuts & set(loader.operating)
