@@ -37,7 +37,7 @@ OUTCOMES = ("right", UNSURE, "called healthy", "wrong fault", "alarm")
 LEAST = 1e-9  # of a probability in the log-loss
 
 
-class Answer(NamedTuple):
+class Answered(NamedTuple):
     """Answer to one recording; ``title`` names its set and axis, ``reference`` the kind of healthy recording it is compared with."""
 
     title: str
@@ -48,14 +48,14 @@ class Answer(NamedTuple):
     probabilities: Mapping[str, float]
 
 
-class Healthy(NamedTuple):
+class HealthyRecording(NamedTuple):
     """Recording of a healthy bearing, as `diagnose_recording` takes it, and the condition of its machine."""
 
     recorded: Recorded
     given: Given
     condition: str
 
-    def compared_with(self, other: "Healthy") -> str:
+    def compared_with(self, other: "HealthyRecording") -> str:
         """Kind of reference that another recording is."""
         condition, speed = (
             "same" if same else "other"
@@ -64,7 +64,7 @@ class Healthy(NamedTuple):
         return f"{condition} condition, {speed} speed"
 
 
-def healthy_recordings(file: Path, axes: Iterable[str]) -> list[Healthy]:
+def healthy_recordings(file: Path, axes: Iterable[str]) -> list[HealthyRecording]:
     """Recordings of some axes of ``limerick``."""
     bearings = {BEARING: Orders(*map(np.asarray, orders(CATALOGUE[BEARING])))}
     found = []
@@ -74,27 +74,27 @@ def healthy_recordings(file: Path, axes: Iterable[str]) -> list[Healthy]:
             signals = {axis: GRAVITY * one["acceleration"].values[AXES.index(axis)] for axis in axes}
             rate = rpm_to_hertz(float(one["shaft_rpm"]))
             recorded = Recorded(signals, float(opened.attrs["sample_rate_hz"]), f"recording {place}")
-            found.append(Healthy(recorded, Given(bearings, (rate, rate)), str(one["condition"].values)))
+            found.append(HealthyRecording(recorded, Given(bearings, (rate, rate)), str(one["condition"].values)))
     return found
 
 
-def of_machines(title: str, each: list[Healthy], model: Model, references: int) -> Iterator[Answer]:
+def of_machines(title: str, each: list[HealthyRecording], model: Model, references: int) -> Iterator[Answered]:
     """Answers to healthy recordings: alone, and with ``references`` others of each kind, drawn at random."""
     rng = np.random.default_rng(0)
     for one in each:
-        kinds: dict[str, list[Healthy]] = {}
+        kinds: dict[str, list[HealthyRecording]] = {}
         for other in each:
             if other is not one:
                 kinds.setdefault(one.compared_with(other), []).append(other)
         found = diagnose_recording(one.recorded, one.given, model)
-        yield Answer(title, ALONE, one.condition, HEALTHY, found.verdict, found.probabilities)
+        yield Answered(title, ALONE, one.condition, HEALTHY, found.verdict, found.probabilities)
         for kind, others in sorted(kinds.items()):
             for chosen in rng.choice(len(others), min(references, len(others)), replace=False):
                 found = diagnose_recording(one.recorded, one.given, model, healthy=[others[chosen].recorded])
-                yield Answer(title, kind, one.condition, HEALTHY, found.verdict, found.probabilities)
+                yield Answered(title, kind, one.condition, HEALTHY, found.verdict, found.probabilities)
 
 
-def of_corpus(title: str, corpus: Path, model: Model) -> Iterator[Answer]:
+def of_corpus(title: str, corpus: Path, model: Model) -> Iterator[Answered]:
     """Answers to all recordings of a set, alone and with each other recording of it that is healthy."""
     each = list(recordings(corpus))
     recorded = [Recorded({"": one.x.ravel()}, one.fs) for one in each]
@@ -106,10 +106,10 @@ def of_corpus(title: str, corpus: Path, model: Model) -> Iterator[Answer]:
                 references = [] if reference is None else [recorded[reference]]
                 found = diagnose_recording(recorded[place], given, model, healthy=references)
                 kind = ALONE if reference is None else "one healthy recording"
-                yield Answer(title, kind, "", one.fault, found.verdict, found.probabilities)
+                yield Answered(title, kind, "", one.fault, found.verdict, found.probabilities)
 
 
-def outcome(answer: Answer) -> str:
+def outcome(answer: Answered) -> str:
     """One of ``OUTCOMES``, or the verdict itself if it is that of a fault in no part."""
     if answer.verdict in (answer.fault, UNSURE):
         return "right" if answer.verdict == answer.fault else UNSURE
@@ -118,7 +118,7 @@ def outcome(answer: Answer) -> str:
     return "wrong fault" if answer.verdict in CLASSES else answer.verdict
 
 
-def scores(answers: Iterable[Answer]) -> dict[str, float]:
+def scores(answers: Iterable[Answered]) -> dict[str, float]:
     """Balanced accuracy and log-loss of the probabilities."""
     right: dict[str, list[bool]] = {}
     losses = []
@@ -131,9 +131,9 @@ def scores(answers: Iterable[Answer]) -> dict[str, float]:
     return {"balanced accuracy": round(float(balanced), 3), "log-loss": round(float(np.mean(losses)), 3)}
 
 
-def counted(answers: Iterable[Answer]) -> list[dict[str, Any]]:
+def counted(answers: Iterable[Answered]) -> list[dict[str, Any]]:
     """One row for each set, axis and kind of reference; and, of machines without a reference, for each condition."""
-    groups: dict[tuple[str, str, str], list[Answer]] = {}
+    groups: dict[tuple[str, str, str], list[Answered]] = {}
     for one in answers:
         groups.setdefault((one.title, one.reference, ALL), []).append(one)
         if one.condition and one.reference == ALONE:
@@ -179,11 +179,11 @@ def main() -> None:
     parser.add_argument("--json", action="store_true", help="print the rows as JSON")
     options = parser.parse_args()
     model, _ = load_reference_model()
-    machines: list[Answer] = []
+    machines: list[Answered] = []
     for axes in (*AXES, "".join(AXES)):
         each = healthy_recordings(options.real / "limerick" / "healthy.nc", axes)
         machines += of_machines(f"limerick {axes}", each, model, options.references)
-    sets: list[Answer] = []
+    sets: list[Answered] = []
     with tempfile.TemporaryDirectory() as name:
         for title, corpus in real_corpora(options.real, Path(name)).items():
             sets += of_corpus(title, corpus, model)

@@ -51,7 +51,7 @@ def in_signal(x: FloatArray, fs: float) -> dict[str, FloatArray]:
     }
 
 
-class Records(NamedTuple):
+class Shortcuts(NamedTuple):
     """Records with a known class: shortcuts of shape (record, number), by name; whether faulty, machine and bearing, shape (record,)."""
 
     shortcuts: dict[str, FloatArray]
@@ -60,7 +60,7 @@ class Records(NamedTuple):
     specimen: NDArray[np.int_]
 
 
-def read_records(corpus: Path | str) -> Records:
+def read_records(corpus: Path | str) -> Shortcuts:
     """Shortcuts in the first channel of all records with a known class, and in the variables that the corpus has."""
     waveforms = open_waveforms(corpus)
     waveforms = waveforms.take(np.flatnonzero(waveforms.labels["fault"].values != UNKNOWN_CODE))
@@ -70,12 +70,12 @@ def read_records(corpus: Path | str) -> Records:
     for name, variables in STORED.items():
         if all(variable in labels for variable in variables):
             shortcuts[name] = np.stack([labels[variable].values for variable in variables], axis=1)
-    return Records(
+    return Shortcuts(
         shortcuts, labels["fault"].values != FAULTS.index("healthy"), labels["rig"].values, labels["specimen"].values
     )
 
 
-def permuted(records: Records, rng: np.random.Generator) -> NDArray[np.bool_]:
+def permuted(records: Shortcuts, rng: np.random.Generator) -> NDArray[np.bool_]:
     """Labels after those of the specimens of each rig changed places, shape (record,)."""
     _, first, own = np.unique(records.specimen, return_index=True, return_inverse=True)
     label, rig = records.faulty[first], records.rig[first]
@@ -93,7 +93,7 @@ def score(values: FloatArray, faulty: NDArray[np.bool_], rig: NDArray[np.int_], 
     return float(roc_auc_score(faulty, found[:, 1]))
 
 
-def scores(records: Records, seed: int, permutations: int) -> Iterator[tuple[str, float, list[float]]]:
+def scores(records: Shortcuts, seed: int, permutations: int) -> Iterator[tuple[str, float, list[float]]]:
     """Name of each shortcut, its AUC, and those with permuted labels."""
     rng = np.random.default_rng(seed)
     labels = [permuted(records, rng) for _ in range(permutations)]
@@ -102,7 +102,7 @@ def scores(records: Records, seed: int, permutations: int) -> Iterator[tuple[str
         yield name, score(values, records.faulty, records.rig, seed), null
 
 
-def read_source(source: str, seeds: int, records: int) -> Iterator[Records]:
+def read_source(source: str, seeds: int, records: int) -> Iterator[Shortcuts]:
     """Records of a corpus, for each seed; or of a corpus that is made from a recipe with each seed."""
     if Path(source).is_dir() or is_single_file(Path(source)):
         yield from [read_records(source)] * seeds

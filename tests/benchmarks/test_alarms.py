@@ -13,7 +13,7 @@ from benchmarks.alarms import (
     AXES,
     GRAVITY,
     OUTCOMES,
-    Answer,
+    Answered,
     counted,
     healthy_recordings,
     of_machines,
@@ -25,7 +25,7 @@ from features.faults import HEALTHY
 
 
 def answer(fault, verdict, condition=""):
-    return Answer("A", ALONE, condition, fault, verdict, {"inner": 0.5, HEALTHY: 0.25, "outer": 0.25})
+    return Answered("A", ALONE, condition, fault, verdict, {"inner": 0.5, HEALTHY: 0.25, "outer": 0.25})
 
 
 @pytest.fixture

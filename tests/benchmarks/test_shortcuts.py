@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.shortcuts import STORED, TINY, Records, in_signal, permuted, read_records, scores
+from benchmarks.shortcuts import STORED, TINY, Shortcuts, in_signal, permuted, read_records, scores
 from features import open_waveforms
 from gen import open_corpus, torch_dataset
 
@@ -17,7 +17,7 @@ def records():
     specimen = np.repeat(np.arange(RIGS * SPECIMENS), EACH)
     faulty, noise = specimen % 2 == 1, rng.standard_normal((len(specimen), 2))
     shortcuts = {"offset": noise[:, :1] + 3 * faulty[:, None], "noise": noise[:, 1:]}
-    return Records(shortcuts, faulty, specimen // SPECIMENS, specimen)
+    return Shortcuts(shortcuts, faulty, specimen // SPECIMENS, specimen)
 
 
 def test_an_offset_of_faulty_records_is_a_shortcut_and_noise_is_none(records):
