@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.elementary import power
+from gen.physics.hertz import POINT_EXPONENT
 
 FloatArray = NDArray[np.float64]
 Fields = TypeVar("Fields", bound=tuple[Any, ...])
@@ -67,14 +68,16 @@ def ball_angles(n_balls: Sequence[int], cage_angles: Sequence[float]) -> FloatAr
 def likely_stiffness(machine: Machine, n_balls: int, pull: float = 0.0) -> float:
     """Estimate of the largest contact stiffness of a record [N/m].
 
-    The estimate has ``DYNAMIC_FACTOR`` times the static Stribeck load on three balls, and the preload on all balls. ``pull`` is the sum of
-    the forces on the shaft other than the load [N].
+    The estimate has ``DYNAMIC_FACTOR`` times the static Stribeck load on three balls, or on half of the rollers, since the stiffness of a
+    line contact hardly falls with its load; and the preload on all balls. ``pull`` is the sum of the forces on the shaft other than the
+    load [N].
     """
     load, n = float(np.hypot(machine.load_x, machine.load_y)) + pull, machine.contact_exponent
     factor = machine.load_deflection_factor
     ball_load = DYNAMIC_FACTOR * STRIBECK * load / n_balls
     squeeze = max(-machine.half_clearance, 0.0)
-    loaded = n * factor ** (1 / n) * LOADED_BALLS * ball_load ** (1 - 1 / n)
+    count = LOADED_BALLS if n == POINT_EXPONENT else n_balls / 2
+    loaded = n * factor ** (1 / n) * count * ball_load ** (1 - 1 / n)
     return loaded + n * factor * n_balls * float(power(squeeze, n - 1))
 
 

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics import rotor
+from gen.physics.hertz import LINE_EXPONENT, line_contact_factor, series_factor
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import (
     Machine,
@@ -98,6 +99,20 @@ def test_no_mode_at_rest_is_faster_than_the_bound_on_all_modes(machine, cage):
     masses = np.repeat([machine.shaft_mass, machine.housing_mass, machine.sensor_mass], 2)
     squares = np.linalg.eigvals(stiffness(machine, at_rest, places) / masses[:, None]).real
     assert math.sqrt(squares.max()) <= highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS))
+
+
+@law
+@given(machines(half_clearance=0.0), angles, st.floats(0, 10e-6), st.integers(7, 40))
+def test_the_rollers_of_a_machine_at_rest_are_together_no_stiffer_than_is_assumed(machine, cage, half_clearance, count):
+    rollers = machine._replace(
+        contact_exponent=LINE_EXPONENT,
+        load_deflection_factor=series_factor(*[line_contact_factor(0.01)] * 2, LINE_EXPONENT),
+        half_clearance=half_clearance,
+    )
+    columns, places = as_columns([rollers]), rotor.ball_angles([count], [cage])
+    q = rest(columns, places)
+    _, of_each = ball_forces(columns, q[:, :2] - q[:, 2:], places)
+    assert of_each.sum() <= likely_stiffness(rollers, count)
 
 
 @law

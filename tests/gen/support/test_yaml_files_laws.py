@@ -192,7 +192,7 @@ def test_the_recipes_that_ship_keep_their_hashes():
         "every_fault": "2d7d00a6cdca5637",
         "fan": "4da5a6bbbfb0258d",
         "gearbox": "d260090605bdad28",
-        "main_shaft": "163b1ab512b8e57c",
+        "main_shaft": "9c6deb176b3fdccb",
         "ophel2025": "6dde46564610c042",
         "pump": "11622f31b47c74a2",
         "quickstart": "deedc4423c26d275",
