@@ -77,8 +77,7 @@ def kernel_rate(recipe: Path | str, records: int) -> Rate:
     axis, scenarios = timeline(settings_of(checked)), draw_scenarios(checked, 0, records)
     batches = laid_out(scenarios)
     total = axis.integrated * sum(
-        steps_per_sample(kernel_input(scenario, axis), scenario.record.number, settings_of(checked))
-        for scenario in scenarios
+        steps_per_sample(kernel_input(scenario, axis), scenario.record, settings_of(checked)) for scenario in scenarios
     )
     integrate_every(batches, axis)  # compiles the kernels, or loads them
     return _rate(total, lambda: integrate_every(batches, axis))
@@ -95,7 +94,7 @@ def step_seconds(recipe: Path | str) -> tuple[float, int]:
     checked = read_recipe(recipe)
     (scenario,) = draw_scenarios(checked, 0, 1)
     factor = steps_per_sample(
-        kernel_input(scenario, timeline(settings_of(checked))), scenario.record.number, settings_of(checked)
+        kernel_input(scenario, timeline(settings_of(checked))), scenario.record, settings_of(checked)
     )
     return 1 / (checked.recording.sample_rate_hz * factor), factor
 

@@ -188,7 +188,7 @@ def _groups(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> G
     failures += impossible.values()
     for place, (given, scenario) in enumerate(zip(inputs, scenarios, strict=True)):
         if given is not None:
-            groups[group_of(given, steps_per_sample(given, scenario.record.number, scenario.settings))].append(place)
+            groups[group_of(given, steps_per_sample(given, scenario.record, scenario.settings))].append(place)
     return groups
 
 

@@ -252,6 +252,9 @@ class Operation:
     gains: Gains | None = None
     """Gains in place of those that follow from ``snr`` and ``rms``: those of the largest severity of its group. None for a record in no
     group, and before the measurement."""
+    narrowest_spall: Annotated[float, Field(gt=0)] | None = None
+    """Width of the narrowest spall of its group [m]: the step of all records of the group follows it. None for a record in no group, and
+    without spalls."""
 
     @property
     def stream_number(self) -> int:
@@ -303,7 +306,7 @@ class Scenario(Shown):
         specimen = replace(self.other.specimen, number=OTHER_STREAMS + self.specimen.number)
         share = self.other.load_share
         loads = replace(conditions, load=share * conditions.load, axial_load=share * conditions.axial_load)
-        return Scenario(self.settings, rig, specimen, replace(self.record, conditions=loads))
+        return Scenario(self.settings, rig, specimen, replace(self.record, conditions=loads, narrowest_spall=None))
 
     def without_fault(self) -> "Scenario":
         """The same record of the same specimen before it was damaged."""

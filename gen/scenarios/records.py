@@ -106,6 +106,7 @@ def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int
     if recipe.operation.slip_walk is not None:
         conditions = replace(conditions, slip_walk=draws.section(recipe.operation.slip_walk)["spacing"])
     pair = group if rung >= 0 else -1
+    narrowest = min((spall.width for one in source.rungs for spall in one.spalls), default=None)
     speed_profile, load_profile = profiles
     sensor_faults = draw_record_sensor_faults(recipe, source.rig.number, specimen.number, first)
     operation = Operation(
@@ -118,6 +119,7 @@ def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int
         sensor_faults=sensor_faults,
         pair=pair,
         rung=rung,
+        narrowest_spall=None if rung < 0 else narrowest,
     )
     return Scenario(settings_of(recipe), source.rig, specimen, operation, source.other)
 

@@ -27,10 +27,15 @@ def scenario_texts(scenarios: Sequence[Scenario]) -> list[str]:
     texts = {number: json.dumps(item, default=vars) for number, item in shared.items()}
     return [
         f'{{"settings": {texts[id(one.settings)]}, "rig": {texts[id(one.rig)]}, "specimen": {texts[id(one.specimen)]}, '
-        f'"record": {json.dumps(one.record, default=vars)}'
+        f'"record": {json.dumps(one.record, default=_fields)}'
         + ("}" if one.other is None else f', "other": {texts[id(one.other)]}}}')
         for one in scenarios
     ]
+
+
+def _fields(item: object) -> dict[str, object]:
+    """Fields of a dataclass by name; the narrowest spall of a group is stored in groups alone."""
+    return {name: value for name, value in vars(item).items() if name != "narrowest_spall" or value is not None}
 
 
 def read_scenarios(records: "xr.Dataset") -> list[Scenario]:

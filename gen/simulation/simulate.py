@@ -162,7 +162,7 @@ def _runs_of_bearings(
         if given is None:
             runs.append(Run(scenario, None, failures[place], None, None))
             continue
-        steps = steps_per_sample(given, number, scenario.settings)
+        steps = steps_per_sample(given, scenario.record, scenario.settings)
         own, twin = Integration(number, given, group_of(given, steps)), None
         before = known.get(number)
         if before is not None and before.group.steps != steps:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from gen.physics.inputs import KernelInput
 from gen.physics.rotor import highest_angular_frequency, highest_damping_rate, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING
-from gen.scenarios import Settings
+from gen.scenarios import Operation, Settings
 from gen.support.errors import SimulationError
 
 FloatArray = NDArray[np.float64]
@@ -22,19 +22,19 @@ _FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
 LARGEST_TURN = 0.7  # of the shaft per sample [rad]: its rate is constant within a sample
 
 
-def steps_per_sample(given: KernelInput, number: int, settings: Settings) -> int:
-    """Steps per sample that the modes of record ``number`` need.
+def steps_per_sample(given: KernelInput, record: Operation, settings: Settings) -> int:
+    """Steps per sample that the modes and the spalls of a record need; the records of a group have the same.
 
     Raises
     ------
     SimulationError
         If the settings ask for too few, or the mode needs more than are allowed.
     """
-    fs, asked = settings.sample_rate, settings.oversampling
+    number, fs, asked = record.number, settings.sample_rate, settings.oversampling
     _check_turn(given, number, fs)
     rate = fastest_rate(given)
     need = max(min(rate / (FINE_STEP * fs), ENOUGH), rate / (FOLLOWED_STEP * fs))
-    need = max(need, min(PASSAGE_STEPS * passage_rate(given) / fs, MAX_OVERSAMPLING))
+    need = max(need, min(PASSAGE_STEPS * passage_rate(given, record.narrowest_spall) / fs, MAX_OVERSAMPLING))
     if asked is not None:
         if rate / (asked * fs) > COARSEST_STEP:
             raise SimulationError(
@@ -67,9 +67,9 @@ def fastest_rate(given: KernelInput) -> float:
     return max(highest_angular_frequency(machine, stiffness), highest_damping_rate(machine, n_balls) / 2.5)
 
 
-def passage_rate(given: KernelInput) -> float:
-    """Speed at which balls roll on the races over the width of the narrowest spall, 0 without one [Hz]."""
-    narrowest = min((spall.width for spall in given.spalls), default=math.inf)
+def passage_rate(given: KernelInput, narrowest: float | None = None) -> float:
+    """Speed at which balls roll on the races over the ``narrowest`` spall [m] or one of their own, 0 without any [Hz]."""
+    narrowest = min([narrowest or math.inf, *(spall.width for spall in given.spalls)])
     cage_rate = 0.5 * (1 - given.bearing.gamma) * _fastest_shaft_rate(given)
     return 2 * math.pi * cage_rate * given.bearing.radius("outer") / narrowest
 

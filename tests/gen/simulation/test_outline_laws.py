@@ -44,7 +44,7 @@ profiles = st.one_of(
 
 
 def needs(record, scenario, recipe):
-    return input_shape(record), steps_per_sample(record, scenario.record.number, settings_of(recipe))
+    return input_shape(record), steps_per_sample(record, scenario.record, settings_of(recipe))
 
 
 @settings(deadline=None, max_examples=200)

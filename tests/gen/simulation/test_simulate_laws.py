@@ -112,7 +112,7 @@ def test_the_step_is_the_coarsest_that_is_fine_for_the_stiffest_mode(simulated):
             highest_angular_frequency(record.machine, likely_stiffness(record.machine, record.bearing.n_balls))
         )
         assert swing / (FS * factor) <= FINE_STEP
-        assert factor == steps_per_sample(record, scenario.record.number, settings_of(recipe))
+        assert factor == steps_per_sample(record, scenario.record, settings_of(recipe))
 
 
 def test_a_step_too_coarse_for_the_stiffest_mode_is_refused_before_it_runs(recipe_with, monkeypatch):

@@ -1,13 +1,17 @@
 """Laws of the choice of the step: which contact stiffness it assumes before the run."""
 
 import math
+from collections import defaultdict
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from gen.physics.bearing import orders
 from gen.physics.rotor import likely_stiffness
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
+from gen.simulation.simulate import runs_of
 from gen.simulation.steps import (
     ENOUGH,
     FINE_STEP,
@@ -57,7 +61,7 @@ def test_the_step_resolves_the_mode_of_that_stiffness_and_is_no_finer(drawn, sha
     square += max(machine.support_stiffness_x, machine.support_stiffness_y) / machine.housing_mass
     rate = share * math.sqrt(square) / (4 * FINE_STEP)
     sampled = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"sample_rate_hz": rate})})
-    assert steps_per_sample(record, scenario.record.number, settings_of(sampled)) == steps
+    assert steps_per_sample(record, scenario.record, settings_of(sampled)) == steps
 
 
 @pytest.mark.parametrize(("mode", "steps"), [(0.49, ENOUGH), (0.71, ENOUGH), (0.73, 8), (0.95, 8)])
@@ -66,7 +70,7 @@ def test_a_mode_above_half_the_sample_rate_is_followed_and_not_resolved(drawn, m
     recipe, scenario, record = drawn
     rate = fastest_rate(record) / (2 * math.pi * mode)
     sampled = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"sample_rate_hz": rate})})
-    assert steps_per_sample(record, scenario.record.number, settings_of(sampled)) == steps
+    assert steps_per_sample(record, scenario.record, settings_of(sampled)) == steps
     assert 2 * math.pi * mode / steps < FOLLOWED_STEP
 
 
@@ -86,5 +90,26 @@ def test_a_ball_rolls_over_the_narrowest_spall_in_some_steps(recipe_with, width)
         }[scenario.specimen.fault]
         rate = 2 * math.pi * record.turning.shaft_rate * speed / (1e-3 * width)
         assert passage_rate(record) == pytest.approx(rate, rel=0.05)
-        steps = steps_per_sample(record, scenario.record.number, settings_of(recipe))
+        steps = steps_per_sample(record, scenario.record, settings_of(recipe))
         assert steps * 12_000 >= PASSAGE_STEPS * passage_rate(record)
+
+
+rungs = st.lists(st.floats(0.02, 1), min_size=1, max_size=4, unique=True).map(sorted)
+
+
+@settings(deadline=None, max_examples=15)
+@given(rungs, st.booleans(), st.floats(600, 40_000), st.integers(0, 2**31))
+def test_the_records_of_a_group_have_one_step_together_and_alone(recipe_with, shares, before_damage, rpm, seed):
+    """So they differ in their fault alone; a replay simulates one of them without the others."""
+    shares = [0, *shares] if before_damage or len(shares) == 1 else shares
+    faults = [{"kind": kind, "width_mm": "loguniform(0.1, 3)"} for kind in ("inner", "outer", "ball")]
+    changes = {"seed": seed, "corpus.rungs": shares, "operation.shaft_rpm": rpm, "recording.sample_rate_hz": 12_000}
+    recipe = recipe_with(changes | {"faults": [{"kind": "healthy", "weight": 4}, *faults]})
+    steps = defaultdict(set)
+    scenarios = draw_scenarios(recipe, 0, 12 * len(shares))
+    for scenario, run in zip(scenarios, runs_of(scenarios), strict=True):
+        (alone,) = runs_of([scenario])
+        steps[scenario.record.pair] |= {one.group.steps for one in (*run.integrations, *alone.integrations)}
+    steps.pop(-1, None)
+    assert steps
+    assert all(len(of_group) == 1 for of_group in steps.values())
