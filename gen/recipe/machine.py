@@ -234,8 +234,9 @@ class OtherBearingSection(Section):
     attenuation_db: Distribution = within(0, 200)
     """Attenuation of its vibration on the way to the sensors, at all frequencies alike."""
     fault_probability: Probability = 0.0
-    """Probability that it has a fault while a specimen runs: one of `faults`, drawn by weight, without its conditions and levels. The class
-    of a record is that of the first bearing; `other_fault` names the fault of this one."""
+    """Share of the specimens beside which it has a fault: one of `faults` by weight, without its conditions and levels. Beside each class
+    of the first bearing its own classes have the same shares. The class of a record is that of the first bearing; `other_fault` names the
+    fault of this one."""
 
     @field_validator("bearing", mode="before")
     @classmethod

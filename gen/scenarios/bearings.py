@@ -75,8 +75,8 @@ def _free_angle(bearing: Bearing, value: Callable[[str], float]) -> float:
     return free_contact_angle(grooved, value("diametral_clearance_um"))
 
 
-def draw_other_bearing(recipe: Recipe, rig: Rig, specimen: Specimen) -> OtherBearing | None:
-    """The bearing at the other end of the shaft during the records of a specimen; None if the recipe has none.
+def draw_other_bearing(recipe: Recipe, rig: Rig, specimen: Specimen, fault: str) -> OtherBearing | None:
+    """The bearing at the other end of the shaft, with its fault class, during the records of a specimen; None if the recipe has none.
 
     Raises
     ------
@@ -97,10 +97,10 @@ def draw_other_bearing(recipe: Recipe, rig: Rig, specimen: Specimen) -> OtherBea
     known = known_of_rig(recipe, replace(rig, bearing=drawing))
     bearing, properties = draw_as_built(recipe, drawing, known, draws(own, Purpose.SPECIMEN))
     other = Specimen(specimen.number, bearing, properties, "healthy", spalls=(), axis={}, split=specimen.split)
-    of_fault = draws(own, Purpose.FAULT)
-    if of_fault.u() < wanted.fault_probability:
-        faults = [place for place, entry in enumerate(recipe.faults) if fault_class(entry) != "healthy"]
+    if fault != "healthy":
+        of_fault = draws(own, Purpose.FAULT)
+        faults = [place for place, entry in enumerate(recipe.faults) if fault_class(entry) == fault]
         entry = faults[weighted_index(tuple(recipe.faults[place].weight for place in faults), of_fault.u())]
-        other = replace(other, fault=fault_class(recipe.faults[entry]), entry=entry)
+        other = replace(other, fault=fault, entry=entry)
         other = draw_damage(of_fault, recipe.faults[entry], other, {**known, **known_of(recipe.specimen, properties)})
     return OtherBearing(drawing, other, mount["load"], decibel_to_ratio(-mount["attenuation"]))

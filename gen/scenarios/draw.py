@@ -24,7 +24,7 @@ from gen.recipe import (
 )
 from gen.recipe.distributions import weighted_index
 from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_bearing
-from gen.scenarios.classes import fault_of_each_specimen, possible_entries
+from gen.scenarios.classes import fault_of_each_specimen, other_fault_of_each_specimen, possible_entries
 from gen.scenarios.draws import Draws, Known, known_of, known_of_rig
 from gen.scenarios.faults import draw_damage
 from gen.scenarios.model import Purpose, Rig, Scenario, Specimen, stream
@@ -66,18 +66,19 @@ def draw_scenarios(
     rigs = {number: _draw_rig(recipe, number, draws) for number, draws in rig_draws.items()}
     known = {number: known_of_rig(recipe, rig) for number, rig in rigs.items()}
     classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
+    others = {number: other_fault_of_each_specimen(recipe, number, of_rig) for number, of_rig in classes.items()}
     sources: dict[int, Source] = {}
     operating: dict[int, Operating] = {}
     for number, point in points_of(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items():
         rig = recipe.rig_of(number)
         draws = Draws(stream(recipe.seed, rig, number, 0, Purpose.SPECIMEN), point, number, f"specimen {number}")
-        fault_try = tries.get(number, 0)
+        fault_try, other_fault = tries.get(number, 0), others[rig][number % recipe.corpus.specimens_per_rig]
         specimen = _draw_specimen(recipe, rigs[rig], known[rig], number, draws, classes[rig], fault_try)
         if specimen.entry not in operating:
             operating[specimen.entry] = operating_of(recipe, specimen.entry)
         sources[number] = source_of(
             recipe, rigs[rig], known[rig], specimen, operating[specimen.entry], rig_draws[rig], draws
-        )._replace(other=draw_other_bearing(recipe, rigs[rig], specimen))
+        )._replace(other=draw_other_bearing(recipe, rigs[rig], specimen, other_fault))
     points = record_points(recipe, numbers)
     return [draw_record(recipe, sources[recipe.specimen_of(number)], number, points) for number in numbers]
 

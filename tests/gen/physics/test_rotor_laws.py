@@ -104,9 +104,10 @@ def test_no_mode_at_rest_is_faster_than_the_bound_on_all_modes(machine, cage):
 @law
 @given(machines(half_clearance=0.0), angles, st.floats(0, 10e-6), st.integers(7, 40))
 def test_the_rollers_of_a_machine_at_rest_are_together_no_stiffer_than_is_assumed(machine, cage, half_clearance, count):
+    contact = line_contact_factor(0.01)
     rollers = machine._replace(
         contact_exponent=LINE_EXPONENT,
-        load_deflection_factor=series_factor(*[line_contact_factor(0.01)] * 2, LINE_EXPONENT),
+        load_deflection_factor=series_factor(contact, contact, LINE_EXPONENT),
         half_clearance=half_clearance,
     )
     columns, places = as_columns([rollers]), rotor.ball_angles([count], [cage])
