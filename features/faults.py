@@ -7,7 +7,7 @@ A ball spall strikes both races in each spin, so its fundamental line is twice t
 """
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 
 class Line(NamedTuple):
@@ -43,6 +43,9 @@ class FaultClass(NamedTuple):
     side
         Distance of the sidebands of its lines: a field of `features.signal.lines.Orders`, or ``shaft``. A spall on a ball
         passes the load zone with the cage.
+    beside
+        What the sidebands of its lines at the shaft rate are like: ``needed`` on an inner race, which turns through the load zone,
+        ``lower`` than the lines on an outer race, which stands still, or empty.
     companion
         Class whose lines go with those of this one, so that they do not speak against it.
     """
@@ -55,6 +58,7 @@ class FaultClass(NamedTuple):
     words: str = ""
     part: str = ""
     side: str = "shaft"
+    beside: Literal["", "needed", "lower"] = ""
     companion: str = ""
 
     @property
@@ -76,8 +80,12 @@ CLASSES: Mapping[str, FaultClass] = {
     row.name: row
     for row in (
         FaultClass(HEALTHY, "#009E73", words="Healthy"),
-        FaultClass("inner", "#D55E00", BPFI, "whitened_bpfi_comb", words="Inner race fault", part="inner race"),
-        FaultClass("outer", "#0072B2", BPFO, "whitened_bpfo_comb", words="Outer race fault", part="outer race"),
+        FaultClass(
+            "inner", "#D55E00", BPFI, "whitened_bpfi_comb", words="Inner race fault", part="inner race", beside="needed"
+        ),
+        FaultClass(
+            "outer", "#0072B2", BPFO, "whitened_bpfo_comb", words="Outer race fault", part="outer race", beside="lower"
+        ),
         FaultClass(
             "ball", "#CC79A7", BSF, "whitened_2bsf_comb", words="Ball fault", part="balls", side="ftf", companion="cage"
         ),

@@ -74,14 +74,14 @@ def judge(
 
 def _foreign_sidebands(lines: Sequence[Line]) -> str:
     """Clause on sidebands at the shaft rate, or their absence, that tell of another part; empty if they fit the family."""
-    fault = lines[0].fault
+    row = CLASSES[lines[0].fault]
     highest = {side: max((line.level for line in lines if line.side == side), default=0.0) for side in ("", *SIDES)}
     shaft = highest[SHAFT.base]
-    if fault == "inner" and not shaft:
+    if row.beside == "needed" and not shaft:
         return f"{family_in_words(lines)} without sidebands at the rate of the shaft, which an inner race has"
-    if fault == "outer" and shaft >= highest[""]:
+    if row.beside == "lower" and shaft >= highest[""]:
         return f"{family_in_words(lines)} that are higher than the lines, as no outer race has"
-    if fault == "ball" and shaft >= max(PLAIN, highest[CLASSES[fault].side]):
+    if row.side != SHAFT.base and shaft >= max(PLAIN, highest[row.side]):
         return f"{family_in_words(lines)}, as the inner race of another bearing would show"
     return ""
 
