@@ -59,7 +59,7 @@ docs: $(VENV)/installed
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks
 
-# fresh examples of all laws; then fuzz, kills, memory, other processors, programs of others, and all of the gallery and the benchmarks
+# fresh examples of all laws; then fuzz, kills, memory, other processors, programs of others, and all of the benchmarks
 thorough: $(VENV)/installed
 	$(BIN)/python -m pytest -n logical --dist loadfile --hypothesis-profile=fresh
 	$(BIN)/python -m pytest -n logical tests/thorough

@@ -7,7 +7,6 @@ pictures   drawings of one record, and the style of all
 shown      what is drawn: a record, or a recording of the user
 views      one view of a record, over orders at any speed
 summaries  drawings of the contents of a corpus, and of scores
-envelopes  drawings of several envelope spectra: a grid, and a waterfall
 curves     drawing of a learning curve
 ranking    drawing of the best features of a ranking
 sides      drawings of several sets side by side: examples, and distributions

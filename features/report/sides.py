@@ -10,7 +10,6 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.report.envelopes import draw_envelope
 from features.report.pictures import (
     BLUE,
     INK,
@@ -20,6 +19,8 @@ from features.report.pictures import (
     VERMILION,
     WIDTH,
     Shown,
+    mark_lines,
+    squared_envelope,
     thin,
 )
 from features.signal.rows import FloatArray
@@ -28,6 +29,7 @@ from features.signal.spectra import psd
 COLOURS = (VERMILION, BLUE, "#009E73", "#CC79A7", "#E69F00", "#56B4E9")  # of the sets, as of the classes
 COLUMN = 2.6  # inches, width of one set
 FAINTEST_DB = -60.0
+HIGHEST_ORDER = 17.0  # end of the axis of an envelope spectrum
 DISTRIBUTION_COLUMNS = 3
 
 
@@ -51,8 +53,7 @@ def draw_sides(records: Mapping[int, Shown], top: float) -> Figure:
         level = 10 * np.log10(np.maximum(share, 10 ** (FAINTEST_DB / 10)))
         density.plot(frequencies / 1e3, level, color=INK, linewidth=0.8)
         density.set(xlabel="frequency [kHz]", xlim=(0, top / 1e3))
-        draw_envelope(envelope, shown)
-        envelope.set_xlabel("order of the shaft")
+        _draw_envelope(envelope, shown)
     panels[0, 0].set_ylabel("acceleration / rms")
     panels[1, 0].set_ylabel("share of the energy [dB]")
     panels[2, 0].set_ylabel("squared envelope [1]")
@@ -69,6 +70,15 @@ def _draw_turns(axes: Axes, shown: Shown) -> None:
     turns, values = thin(np.arange(x.size) / shown.fs * shown.shaft_rate, x / np.sqrt(np.mean(shown.signal**2)))
     axes.plot(turns, values, color=INK, linewidth=0.5)
     axes.set(xlabel="revolution of the shaft", xlim=(0, turns[-1]))
+
+
+def _draw_envelope(axes: Axes, shown: Shown) -> None:
+    """Squared envelope spectrum over orders, with the fault lines marked."""
+    order, spectrum = squared_envelope(shown)
+    visible = (order > 0) & (order <= HIGHEST_ORDER)
+    mark_lines(axes, shown)
+    axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.7)
+    axes.set(xlabel="order of the shaft", xlim=(0, HIGHEST_ORDER), ylim=(0, None))
 
 
 @rc_context(STYLE)

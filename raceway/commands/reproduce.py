@@ -1,24 +1,19 @@
-"""``raceway reproduce``: a page of the seed paper, and a page of pictures of simulated signals."""
+"""``raceway reproduce``: a page of the seed paper."""
 
 import math
-import time
 from pathlib import Path
 
 import click
 
 from raceway.console import show
 from raceway.console.options import json_option, pages_option
-from raceway.console.progress import notice_compilation
 
 
 @click.group()
 def reproduce() -> None:
-    """Run the seed paper again, or draw a gallery of signals.
+    """Run the seed paper again.
 
-    Both write pages and pictures into a folder; docs/model.md explains them.
-
-      raceway reproduce ophel2025 -o ophel
-      raceway reproduce gallery -o gallery
+    raceway reproduce ophel2025 -o ophel
     """
 
 
@@ -64,28 +59,6 @@ def ophel2025(
         holds = [finding.holds for finding in findings if finding.preset == name]
         show.text(f"{name}: {sum(holds)} of {len(holds)} statements hold.")
     show.text(f"{page}: its figures and statements.")
-
-
-@reproduce.command()
-@pages_option("OUT", "Folder for index.html, its pictures, the corpora that they show, and ophel2025.html.")
-@json_option
-def gallery(output: Path, as_json: bool) -> None:
-    """Draw one page of simulated signals.
-
-    The page has the envelope spectrum of every kind of fault (recipe every_fault), run-ups as waterfalls with the shaft orders drawn in
-    (recipe run_up), every fault of the measuring chain (recipe dirty_sensors), and a link to the page of the seed paper.
-
-      raceway reproduce gallery -o gallery
-    """
-    from raceway.studies.gallery import write_gallery
-
-    start = time.monotonic()
-    with notice_compilation():
-        page, pictures = write_gallery(output)
-    if as_json:
-        show.as_json({"page": page, "pictures": pictures})
-        return
-    show.text(f"{page}: {show.count_text(len(pictures), 'picture')}, in {show.duration(time.monotonic() - start)}.")
 
 
 def _constants(changes: tuple[str, ...]) -> dict[str, float]:

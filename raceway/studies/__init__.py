@@ -9,9 +9,6 @@ measures        measures on displacements and spectra
 experiments     the one constant with which a statement of the paper holds
 statements      the statements of the seed paper, measured
 paper_page      the seed paper on one page: figures 3 to 6 drawn, statements
-orbits          picture of two crossed sensors on one machine
-sensor_faults   pictures of every sensor fault and of a gear mesh
-gallery         a page of pictures: every fault, run-ups, sensor faults
 feature_page    tables and picture of docs/features.md
 card_pictures   pictures and scores of a data card
 timing          speed of this machine, stage by stage

@@ -35,7 +35,6 @@ RESULTS = {
     "replay {corpus} --record 1": "record.nc",
     "benchmark {corpus}": "report",
     "compare {corpus} {corpus}": "report",
-    "reproduce gallery": "report",
     "reproduce ophel2025": "report",
     "generate {recipe}": "new",
     "import generic {raw}": "new",
