@@ -10,7 +10,7 @@ FLOORS := .venv-floors
 FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/support/test_yaml_files_laws.py \
 	tests/features tests/raceway/test_commands.py --ignore=tests/gen/physics/kernel
 
-.PHONY: quickstart test tests lint generated reference docs bench thorough floors clean
+.PHONY: quickstart test tests lint generated reference docs paper bench thorough floors clean
 
 $(VENV)/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Raceway needs Python 3.11 or later; set PYTHON=..."; exit 2; }
@@ -55,6 +55,10 @@ docs: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --editable '.[docs]'
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs/site -b html . out/docs
 	@echo "Open     out/docs/index.html"
+
+# the paper that Raceway began with: its figures drawn again and its statements measured, on one page
+paper: $(VENV)/installed
+	$(BIN)/python -m studies.ophel2025 -o out/ophel2025
 
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks

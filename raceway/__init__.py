@@ -6,7 +6,7 @@ From Python, ``raceway.reference_model()`` is its model, and ``raceway.show_prog
 module   responsibility
 ======== =====================================================================
 console  options, results, progress, errors
-studies  the seed paper and the speed of this machine
+studies  the reference model and the speed of this machine
 commands one function per command
 cli      the group of all commands, and the entry point
 ======== =====================================================================

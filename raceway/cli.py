@@ -23,7 +23,6 @@ from raceway.commands import (
     models,
     plotting,
     publishing,
-    reproduce,
 )
 from raceway.console.ending import NoReader, exit_code
 from raceway.console.signals import listen_for_signals
@@ -52,7 +51,7 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         benchmarking.benchmark,
         diagnosing.diagnose,
     ),
-    "Raceway itself": (doctor.doctor, reproduce.reproduce),
+    "Raceway itself": (doctor.doctor,),
 }
 """Commands in the order of the work."""
 

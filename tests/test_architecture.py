@@ -11,7 +11,7 @@ import pytest
 
 from tests.paths import ROOT
 
-PACKAGES = ("gen", "features", "raceway")
+PACKAGES = ("gen", "features", "raceway", "studies")
 
 
 def packages():

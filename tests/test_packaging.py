@@ -16,7 +16,7 @@ from tests.paths import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 IMPORTED = ("gen", "features", "raceway")
-FOLDERS = (*IMPORTED, "recipes", "benchmarks", "docs", "tests")
+FOLDERS = (*IMPORTED, "recipes", "benchmarks", "docs", "studies", "tests")
 FILES = (
     *("pyproject.toml", "MANIFEST.in", "Makefile", "LICENSE", "CITATION.cff"),
     *("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"),

@@ -18,7 +18,6 @@ recordings       options and files of recordings of the user
 benchmarking     scores of all baselines
 comparing        synthetic records against real ones
 publishing       the data card with terms of use, pictures and scores
-reproduce        the seed paper run again
 doctor           what this machine and installation can do, and its speed
 ================ ================================================================
 

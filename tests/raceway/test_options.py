@@ -1,6 +1,5 @@
 """Options reach the functions that they set, and keys of the JSON objects have the right values."""
 
-import json
 import re
 from types import SimpleNamespace
 
@@ -147,21 +146,3 @@ def test_bench_names_the_machine_and_the_number_of_runs(run, told, tiny_recipe, 
     assert found["machine"].keys() == {"processor", "cores", "python", "raceway", "numba", "numpy", "scipy"}
     shown = run("doctor", "--speed", tiny_recipe, "--records", 1).stdout
     assert shown.startswith(f"tiny: 1 record, median of 1 run on {found['machine']['processor']}\n")
-
-
-def test_the_seed_paper_is_drawn_and_its_statements_are_on_one_page(run, told, tmp_path):
-    folder = tmp_path / "ophel"
-    found = told("reproduce", "ophel2025", "--preset", "paper", "-o", folder)
-    assert found["findings"] == json.loads((folder / "findings.json").read_text())["findings"]
-    assert sorted(path.name for path in folder.iterdir()) == ["findings.json", "ophel2025.html"]
-    page = (folder / "ophel2025.html").read_text()
-    assert page.count("data:image/png") == 4
-    assert page.count("data:image/svg") == 2
-    assert "src=" not in page.replace('src="data:', "")
-    for finding in found["findings"]:
-        assert f">{finding['id']}<" in page
-        assert (f"paper, {finding['id']}: " in page) == (not finding["holds"])
-        assert f"amended: {finding['amended']}" in page or not finding["amended"]
-    holding = [finding["id"] for finding in found["findings"] if finding["holds"]]
-    shown = run("reproduce", "ophel2025", "--preset", "paper", "-o", folder).stdout
-    assert f"paper: {len(holding)} of {len(found['findings'])} statements hold." in shown

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from gen.physics.catalogue import CATALOGUE
-from raceway.studies.experiments import EXPERIMENTS, UNITS, changed, constant, experiment
-from raceway.studies.paper import PRESETS, SHAFT_MASS, Preset, run_many
-from raceway.studies.statements import findings
+from studies.ophel2025.experiments import EXPERIMENTS, UNITS, changed, constant, experiment
+from studies.ophel2025.paper import PRESETS, SHAFT_MASS, Preset, run_many
+from studies.ophel2025.statements import findings
 
 BPFI = CATALOGUE["6205-paper"].n_balls * (1 + CATALOGUE["6205-paper"].gamma) / 2  # orders
 
@@ -106,34 +106,3 @@ def test_load_and_its_angle_change_the_two_components_together():
     assert constant(preset, "load_angle") == pytest.approx(90)
     assert changed(PRESETS["paper"], {}) == PRESETS["paper"]
     assert set(UNITS) == {*Preset._fields, "load", "load_angle"}
-
-
-def test_an_experiment_is_run_by_hand(told, tmp_path):
-    change = ("--preset", "paper", "--change", "support_damping_y=4500")
-    found = {each["id"]: each for each in told("reproduce", "ophel2025", *change, "-o", tmp_path)["findings"]}
-    assert found["H8"]["holds"]
-    assert found["H8"]["preset"] == "paper-changed"
-    assert "paper-changed" in (tmp_path / "ophel2025.html").read_text()
-
-
-@pytest.mark.parametrize(
-    ("options", "sentence"),
-    [
-        (("--preset", "printed"), "printed is none of paper, paper-hertz, paper-refit"),
-        (("--change", "stiffness=1"), "'stiffness' is none of housing_mass, ring_stiffness,"),
-        (("--change", "load"), "load: give a number"),
-        (("--change", "load=nan"), "load=nan: give a number"),
-        (("--change", "housing_mass=0"), "housing_mass=0: give a number, above zero for a mass or a rate"),
-    ],
-)
-def test_an_experiment_that_cannot_be_run_is_refused(run, tmp_path, options, sentence):
-    result = run("reproduce", "ophel2025", *options, "-o", tmp_path / "out")
-    assert result.exit_code == 2
-    assert sentence in result.output
-    assert not (tmp_path / "out").exists()
-
-
-def test_a_system_that_grows_without_limit_is_named(run, tmp_path):
-    result = run("reproduce", "ophel2025", "--preset", "paper", "--change", "support_stiffness_x=-1e9", "-o", tmp_path)
-    assert result.exit_code == 2
-    assert "paper-changed: the displacements grow without limit; change its constants less." in result.output

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.support.errors import SimulationError
-from raceway.studies.experiments import experiment, in_words
-from raceway.studies.measures import (
+from studies.ophel2025.experiments import experiment, in_words
+from studies.ophel2025.measures import (
     asymmetry,
     count_lines,
     decay,
@@ -20,7 +20,7 @@ from raceway.studies.measures import (
     similarity,
     unrest,
 )
-from raceway.studies.paper import CHANNELS, FS, FloatArray, Run, power_spectrum
+from studies.ophel2025.paper import CHANNELS, FS, FloatArray, Run, power_spectrum
 
 LATE = 0.05  # s, the start, in which x1 oscillates rapidly
 IN_MM = "read in mm, not in m (E15)"

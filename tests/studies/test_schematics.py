@@ -8,8 +8,8 @@ from matplotlib.colors import to_rgba
 from matplotlib.patches import Circle
 
 from features.report.pictures import VERMILION
-from raceway.studies.paper import PRESETS
-from raceway.studies.schematics import draw_crack, draw_model
+from studies.ophel2025.paper import PRESETS
+from studies.ophel2025.schematics import draw_crack, draw_model
 
 
 def words(figure) -> str:

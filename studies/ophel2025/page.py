@@ -12,10 +12,10 @@ from features.report.pictures import BLUE, STYLE, picture
 from features.report.templates import template
 from gen.corpus import make_result_folder, write_numbers, write_text_durably
 from raceway.console.show import plain
-from raceway.studies.experiments import UNITS, constant
-from raceway.studies.paper import CHANNELS, FIGURES, FS, PRESETS, Preset, Run, power_spectrum, run_many
-from raceway.studies.schematics import draw_crack, draw_model
-from raceway.studies.statements import STATEMENTS, Finding, findings, span
+from studies.ophel2025.experiments import UNITS, constant
+from studies.ophel2025.paper import CHANNELS, FIGURES, FS, PRESETS, Preset, Run, power_spectrum, run_many
+from studies.ophel2025.schematics import draw_crack, draw_model
+from studies.ophel2025.statements import STATEMENTS, Finding, findings, span
 
 SHOWN_S = 0.3  # s of the displacements drawn; a whole second would be one black band
 SHOWN_HZ = 1000
@@ -23,7 +23,7 @@ FAINTEST = 1e-7  # power drawn, below the highest
 WIDTH, HEIGHT = 4.0, 7.6  # inches: three pictures side by side on a screen, one on a phone
 
 
-def write_paper_page(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> tuple[Path, list[Finding]]:
+def write_page(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> tuple[Path, list[Finding]]:
     """Write ``ophel2025.html`` and ``findings.json`` into a folder; returns the page and all measured statements.
 
     Raises
@@ -33,7 +33,7 @@ def write_paper_page(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> t
     """
     runs = dict(zip(presets, run_many(list(presets.values())), strict=True))
     measured = {name: findings(name, made) for name, made in runs.items()}
-    page = template("ophel2025.html.jinja", "raceway.studies").render(
+    page = template("ophel2025.html.jinja", "studies.ophel2025").render(
         amended=sum(bool(one.amended) for one in STATEMENTS.values()),
         counts={name: _counts(found) for name, found in measured.items()},
         constants={name: [f"{constant(one, name):.4g}" for one in presets.values()] for name in UNITS},

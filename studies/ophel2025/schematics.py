@@ -15,7 +15,7 @@ from matplotlib.patches import Annulus, Circle, Polygon
 
 from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION
 from gen.physics.catalogue import CATALOGUE
-from raceway.studies.paper import CRACK, SHAFT_MASS, FloatArray, Preset
+from studies.ophel2025.paper import CRACK, SHAFT_MASS, FloatArray, Preset
 
 Point = tuple[float, float]
 

@@ -1,15 +1,15 @@
 """Experiments on the presets of the seed paper: the one constant that makes a statement hold.
 
 A statement that does not hold with a preset has one experiment: a single constant changed, with which it holds. Causes that seemed likely
-and were wrong are here too, as changes with which the statement still does not hold. tests/raceway/test_paper_experiments.py runs
-all of them; ``raceway reproduce ophel2025 --preset paper --change support_damping_y=4500`` runs one.
+and were wrong are here too, as changes with which the statement still does not hold. tests/thorough/test_paper_experiments.py runs
+all of them; ``python -m studies.ophel2025 -o OUT --preset paper --change support_damping_y=4500`` runs one.
 """
 
 import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from raceway.studies.paper import PRESETS, Preset
+from studies.ophel2025.paper import PRESETS, Preset
 
 # Constants that may be changed; load and load_angle, which counts from x towards y, set load_x and load_y together.
 UNITS = {

@@ -7,10 +7,10 @@ import pytest
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import load_deflection_factor
-from raceway.studies.measures import modulation, oscillations
-from raceway.studies.paper import CHANNELS, FIGURES, FS, PRESETS, power_spectrum, run
-from raceway.studies.paper_page import draw_figure
-from raceway.studies.statements import LATE, STATEMENTS, findings
+from studies.ophel2025.measures import modulation, oscillations
+from studies.ophel2025.page import draw_figure
+from studies.ophel2025.paper import CHANNELS, FIGURES, FS, PRESETS, power_spectrum, run
+from studies.ophel2025.statements import LATE, STATEMENTS, findings
 
 # values of the model study, in thousandths of a millimetre, Hz or 1, that the runs must meet within 2 %
 PAPER = {
