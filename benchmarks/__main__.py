@@ -26,8 +26,7 @@ from benchmarks import (
     truth,
 )
 from benchmarks.pairs import Line, Row, Skipped
-from benchmarks.results import facts, keep, results_file
-from raceway.studies.doctor import processor_key
+from benchmarks.results import facts, keep, processor_key, results_file
 
 SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "kernel": kernel.rows,

@@ -5,6 +5,7 @@ A run replaces the rows that it measured and keeps the others, so each row has t
 
 import json
 import os
+import platform
 from collections.abc import Iterable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -29,6 +30,30 @@ def facts() -> dict[str, Any]:
         except PackageNotFoundError:
             found[name] = None
     return found
+
+
+def processor_key() -> str:
+    """Vendor, family and model of the processor, or its architecture where they are not known."""
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        text = ""
+    return key_of(text) or platform.machine().lower()
+
+
+def key_of(cpuinfo: str) -> str | None:
+    r"""Vendor, family and model in the text of ``/proc/cpuinfo``.
+
+    >>> key_of("vendor_id : AuthenticAMD\ncpu family : 26\nmodel : 2\nmodel name : AMD EPYC")
+    'amd-26-2'
+    """
+    lines = (line.partition(":") for line in cpuinfo.splitlines())
+    fields = {key.strip(): value.strip() for key, _, value in lines}
+    if not {"vendor_id", "cpu family", "model"} <= set(fields):
+        return None
+    vendors = {"GenuineIntel": "intel", "AuthenticAMD": "amd"}
+    vendor = vendors.get(fields["vendor_id"], fields["vendor_id"].lower())
+    return f"{vendor}-{fields['cpu family']}-{fields['model']}"
 
 
 def results_file(name: str, folder: Path = FOLDER) -> Path:

@@ -18,7 +18,7 @@ recordings       options and files of recordings of the user
 benchmarking     scores of all baselines
 comparing        synthetic records against real ones
 publishing       the data card with terms of use, pictures and scores
-doctor           what this machine and installation can do, and its speed
+doctor           installed versions, and the speed of this machine
 ================ ================================================================
 
 Heavy libraries are imported inside the commands, so that help and version are printed at once. A command that takes a recipe looks for

@@ -1,4 +1,9 @@
-"""A command about this machine and installation."""
+"""A command about this installation, and the speed of this machine."""
+
+import platform
+import sys
+from collections.abc import Iterator
+from importlib.metadata import PackageNotFoundError, requires, version
 
 import click
 
@@ -7,6 +12,9 @@ from raceway.console.ending import DONE, FOUND_WANTING
 from raceway.console.options import complete_recipes, json_option
 from raceway.console.progress import notice_compilation
 
+EXTRAS = ("excel", "parquet", "zarr")
+"""Optional requirements for users; the others are for developers."""
+
 
 @click.command()
 @click.option(
@@ -14,7 +22,7 @@ from raceway.console.progress import notice_compilation
     "recipe",
     metavar="RECIPE",
     shell_complete=complete_recipes,
-    help="Measure the speed of this machine on a recipe instead.",
+    help="Measure the speed of this machine on a recipe.",
 )
 @click.option(
     "--records",
@@ -24,12 +32,9 @@ from raceway.console.progress import notice_compilation
 )
 @json_option
 def doctor(recipe: str | None, records: int | None, as_json: bool) -> int:
-    """Show what this machine and installation can do.
+    """Show installed versions, or the speed of this machine.
 
-    Versions, cores, memory and disk, compiled kernels, codecs, optional packages, readers of other projects, and the speed of the kernel
-    against the published figure; with advice where something is missing or amiss. Takes some seconds.
-
-    Exits with 1 if something that Raceway needs is missing; a line that begins with "note" is no fault.
+    Exits with 1 if a package that Raceway needs is missing or too old; a line that begins with "note" is of an optional one.
 
     With --speed one worker makes the first part of a corpus several times, stage by stage, and discards it; the medians of the CPU time
     are shown. Integration steps are counted for records, settling time included, and not for empty lanes.
@@ -43,21 +48,41 @@ def doctor(recipe: str | None, records: int | None, as_json: bool) -> int:
         return DONE
     if records is not None:
         raise click.UsageError("--records is for --speed; give both, or leave it out.")
-    from raceway.studies.doctor import findings
-
-    facts = []
-    for one in findings():
-        facts.append(one)
-        if not as_json:
-            show.text(f"{one.state.ljust(7)}  {one.subject}: {one.value}{f'; {one.advice}' if one.advice else ''}")
-    problems = sum(one.state == "problem" for one in facts)
+    facts = list(_findings())
+    problems = sum(one["state"] == "problem" for one in facts)
     if as_json:
-        show.as_json({"problems": problems, "findings": [one._asdict() for one in facts]})
+        show.as_json({"problems": problems, "findings": facts})
     else:
-        show.text(
-            "", "Everything that Raceway needs is here." if not problems else f"{show.count_text(problems, 'problem')}."
-        )
+        for one in facts:
+            advice = f"; {one['advice']}" if one["advice"] else ""
+            show.text(f"{one['state'].ljust(7)}  {one['subject']}: {one['value']}{advice}")
+        wanting = f"{show.count_text(problems, 'problem')}."
+        show.text("", wanting if problems else "Everything that Raceway needs is installed.")
     return FOUND_WANTING if problems else DONE
+
+
+def _findings() -> Iterator[dict[str, str]]:
+    """Versions of Python, Raceway and its requirements; the state of each, and advice where it is not ``fine``."""
+    from packaging.requirements import Requirement
+
+    yield _finding("Python", f"{platform.python_version()} ({sys.executable})")
+    yield _finding("raceway", version("raceway"))
+    for text in requires("raceway") or ():
+        needed = Requirement(text)
+        marker = needed.marker
+        if marker is not None and not any(marker.evaluate({"extra": extra}) for extra in EXTRAS):
+            continue
+        try:
+            present = version(needed.name)
+            is_met = needed.specifier.contains(present, prereleases=True)
+        except PackageNotFoundError:
+            present, is_met = "missing", False
+        advice = "" if is_met else f"pip install '{text.partition(';')[0].strip()}'."
+        yield _finding(needed.name, present, "fine" if is_met else "note" if marker else "problem", advice)
+
+
+def _finding(subject: str, value: str, state: str = "fine", advice: str = "") -> dict[str, str]:
+    return {"subject": subject, "value": value, "state": state, "advice": advice}
 
 
 def _show_speed(recipe: str, records: int | None, as_json: bool) -> None:

@@ -6,7 +6,6 @@ module          responsibility
 feature_page    tables and picture of docs/features.md
 card_pictures   pictures and scores of a data card
 timing          speed of this machine, stage by stage
-doctor          facts of this machine, with advice
 reference_model models trained on a recipe, and the one kept per user
 =============== ======================================================================
 """

@@ -6,8 +6,7 @@ import pytest
 
 from benchmarks.pairs import Row, Skipped
 from benchmarks.performance_pages import PAGE, TARGETS, short, tables, with_tables
-from benchmarks.results import every_result, keep, results_file
-from raceway.studies.doctor import processor_key
+from benchmarks.results import every_result, keep, processor_key, results_file
 
 FACTS = {"processor": "one", "cores": 2, "python": "3.11", "numba": "0.68", "numpy": "2.4"}
 
