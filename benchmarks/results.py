@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.pairs import Line, Row
-from raceway.studies.timing import machine
+from raceway.timing import machine
 
 FOLDER = Path(__file__).parent
 PREFIX = "results-"

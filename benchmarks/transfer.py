@@ -23,7 +23,7 @@ from features.baselines import Model, Scores, cross_validate
 from gen import generate
 from gen.corpus import FAULTS
 from gen.importers import import_cwru, import_generic, import_mfpt
-from raceway.studies.timing import machine
+from raceway.timing import machine
 
 RECIPE = "domain_randomised"
 ESTIMATORS = ("envelope_rule", "logistic_regression", "random_forest", "extra_trees", "ensemble")

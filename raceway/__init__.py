@@ -6,7 +6,9 @@ From Python, ``raceway.reference_model()`` is its model, and ``raceway.show_prog
 module   responsibility
 ======== =====================================================================
 console  options, results, progress, errors
-studies  the reference model and the speed of this machine
+studies  the reference model
+timing   speed of this machine, stage by stage
+pages    tables and picture of docs/features.md
 commands one function per command
 cli      the group of all commands, and the entry point
 ======== =====================================================================

@@ -89,7 +89,7 @@ def _show_speed(recipe: str, records: int | None, as_json: bool) -> None:
     from gen.recipe import find_recipe
 
     find_recipe(recipe)
-    from raceway.studies.timing import bench
+    from raceway.timing import bench
 
     with notice_compilation():
         times = bench(recipe, records)

@@ -80,8 +80,8 @@ def card(
         "date": date,
     }
     publication = _publication(corpus, {name: value for name, value in given.items() if value})
+    from features.report.card_pictures import complete_card
     from gen.corpus import card_folder
-    from raceway.studies.card_pictures import complete_card
 
     added = complete_card(corpus, scores)
     written = card_folder(corpus) / "README.md"

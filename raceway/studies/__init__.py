@@ -1,11 +1,8 @@
-"""Studies that need both ``gen`` and ``features``.
+"""Models trained on a recipe.
 
 =============== ======================================================================
 module          responsibility
 =============== ======================================================================
-feature_page    tables and picture of docs/features.md
-card_pictures   pictures and scores of a data card
-timing          speed of this machine, stage by stage
-reference_model models trained on a recipe, and the one kept per user
+reference_model models kept per user; the reference model of ``raceway diagnose``
 =============== ======================================================================
 """

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from features.report import card_pictures
 from gen.corpus import card_folder, lock, open_corpus, read_manifest, validate_corpus
 from gen.support.errors import CorpusError
 from raceway.commands.publishing import card
-from raceway.studies import card_pictures
 from tests.tone_corpora import write_corpus
 
 ORDERS = {"ftf": 0.4, "bpfo": 9.0, "bpfi": 4.0, "bsf": 2.4}  # so that the lines of the pictures are those of the tones

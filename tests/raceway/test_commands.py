@@ -362,7 +362,7 @@ def test_recordings_are_imported_and_counted(run, told, tmp_path):
 
 
 def test_bench_times_every_stage(run, told, tiny_recipe, monkeypatch):
-    monkeypatch.setattr("raceway.studies.timing.REPEATS", 1)
+    monkeypatch.setattr("raceway.timing.REPEATS", 1)
     found = told("doctor", "--speed", tiny_recipe, "--records", 6)
     assert set(found["stage_seconds"]) == {"draw", "lay_out", "integrate", "measure", "write", "features"}
     assert found["kernel_record_steps_per_second"] == pytest.approx(

@@ -139,7 +139,7 @@ def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_p
 
 
 def test_bench_names_the_machine_and_the_number_of_runs(run, told, tiny_recipe, monkeypatch):
-    monkeypatch.setattr("raceway.studies.timing.REPEATS", 1)
+    monkeypatch.setattr("raceway.timing.REPEATS", 1)
     found = told("doctor", "--speed", tiny_recipe, "--records", 1)
     assert (found["records"], found["repeats"]) == (1, 1)
     assert found["features_records_per_second"] == pytest.approx(1 / found["stage_seconds"]["features"])

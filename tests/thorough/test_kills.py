@@ -6,9 +6,9 @@ import shutil
 import pytest
 
 import gen
+from features.report import card_pictures
 from gen.corpus import card_folder, open_corpus, sha256, validate_corpus
 from gen.exporting import FORMS
-from raceway.studies import card_pictures
 from tests import corpora
 from tests.kills import killed
 from tests.same_corpora import files
