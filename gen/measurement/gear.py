@@ -17,19 +17,16 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import irfft, rfft
 
 from gen.scenarios import Gear
 
 FloatArray = NDArray[np.float64]
 
-FLAT = 0.8  # of half the sample rate: the pass band of the records
-
 
 def gear_mesh(gear: Gear, angles: FloatArray, rng: np.random.Generator) -> FloatArray:
     """Vibration of a gear mesh at the levels of its lines, relative to the rms of the background noise, shape (time,) [1].
 
-    A multiple of the mesh fades out where its frequency passes from 0.8 to 1 times half the sample rate, as behind an anti-alias filter.
+    A multiple of the mesh above half the sample rate, which the anti-alias filter would remove, is left out.
 
     Parameters
     ----------
@@ -47,30 +44,7 @@ def gear_mesh(gear: Gear, angles: FloatArray, rng: np.random.Generator) -> Float
     for multiple, line in enumerate(gear.lines, start=1):
         power *= turn
         amplitude = math.sqrt(2) * line["level"] * np.exp(1j * line["phase"])
-        total += (amplitude * power).real * np.clip((1 - multiple * rate) / (1 - FLAT), 0.0, 1.0)
+        total += (amplitude * power).real * (multiple * rate < 1)
     modulation = 1 + gear.shaft_modulation * np.cos(angles - gear.high_point)
     modulation += gear.mate_modulation * np.cos(angles * (gear.teeth / gear.mate_teeth) + start)
     return total * modulation
-
-
-def gear_in_channels(
-    gear: Gear, angles: FloatArray, paths: NDArray[np.complexfloating], n: int, rng: np.random.Generator
-) -> NDArray[np.floating]:
-    """Vibration of a gear mesh behind the transfer path of each channel, shape (channel, time), in single precision [1].
-
-    Its rms over all channels is that ahead of the paths. The convolution is circular, as that of the bearing: what it wraps around falls
-    into the lead ahead of the record.
-
-    Parameters
-    ----------
-    gear, angles, rng
-        As for :func:`gear_mesh`.
-    paths : array, shape (channel, frequency)
-        Transfer function of each path [1].
-    n : int
-        Samples of the Fourier transform that the paths are given for; at least as many as ``angles`` has.
-    """
-    mesh = gear_mesh(gear, angles, rng).astype(np.float32)
-    behind = irfft(rfft(mesh, n) * paths, n)[:, : len(mesh)]
-    power = np.mean(np.square(behind), dtype=float)
-    return behind * np.float32(math.sqrt(np.mean(np.square(mesh), dtype=float) / power) if power > 0 else 0.0)

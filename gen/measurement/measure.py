@@ -7,7 +7,7 @@ it is in single precision. Its error is 1e-7 of the largest value of a record: a
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any, NamedTuple
@@ -18,7 +18,7 @@ from scipy.fft import irfft, rfft
 
 from gen.corpus.visible import UNJUDGED
 from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
-from gen.measurement.gear import gear_in_channels
+from gen.measurement.gear import gear_mesh
 from gen.measurement.judging import Judge, Parts, judges_of
 from gen.measurement.levels import (
     bearing_over_background,
@@ -125,6 +125,7 @@ def measure(
                 level = level._replace(scenario=_with_level_of(level, level.scenario))
                 levels.setdefault(pair, level)
             mixed, flags[row] = disturb(_mix(part, level.gains), level.scenario, axis.fs)
+            mixed += np.float32(scenario.rig.offset)
             if counts_per_unit is not None:
                 clipped[row] = _to_counts(mixed, counts_per_unit)
             signal[row] = mixed
@@ -207,13 +208,10 @@ def _parts(
     background = noise_of(filters, n_channels, rngs)
     impulses = impulses_of(filters, angles, rngs)
     for row, scenario in enumerate(scenarios):
-        gear, channel_filters = scenario.rig.background.gear, filters[row]
-        if gear is not None:
-            mesh = gear_in_channels(
-                gear, angles[row], channel_filters.paths, channel_filters.n, scenario.rng(Purpose.GEAR_PHASE)
-            )
+        for source in _sources(scenario, angles[row]):
+            behind = filters[row].source_in_channels(source)
             # impulses have the length of the Fourier transform
-            impulses[row] = impulses[row][:, : mesh.shape[1]] + mesh if impulses[row].size else mesh
+            impulses[row] = impulses[row][:, : behind.shape[1]] + behind if impulses[row].size else behind
     parts = []
     for row in range(count):
         fault = both[count + faulty.index(row)] if row in faulty else NO_SIGNAL
@@ -225,6 +223,13 @@ def _parts(
         lines_of_impulses = filters[row].impulse_lines
         parts.append(Part(added, bearing, noise, lines_of_impulses, products, angles[row][axis.kept], orders, steady))
     return parts
+
+
+def _sources(scenario: Scenario, angles: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
+    """Gear of the machine, ahead of the paths, shape (time,) [1]."""
+    gear = scenario.rig.background.gear
+    if gear is not None:
+        yield gear_mesh(gear, angles, scenario.rng(Purpose.GEAR_PHASE))
 
 
 def _mix(part: Part, gains: Gains) -> Float32Array:
@@ -316,5 +321,5 @@ def _through_paths(acceleration: Float32Array, filters: Sequence[RigFilters]) ->
     if resonant:
         spectra = rfft(acceleration[resonant], filters[0].n)
         for spectrum, row in zip(spectra, resonant, strict=True):
-            spectrum *= filters[row].paths
+            spectrum *= filters[row].bearing_paths
         acceleration[resonant] = irfft(spectra, filters[0].n)[..., : acceleration.shape[2]]

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import irfft, next_fast_len
+from scipy.fft import irfft, next_fast_len, rfft
 
 from gen.physics.elementary import power
+from gen.physics.kernel.decimate import pass_band
 from gen.scenarios import Background, Mode, Purpose, Rig, ShaftModulation, stream
 
 FloatArray = NDArray[np.floating]
@@ -27,8 +28,12 @@ class RigFilters:
     """Sample rate [Hz]."""
     paths: NDArray[np.complex64]
     """Transfer path of each channel, shape (channel, frequency)."""
+    bearing_paths: NDArray[np.complex64]
+    """Path and sensor, for what has passed the anti-alias filter of the kernel, shape (channel, frequency)."""
     direct: Float32Array | None
-    """The same where no path has resonances, shape (channel, 1), else None."""
+    """The same where it does not depend on the frequency, shape (channel, 1), else None."""
+    chain: NDArray[np.complex128]
+    """Response of the measuring chain to what is computed at the sample rate: sensor and anti-alias filter, shape (frequency,)."""
     noise: Float32Array
     """Factors that turn complex numbers of unit variance into the spectrum of noise of unit rms, shape (frequency,)."""
     common_noise: float
@@ -50,7 +55,7 @@ class RigFilters:
     knocks: tuple[float, float, float]
     """Number in a turn of the shaft, level, and phase [rad]."""
     impulse_paths: NDArray[np.complex64]
-    """The paths, scaled so that an impulse has a peak of 1 behind each, shape (channel, frequency); unscaled without impulses."""
+    """Path and chain, scaled so that an impulse has a peak of 1 behind each, shape (channel, frequency); unscaled without impulses."""
 
     @property
     def impulse_lines(self) -> Float32Array:
@@ -60,6 +65,18 @@ class RigFilters:
         """
         number, level = self.impulses
         return np.float32(math.sqrt(3 * number) * level**2) * np.abs(self.impulse_paths) ** 2
+
+    def source_in_channels(self, source: FloatArray) -> Float32Array:
+        """Signal of a source in the machine behind path and chain of each channel, shape (channel, time), of ``source``, shape (time,) [1].
+
+        Its rms over all channels behind the paths is that ahead of them. The convolution is circular, as that of the bearing: what it
+        wraps around falls into the lead ahead of the record.
+        """
+        spectrum = rfft(source.astype(np.float32), self.n)
+        behind = spectrum * self.paths
+        power = float(np.mean(np.abs(behind) ** 2))
+        behind *= self.chain * (math.sqrt(float(np.mean(np.abs(spectrum) ** 2)) / power) if power > 0 else 0.0)
+        return irfft(behind, self.n)[:, : len(source)].astype(np.float32)
 
     def in_channels(
         self, motion: NDArray[np.complex128], amplitudes: FloatArray, frequencies: FloatArray
@@ -74,8 +91,9 @@ class RigFilters:
         below = np.minimum(at.astype(int), self.paths.shape[1] - 2)
         share = at - below
         behind_paths = motion * (self.paths[:, below] * (1 - share) + self.paths[:, below + 1] * share)
+        chain = self.chain[below] * (1 - share) + self.chain[below + 1] * share
         return behind_paths * (
-            amplitudes / np.maximum(np.sqrt(np.mean(np.abs(behind_paths) ** 2, axis=0)), _SMALLEST_GAIN)
+            chain * amplitudes / np.maximum(np.sqrt(np.mean(np.abs(behind_paths) ** 2, axis=0)), _SMALLEST_GAIN)
         )
 
 
@@ -87,11 +105,13 @@ def rig_filters(rig: Rig, length: int, fs: float, seed: int) -> RigFilters:
     n, background = next_fast_len(length, real=True), rig.background
     frequency = np.arange(n // 2 + 1) * (fs / n)
     own = [path or rig.path for path in rig.own_paths]
-    paths = np.stack([path.direct + base_transmissibility(path.modes, frequency) for path in own]).astype(np.complex64)
+    sensor = high_pass(rig.high_pass, frequency)
+    chain = sensor * pass_band(frequency * (2 / fs))
+    paths = np.stack([path.direct + base_transmissibility(path.modes, frequency) for path in own])
     impulses, knocks = background.impulses, background.knocks
-    impulse_paths = paths
+    impulse_paths = paths * chain
     if impulses is not None or knocks is not None:
-        impulse_paths = paths / np.abs(irfft(paths, n)).max(axis=1, keepdims=True)
+        impulse_paths /= np.abs(irfft(impulse_paths, n)).max(axis=1, keepdims=True)
     of_modulations, of_harmonics, of_tones, of_knocks = stream(seed, rig.number, 0, 0, Purpose.PHASES).spawn(4)
     directions = np.array([channel.angle for channel in rig.channels])
     harmonics, harmonic_motion = _harmonics(background, directions, of_harmonics)
@@ -99,9 +119,13 @@ def rig_filters(rig: Rig, length: int, fs: float, seed: int) -> RigFilters:
     return RigFilters(
         n=n,
         fs=fs,
-        paths=paths,
-        direct=None if any(path.modes for path in own) else np.array([[path.direct] for path in own], np.float32),
-        noise=_noise_factors(background, frequency, n),
+        paths=paths.astype(np.complex64),
+        bearing_paths=(paths * sensor).astype(np.complex64),
+        direct=None
+        if rig.high_pass > 0 or any(path.modes for path in own)
+        else np.array([[path.direct] for path in own], np.float32),
+        chain=chain,
+        noise=_noise_factors(background, frequency, np.abs(chain), n),
         common_noise=math.sqrt(background.coherence),
         modulations=_modulations(rig, of_modulations),
         harmonics=harmonics,
@@ -113,12 +137,13 @@ def rig_filters(rig: Rig, length: int, fs: float, seed: int) -> RigFilters:
         knocks=(0.0, 0.0, 0.0)
         if knocks is None
         else (knocks.frequency, knocks.level, 2 * math.pi * of_knocks.random()),
-        impulse_paths=impulse_paths,
+        impulse_paths=impulse_paths.astype(np.complex64),
     )
 
 
-def _noise_factors(background: Background, frequency: FloatArray, n: int) -> Float32Array:
-    factors = noise_spectrum(background, frequency) * math.sqrt(n / 2)
+def _noise_factors(background: Background, frequency: FloatArray, chain: FloatArray, n: int) -> Float32Array:
+    factors = noise_spectrum(background, frequency) * chain
+    factors *= math.sqrt(n / 2) / np.sqrt(np.mean(np.square(factors)))
     # the spectrum is real at 0 Hz, and at the Nyquist frequency of an even n: one number has all of the power there
     factors[:1] *= math.sqrt(2)
     factors[n - n // 2 :] *= math.sqrt(2)
@@ -188,6 +213,16 @@ def base_transmissibility(modes: tuple[Mode, ...], frequency: FloatArray) -> NDA
         loss = 2j * mode.damping * ratio
         total += mode.gain * (1 + loss) / (1 - ratio**2 + loss)
     return total
+
+
+def high_pass(corner: float, frequency: FloatArray) -> NDArray[np.complex128]:
+    """Response of a sensor that does not measure down to 0 Hz, a high pass of first order, shape (frequency,) [1].
+
+    ``corner`` is where it has lost 3 dB [Hz]; 0 for none. T. G. Beckwith, Mechanical Measurements, chapter on charge amplifiers.
+    """
+    if corner == 0:
+        return np.ones(len(frequency), complex)
+    return 1j * frequency / (corner + 1j * frequency)
 
 
 def noise_spectrum(background: Background, frequency: FloatArray) -> FloatArray:

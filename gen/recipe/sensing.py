@@ -111,6 +111,10 @@ class RecordingSection(Section):
     """Integration steps per sample; if left out, as many as the stiffest mode of the record needs."""
     channels: Annotated[tuple[Channel, ...], Field(min_length=1, max_length=6)] = (Channel(name="sensor"),)
     """Sensors that are recorded at the same time."""
+    high_pass_hz: Distribution = within(0, 100, default=0.0)
+    """Frequency at which the sensors have lost 3 dB on the way down to 0 Hz, drawn per rig: 0.3 to 5 for piezoelectric ones, 0 for none."""
+    offset_m_s2: Distribution = within(-1e4, 1e4, default=0.0)
+    """Constant that amplifier and converter add to the signal of all channels, drawn per rig."""
     converter: Annotated[Converter | FloatConverter, Field(discriminator="kind")] = Converter()
     """Conversion of the signal to stored numbers."""
 

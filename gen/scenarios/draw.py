@@ -97,7 +97,10 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
         body = tuple(channel.body)[weighted_index(tuple(channel.body.values()), draws.u())]
         channels.append(Pickup(body, draws.section(channel)["angle"]))
     path = _draw_path(draws, recipe.path)
-    background = replace(_draw_background(recipe, draws), gear=draw_gear(recipe, number))
+    background = replace(
+        _draw_background(recipe, draws),
+        gear=draw_gear(recipe, number),
+    )
     own_paths = tuple(None if c.path is None else _draw_path(draws, c.path) for c in recipe.recording.channels)
     oil = None if recipe.contact.lubricant is None else draws.section(recipe.contact.lubricant)
     if oil is not None and oil["viscosity_100"] >= oil["viscosity_40"]:
@@ -110,6 +113,7 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
         coherence=draws.value(recipe.background.coherence),
         growth=0.0 if recipe.background.harmonics is None else draws.value(recipe.background.harmonics.growth),
     )
+    high_pass, offset = draws.value(recipe.recording.high_pass_hz), draws.value(recipe.recording.offset_m_s2)
     return Rig(
         number=number,
         bearing=bearing,
@@ -125,6 +129,8 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
         footprint=recipe.contact.footprint == "hertz",
         sensor_faults=draw_rig_sensor_faults(recipe, number),
         ball_mass=recipe.contact.ball_mass == "steel",
+        high_pass=high_pass,
+        offset=offset,
     )
 
 

@@ -146,6 +146,10 @@ class Rig:
     sensor_faults: RigSensorFaults | None = None
     ball_mass: bool = False
     """True if the mass of the balls strikes the edges of spalls."""
+    high_pass: float = 0.0
+    """Frequency below which the sensors measure less and less; 0 if they measure down to 0 Hz [Hz]."""
+    offset: float = 0.0
+    """Constant that amplifier and converter add [m s-2]."""
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+from scipy.fft import rfft
 
 from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
 
+FloatArray = NDArray[np.floating]
 Single = NDArray[np.float32]
 
 HALF_TAPS = 26  # samples on each side of an output
@@ -29,6 +31,7 @@ FIRST_HALF_TAPS = (
 LAG = HALF_TAPS + FIRST_HALF_TAPS // 2  # samples by which an output lags its newest input, at most
 OUTPUTS = 4  # to which the rows that are loaded are added
 BETA = 7.857  # of the Kaiser windows
+_GRID = 16384  # lines of the tabulated gain, up to four times the Nyquist frequency
 
 
 class Stage(NamedTuple):
@@ -54,7 +57,8 @@ class Decimation(NamedTuple):
 def decimation(n_steps: int) -> Decimation:
     """Low-pass filters for ``n_steps`` steps per sample.
 
-    Together they are flat below 0.8 of the new Nyquist frequency, and attenuate by 80 dB everything that would alias into a record.
+    Together they are flat below 0.8 of the new Nyquist frequency, and attenuate by 80 dB everything that would alias into a record. With
+    one step per sample nothing can alias, and nothing is filtered.
     """
     if n_steps == 1:
         return Decimation(NO_STAGE, _stage(np.ones(1), 1))
@@ -64,6 +68,16 @@ def decimation(n_steps: int) -> Decimation:
         return Decimation(NO_STAGE, _stage(last, factor))
     ratio = n_steps // 2
     return Decimation(_stage(_low_pass(FIRST_HALF_TAPS, ratio, 0.96 / ratio), ratio), _stage(last, factor))
+
+
+def pass_band(share: FloatArray) -> FloatArray:
+    """Gain of the sharp filter at a ``share`` of the Nyquist frequency, from 0 to 1, of its shape [1].
+
+    In this form, what is computed at the sample rate passes the filter that the motion of the bodies passes in the kernel.
+    """
+    taps = _low_pass(HALF_TAPS, 2, 0.45)
+    gains = np.abs(rfft(taps, _GRID))[: _GRID // 4 + 1]
+    return np.interp(share, np.linspace(0, 1, len(gains)), gains)
 
 
 def _low_pass(half_taps: int, factor: int, cutoff: float) -> NDArray[np.float64]:

@@ -1,14 +1,16 @@
 """Laws of a gear mesh: where its lines and sidebands are, how high, and that it turns with the shaft."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.measurement.gear import gear_in_channels, gear_mesh
-from gen.scenarios import Gear
+from gen.measurement.gear import gear_mesh
+from gen.measurement.rig import rig_filters
+from gen.scenarios import Gear, draw_scenarios
 
 law = settings(deadline=None, max_examples=25)
 FS, RATE, N = 12_000.0, 25.0, 24_000  # two seconds: 50 turns of the shaft
@@ -101,7 +103,7 @@ def test_no_multiple_of_the_mesh_aliases():
     assert not mesh(gear_with(teeth=480)).any()
 
 
-def test_a_multiple_fades_out_where_a_run_up_takes_it_past_half_the_sample_rate():
+def test_a_multiple_ends_where_a_run_up_takes_it_past_half_the_sample_rate():
     rate = np.linspace(10, 120, N)
     found = mesh(gear_with(teeth=60, lines=({"level": 1.0, "phase": 0.0},)), np.cumsum(2 * np.pi / FS * rate))
     assert np.abs(found[60 * rate > 6001]).max() == 0.0
@@ -109,12 +111,17 @@ def test_a_multiple_fades_out_where_a_run_up_takes_it_past_half_the_sample_rate(
     assert math.sqrt(np.mean(low**2)) == pytest.approx(1.0, rel=0.01)
 
 
-def test_a_mesh_passes_through_the_path_of_each_channel_and_keeps_its_rms():
+def in_channels(recipe_with, paths, gear):
+    rig = draw_scenarios(recipe_with({}), 0, 1)[0].rig
+    return replace(rig_filters(rig, N, FS, 0), paths=paths).source_in_channels(mesh(gear))
+
+
+def test_a_mesh_passes_through_the_path_of_each_channel_and_keeps_its_rms(recipe_with):
     """500 Hz in one channel and 1000 Hz in the other: only their paths part the lines of the mesh."""
     frequency = np.fft.rfftfreq(N, 1 / FS)
     paths = np.stack([frequency < 750, 2.0 * ((frequency > 750) & (frequency < 1250))]).astype(np.complex64)
     gear = gear_with(shaft_modulation=0.5)
-    found = gear_in_channels(gear, STEADY, paths, N, np.random.default_rng(0))
+    found = in_channels(recipe_with, paths, gear)
     assert (found.dtype, found.shape) == (np.float32, (2, N))
     assert np.mean(found.astype(float) ** 2) == pytest.approx(np.mean(mesh(gear) ** 2), rel=1e-5)
     assert amplitude(found[1], 40) / amplitude(found[0], 20) == pytest.approx(2 * 0.5, rel=1e-4)
@@ -122,5 +129,5 @@ def test_a_mesh_passes_through_the_path_of_each_channel_and_keeps_its_rms():
     assert max(amplitude(found[0], 40), amplitude(found[1], 20), amplitude(found[1], 60)) < 1e-5
 
 
-def test_a_path_that_suppresses_the_mesh_leaves_silence():
-    assert not gear_in_channels(gear_with(), STEADY, np.zeros((2, N // 2 + 1)), N, np.random.default_rng(0)).any()
+def test_a_path_that_suppresses_the_mesh_leaves_silence(recipe_with):
+    assert not in_channels(recipe_with, np.zeros((2, N // 2 + 1)), gear_with()).any()
