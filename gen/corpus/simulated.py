@@ -8,11 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from gen.corpus.schema import DRAWS, FAULT_NAMES, UNKNOWN, Variable, class_names
+from gen.corpus.schema import DRAWS, FAULT_NAMES, UNKNOWN, UNKNOWN_CODE, Variable, class_names
 
 # 20 log10 of the ratio of two rms; CF has no unit for levels
 _SNR = "bearing over background or rounding of the converter in decibels re 1, NaN without either or in silence"
 _FAULT_SNR = "what the fault adds over all else of the record in decibels re 1, NaN without a fault or if not known"
+
+_CONDITIONS = ("sound", "unbalance", "bent_shaft", "misalignment", "looseness", "rub", "belt")
+MACHINE_CONDITIONS: Mapping[int, str] = {**dict(enumerate(_CONDITIONS)), UNKNOWN_CODE: UNKNOWN}
+"""Classes of ``machine_condition``."""
 
 SIMULATED = (
     Variable("axial_load", "f8", "N", "operating", "axial load"),
@@ -41,6 +45,7 @@ SIMULATED = (
     Variable("operating_clearance", "f8", "m", "latent", "diametral clearance in operation: warm, oiled, under axial load"),
     Variable("clipped", "i4", "1", "latent", "samples at the limits of the converter"),
     Variable("gear_mesh", "i4", "1", "latent", "teeth of the gear on the shaft, the order of its mesh line; 0 without a gear"),
+    Variable("machine_condition", "i1", "1", "label", "condition of the machine, whatever that of its bearing", MACHINE_CONDITIONS),
     Variable("loose_mount", "i4", "1", "latent", "channels whose sensor is mounted loosely"),
     Variable("rattle", "i4", "1", "latent", "impacts of loose sensors on the machine, all channels together"),
     Variable("saturated", "i4", "1", "latent", "samples at the limit of the amplifier, all channels together"),

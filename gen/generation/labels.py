@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, FAULTS, OTHER_BEARING, SIMULATED, SPLITS, identity, make_dataset
 from gen.corpus.schema import UNKNOWN_CODE
+from gen.corpus.simulated import MACHINE_CONDITIONS
 from gen.measurement.measure import Measured
 from gen.measurement.sensor_faults import SensorFlags
 from gen.physics.bearing import Orders, orders
@@ -60,6 +61,9 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
     )
 
 
+_CONDITION_CODES = {name: code for code, name in MACHINE_CONDITIONS.items()}
+
+
 def _of_other(scenario: Scenario, truth: Truth | None) -> dict[str, Any]:
     """Variables of the bearing at the other end of the shaft of one record, without values if there is none."""
     other, unknown = scenario.other, dict.fromkeys(Orders._fields, np.nan)
@@ -84,7 +88,7 @@ def sensor_flag_columns(flags: Sequence[SensorFlags]) -> dict[str, list[Any]]:
 def _drawn(scenario: Scenario) -> dict[str, Any]:
     """Variables of one record that are copied from its scenario."""
     settings, rig, specimen, record = scenario.settings, scenario.rig, scenario.specimen, scenario.record
-    conditions = record.conditions
+    conditions, condition = record.conditions, rig.background.condition
     return {
         "sample_rate": settings.sample_rate,
         "axial_load": conditions.axial_load,
@@ -105,6 +109,7 @@ def _drawn(scenario: Scenario) -> dict[str, Any]:
         "split": SPLITS.index(specimen.split),
         "source": f"{settings.recipe}/{record.number}",
         "identity": identity(settings.corpus, rig.number, specimen.number, record.number, record.pair),
+        "machine_condition": _CONDITION_CODES["sound" if condition is None else condition.kind],
         "gear_mesh": 0 if rig.background.gear is None else rig.background.gear.teeth,
         "diametral_clearance": specimen.properties["diametral_clearance"],
         "gain": rig.gain if record.snr is None else np.nan,

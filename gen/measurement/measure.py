@@ -26,6 +26,7 @@ from gen.measurement.levels import (
     gains_of,
     mean_square,
 )
+from gen.measurement.machine_condition import condition_bursts, condition_lines
 from gen.measurement.mixing import Products, mix
 from gen.measurement.rig import RigFilters, rig_filters
 from gen.measurement.sensor_faults import SensorFlags, disturb
@@ -226,10 +227,13 @@ def _parts(
 
 
 def _sources(scenario: Scenario, angles: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
-    """Gear of the machine, ahead of the paths, shape (time,) [1]."""
-    gear = scenario.rig.background.gear
+    """Gear and condition of the machine, ahead of the paths, shape (time,) each [1]."""
+    gear, condition = scenario.rig.background.gear, scenario.rig.background.condition
     if gear is not None:
         yield gear_mesh(gear, angles, scenario.rng(Purpose.GEAR_PHASE))
+    if condition is not None:
+        yield condition_lines(condition, angles)
+        yield condition_bursts(condition, angles, scenario.rng(Purpose.BURSTS))
 
 
 def _mix(part: Part, gains: Gains) -> Float32Array:

@@ -1,32 +1,33 @@
 """Recipes: YAML files, read into a frozen model.
 
-============= ========================================================
-module        responsibility
-============= ========================================================
-expressions   distributions as text: loguniform(0.1, 2)
-distributions distributions of drawn values
-section       base of all sections: bounds, unknown keys, meanings
-machine       bearing, machine, lubricant, specimen
-faults        spalls, worn races, broken cages, several at once
-operation     speed and load with their profiles, slip, temperature
-publication   licence, creators and references of the corpus
-gear          gear mesh in the background
-sensing       sensors, path, background, level, converter
-sensor_faults faults of mount, cable, amplifier and data transfer
-changes       keys of operation and level that one fault replaces
-fault_entries keys that all entries of faults have in common
-sections      all sections of a recipe, and the counts that follow from them
-shares        quantities that are a share of another
-loads         loads that no bearing of the recipe can carry
-checks        keys that contradict each other, weights that cannot be met
-model         the checked recipe
-constructors  faults and distributions by calls in Python
-keywords      a recipe from keys by their own names
-text          a recipe as YAML text
-keys          every key with unit, range, default and meaning
-finding       paths and names of recipe files
-reading       a file read into the model, its hash, JSON schema
-============= ========================================================
+================== ========================================================
+module             responsibility
+================== ========================================================
+expressions        distributions as text: loguniform(0.1, 2)
+distributions      distributions of drawn values
+section            base of all sections: bounds, unknown keys, meanings
+machine            bearing, machine, lubricant, specimen
+faults             spalls, worn races, broken cages, several at once
+operation          speed and load with their profiles, slip, temperature
+publication        licence, creators and references of the corpus
+gear               gear mesh in the background
+machine_conditions machines that are not well
+sensing            sensors, path, background, level, converter
+sensor_faults      faults of mount, cable, amplifier and data transfer
+changes            keys of operation and level that one fault replaces
+fault_entries      keys that all entries of faults have in common
+sections           all sections of a recipe, and the counts that follow from them
+shares             quantities that are a share of another
+loads              loads that no bearing of the recipe can carry
+checks             keys that contradict each other, weights that cannot be met
+model              the checked recipe
+constructors       faults and distributions by calls in Python
+keywords           a recipe from keys by their own names
+text               a recipe as YAML text
+keys               every key with unit, range, default and meaning
+finding            paths and names of recipe files
+reading            a file read into the model, its hash, JSON schema
+================== ========================================================
 """
 
 import lazy_loader

@@ -22,6 +22,7 @@ from gen.recipe.machine import (
     OwnBearing,
     SpecimenSection,
 )
+from gen.recipe.machine_conditions import MachineConditionsSection
 from gen.recipe.operation import OperationSection
 from gen.recipe.publication import PublicationSection
 from gen.recipe.section import Count, Name, Section
@@ -128,6 +129,8 @@ class Sections(Section):
     """A second bearing on the shaft, whose vibration the sensors get too; none if left out."""
     machine: MachineSection = MachineSection()
     """Masses, springs and dampers of each rig, and its faults other than those of the bearing."""
+    machine_conditions: MachineConditionsSection | None = None
+    """What machines have that are not well: unbalance, looseness, a belt; all are sound if left out."""
     contact: ContactSection = ContactSection()
     """Contact of balls and races: its width and its oil."""
     specimen: SpecimenSection = SpecimenSection()

@@ -40,6 +40,7 @@ from gen.scenarios.records import with_level
 from gen.scenarios.sensing import (
     Background,
     Gear,
+    MachineCondition,
     Mode,
     Path,
     Pickup,
@@ -55,6 +56,7 @@ __all__ = [
     "Background",
     "Gains",
     "Gear",
+    "MachineCondition",
     "Mode",
     "Operation",
     "OtherBearing",

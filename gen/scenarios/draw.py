@@ -32,7 +32,7 @@ from gen.scenarios.operating import Operating, operating_of
 from gen.scenarios.points import points_of
 from gen.scenarios.records import Source, draw_record, record_points, source_of
 from gen.scenarios.sensing import Background, Mode, Path, Pickup, ShaftModulation, Tone
-from gen.scenarios.sensor_faults import draw_gear, draw_rig_sensor_faults
+from gen.scenarios.sensor_faults import draw_gear, draw_machine_condition, draw_rig_sensor_faults
 from gen.support.errors import RecipeError
 from gen.support.units import decibel_to_ratio, percent_to_share
 
@@ -100,6 +100,7 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
     background = replace(
         _draw_background(recipe, draws),
         gear=draw_gear(recipe, number),
+        condition=draw_machine_condition(recipe, number),
     )
     own_paths = tuple(None if c.path is None else _draw_path(draws, c.path) for c in recipe.recording.channels)
     oil = None if recipe.contact.lubricant is None else draws.section(recipe.contact.lubricant)

@@ -79,6 +79,19 @@ class Gear:
 
 
 @dataclass(frozen=True)
+class MachineCondition:
+    """What a machine that is not well adds to the background."""
+
+    kind: str
+    order: float
+    """Order of the shaft of which the lines are multiples [1]."""
+    lines: tuple[Drawn, ...]
+    """Of each multiple: rms over that of the noise [1], and phase at shaft angle 0 [rad]."""
+    bursts: Drawn
+    """Order of the shaft at which they come, rms over that of the noise [1], length and start [rad of a period]."""
+
+
+@dataclass(frozen=True)
 class RigSensorFaults:
     """Faults of the measuring chain that last as long as a rig; None for a fault that it does not have."""
 
@@ -125,3 +138,5 @@ class Background:
     growth: float = 0.0
     """The harmonics grow with the speed of a course to this power [1]."""
     gear: Gear | None = None
+    condition: MachineCondition | None = None
+    """None for a machine that is sound."""

@@ -1,4 +1,4 @@
-"""Draw the faults of the measuring chain and the gear of a rig.
+"""Draw the faults of the measuring chain, the gear and the condition of a machine.
 
 Every fault has a random stream of its own, so a section that is added to a recipe or removed from it moves no other drawn value.
 """
@@ -9,9 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from gen.recipe import Recipe, Section
+from gen.recipe.distributions import weighted_index
 from gen.scenarios.draws import Draws
 from gen.scenarios.model import Purpose, stream
-from gen.scenarios.sensing import Drawn, Gear, RecordSensorFaults, RigSensorFaults
+from gen.scenarios.sensing import Drawn, Gear, MachineCondition, RecordSensorFaults, RigSensorFaults
 from gen.support.units import decibel_to_ratio, to_si
 
 
@@ -75,6 +76,25 @@ def draw_gear(recipe: Recipe, rig: int) -> Gear | None:
         high_point=_angle(draws),
         lead_point=_angle(draws),
     )
+
+
+def draw_machine_condition(recipe: Recipe, rig: int) -> MachineCondition | None:
+    """Condition of the machine of a rig; None if it is sound."""
+    wanted = recipe.machine_conditions
+    if wanted is None:
+        return None
+    draws = Draws(stream(recipe.seed, rig, 0, 0, Purpose.MACHINE_CONDITION), np.empty(0), rig, f"rig {rig}")
+    if not draws.is_present(wanted):
+        return None
+    entry = wanted.entries[weighted_index(tuple(entry.weight for entry in wanted.entries), draws.u())]
+    drawn = draws.section(entry)
+    levels = [decibel_to_ratio(draws.value(entry.level_db)) for _ in range(round(drawn["count"]))]
+    if levels and entry.strongest is not None:
+        place, largest = min(entry.strongest, len(levels)) - 1, int(np.argmax(levels))
+        levels[place], levels[largest] = levels[largest], levels[place]
+    lines = [{"level": level, "phase": _angle(draws)} for level in levels]
+    bursts = {"order": drawn["burst_order"], "level": decibel_to_ratio(drawn["bursts"]), "length": drawn["burst"]}
+    return MachineCondition(entry.kind, drawn["order"], tuple(lines), {**bursts, "start": _angle(draws)})
 
 
 def _angle(draws: Draws) -> float:

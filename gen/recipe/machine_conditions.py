@@ -1,0 +1,42 @@
+"""Machines that are not well, while their bearings may be."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, StrictInt
+
+from gen.recipe.distributions import Distribution, within
+from gen.recipe.section import Probability, Section, Weight
+
+MachineKind = Literal["unbalance", "bent_shaft", "misalignment", "looseness", "rub", "belt"]
+
+
+class MachineCondition(Section):
+    """What one condition adds to the background: lines at multiples of an order of the shaft, and bursts of noise locked to it."""
+
+    kind: MachineKind
+    """Name of the condition in `machine_condition`, the label of the machine; the keys below say what it adds."""
+    weight: Weight = 1.0
+    """Share of the machines with this condition, relative to the other entries."""
+    order: Distribution = within(0.05, 50, default=1.0)
+    """Order of the shaft whose multiples it shows: 1 for the shaft, 0.5 for looseness and rub, that of the belt for a belt."""
+    count: Distribution = within(0, 400, default=0.0)
+    """Number of lines, at 1, 2, ... times `order`; rounded to a whole number."""
+    level_db: Distribution = within(-80, 40, default=-20.0)
+    """Rms of a line relative to that of the background noise, drawn for each."""
+    strongest: Annotated[StrictInt, Field(ge=1, le=400)] | None = None
+    """Number of the line that gets the largest of the drawn levels: 1 for unbalance, 2 for misalignment; any if left out."""
+    bursts_db: Distribution = within(-80, 40, default=-80.0)
+    """Rms of the bursts of noise, as parts that strike or rub make them, relative to that of the background noise."""
+    burst_order: Distribution = within(0.05, 50, default=1.0)
+    """Number of bursts in a turn of the shaft."""
+    burst_deg: Distribution = within(1, 180, default=30.0)
+    """Length of a burst, in degrees from burst to burst: a short one gives many harmonics."""
+
+
+class MachineConditionsSection(Section):
+    """Conditions of the machine other than those of its bearings, drawn per rig and the same for all classes of bearings."""
+
+    probability: Probability
+    """Share of the rigs whose machine has one of the conditions."""
+    entries: Annotated[tuple[MachineCondition, ...], Field(min_length=1)]
+    """Conditions, one of which a machine has; drawn by weight."""

@@ -1,0 +1,81 @@
+"""Laws of machines that are not well: where their lines and bursts are, how strong, and that bearings do not choose them."""
+
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.measurement.machine_condition import condition_bursts, condition_lines
+from gen.recipe import read_recipe
+from gen.scenarios import MachineCondition, draw_scenarios
+
+law = settings(deadline=None, max_examples=25)
+TURNS, N = 40, 24_000
+STEADY = 2 * np.pi * TURNS / N * np.arange(N)
+SILENT = {"order": 1.0, "level": 0.0, "length": 0.5, "start": 0.0}
+
+
+@law
+@given(
+    st.sampled_from([0.5, 1.0, 1.5]), st.lists(st.tuples(st.floats(1e-3, 1), st.floats(0, 6)), min_size=1, max_size=60)
+)
+def test_the_lines_are_at_the_multiples_of_the_order_with_their_levels(order, drawn):
+    lines = tuple({"level": level, "phase": phase} for level, phase in drawn)
+    spectrum = (
+        np.sqrt(2) / N * np.abs(np.fft.rfft(condition_lines(MachineCondition("rub", order, lines, SILENT), STEADY)))
+    )
+    places = np.round(order * TURNS * np.arange(1, len(lines) + 1)).astype(int)
+    np.testing.assert_allclose(spectrum[places], [line["level"] for line in lines], rtol=1e-3, atol=1e-5)
+    assert np.delete(spectrum, places).max() < 1e-3
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
+def test_bursts_come_at_their_order_with_their_rms(order):
+    drawn = {"order": order, "level": 0.3, "length": math.radians(20), "start": 1.0}
+    rng = np.random.default_rng(0)
+    squares = np.mean(
+        [condition_bursts(MachineCondition("rub", 1.0, (), drawn), STEADY, rng) ** 2 for _ in range(300)], axis=0
+    )
+    assert np.sqrt(squares.mean()) == pytest.approx(0.3, rel=0.02)
+    lines = np.abs(np.fft.rfft(squares))[1:]
+    assert 1 + np.argmax(lines) == order * TURNS
+    loud = squares > squares.max() / 2
+    bell = 2 * math.acos(1 - math.log(2) / 2 * drawn["length"] ** 2) / (2 * math.pi)
+    assert loud.mean() == pytest.approx(bell, rel=0.2)
+
+
+def test_the_condition_belongs_to_the_machine_and_not_to_the_class_of_its_bearing(recipe_with):
+    entries = [
+        {"kind": "unbalance", "weight": 3, "count": 1},
+        {"kind": "rub", "count": 5, "level_db": "uniform(-30, 0)", "strongest": 2},
+    ]
+    recipe = recipe_with({"corpus.rigs": 400, "machine_conditions": {"probability": 0.5, "entries": entries}})
+    scenarios = draw_scenarios(recipe)
+    of_rig = {scenario.rig.number: scenario.rig.background.condition for scenario in scenarios}
+    assert all(scenario.rig.background.condition == of_rig[scenario.rig.number] for scenario in scenarios)
+    kinds = Counter("sound" if one is None else one.kind for one in of_rig.values())
+    for kind, share in (("sound", 0.5), ("unbalance", 0.375), ("rub", 0.125)):
+        assert kinds[kind] == pytest.approx(share * 400, abs=4 * math.sqrt(400 * share * (1 - share)))
+    for one in of_rig.values():
+        if one is not None and one.kind == "rub":
+            assert np.argmax([line["level"] for line in one.lines]) == 1
+
+
+def test_a_section_of_conditions_moves_no_other_draw(recipe_with):
+    plain = draw_scenarios(recipe_with({}), 0, 5)
+    entries = [{"kind": "belt", "order": 0.4, "count": 3}]
+    found = draw_scenarios(recipe_with({"machine_conditions": {"probability": 1, "entries": entries}}), 0, 5)
+    for one, other in zip(plain, found, strict=True):
+        assert other.rig.background.condition.kind == "belt"
+        assert (one.record, one.specimen, one.rig.machine, one.rig.path) == (
+            other.record, other.specimen, other.rig.machine, other.rig.path,
+        )  # fmt: skip
+
+
+def test_domain_randomised_has_machines_of_every_condition():
+    scenarios = draw_scenarios(read_recipe("domain_randomised"))
+    kinds = {s.rig.background.condition.kind if s.rig.background.condition else "sound" for s in scenarios}
+    assert kinds == {"sound", "unbalance", "bent_shaft", "misalignment", "looseness", "rub", "belt"}
