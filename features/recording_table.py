@@ -4,7 +4,7 @@ The recording is cut into windows, which become the records of the table.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -16,12 +16,37 @@ from features.signal.rows import FloatArray
 if TYPE_CHECKING:
     import xarray as xr
 
-WINDOW = 0.5  # s, as the records of corpora
+WINDOW = 0.5  # s, for a model that does not tell the duration of its training records
+DURATION = "duration"  # of each record of a feature table [s]
+SAME_DURATION = 1.01  # ratio
 
 
-def windows_of(signal: FloatArray, fs: float) -> FloatArray:
-    """Consecutive windows of 0.5 s of a signal, shape (time,), to (window, time); a shorter signal is one window."""
-    length = min(round(WINDOW * fs), len(signal))
+class Trained(Protocol):
+    """What is asked of a model here: shortest and longest of its training records [s], if known, and a model for shorter ones."""
+
+    @property
+    def durations(self) -> tuple[float, ...]:
+        """See `features.baselines.Model`."""
+        ...
+
+    @property
+    def shorter(self) -> Self | None:
+        """See `features.baselines.Model`."""
+        ...
+
+
+Model = TypeVar("Model", bound=Trained)
+
+
+def suited(model: Model, durations: Sequence[float]) -> Model:
+    """The model, or its model for shorter records if the shortest of these durations [s] is below that of its training."""
+    shorter = model.shorter
+    return shorter if shorter and durations and SAME_DURATION * min(durations) < min(model.durations) else model
+
+
+def windows_of(signal: FloatArray, fs: float, model: Trained) -> FloatArray:
+    """Consecutive windows as long as the training records of a model, shape (time,) to (window, time); a shorter signal is one window."""
+    length = min(round(max(model.durations, default=WINDOW) * fs), len(signal))
     count = len(signal) // length
     return signal[: count * length].reshape(count, length)
 
@@ -69,7 +94,12 @@ def recording_table(
     values, _ = indicators(windows, fs, shaft_rate * every, nominal, groups, band)
     same = np.zeros(count, dtype=np.int32)
     variables = {"rig": same, "specimen": same, "recording": same, "fault": np.full(count, fault, dtype=np.int8)}
-    variables |= {"sample_rate": fs * every, "shaft_rate": shaft_rate * every, **nominal._asdict()}
+    variables |= {
+        DURATION: windows.shape[1] / fs * every,
+        "sample_rate": fs * every,
+        "shaft_rate": shaft_rate * every,
+        **nominal._asdict(),
+    }
     return xr.Dataset(
         {"features": (("record", "feature"), values)} | {name: ("record", held) for name, held in variables.items()},
         feature_coordinates(groups, band),

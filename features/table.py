@@ -31,6 +31,7 @@ from features.recording_speeds import (
     recording_speeds,
     with_speeds,
 )
+from features.recording_table import DURATION
 from features.signal.rows import FloatArray
 from gen.corpus import DRAWS, RecordBlock, corpus_name, open_corpus, read_channel, record_blocks
 from gen.support.progress import Progress, counter
@@ -80,10 +81,11 @@ def feature_table(
     -------
     Dataset
         ``features (record, feature)``, or ``(channel, record, feature)`` of several channels, coordinates ``feature`` (names),
-        ``group``, ``units`` and ``long_name`` (meanings), all variables of the records except ``draws``, which is larger than the
-        rest of the table, and the attributes of the corpus with the ``channel``, band and ``records_with_missing_features``,
-        the number of rows with a NaN. With ``speed``, also ``shaft_rate_estimate`` and ``shaft_rate_uncertainty`` [Hz],
-        ``shaft_rate_evidence`` (0: not clear) and, as an attribute, the number of ``recordings_with_other_speed``.
+        ``group``, ``units`` and ``long_name`` (meanings), the ``duration`` of each record [s], all variables of the records except
+        ``draws``, which is larger than the rest of the table, and the attributes of the corpus with the ``channel``, band and
+        ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_estimate`` and
+        ``shaft_rate_uncertainty`` [Hz], ``shaft_rate_evidence`` (0: not clear) and, as an attribute, the number of
+        ``recordings_with_other_speed``.
 
     Raises
     ------
@@ -103,6 +105,8 @@ def feature_table(
         read = {"channel": str(opened["channel"].values[number]), **band_attributes(band)}
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
+        lasts = {"long_name": "duration of the record", "units": "s"}
+        table[DURATION] = "record", opened.sizes["elapsed_time"] / table["sample_rate"].values, lasts
     treatment = checked_speed(speed, table)
     starts = np.cumsum([0, *(block.stop - block.first for block in blocks)])
     work = partial(_run, workers=min(workers, len(blocks)), scheduler=scheduler)

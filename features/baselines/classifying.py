@@ -10,10 +10,11 @@ from features.baselines.calibration import Calibration
 from features.baselines.colour import Colour
 from features.baselines.estimators import class_probabilities
 from features.baselines.predictions import Predictions, impulsiveness_of, predictions
-from features.baselines.records import FloatArray, feature_rows, title_of
+from features.baselines.records import FloatArray, durations_of, feature_rows, title_of
 from features.baselines.references import colour_of, relative_to
 from features.channels import channels_of
 from features.recording_speeds import recording_numbers
+from features.recording_table import suited
 from features.signal.rows import group_means
 from features.waveforms import Waveforms
 from gen.support.errors import CorpusError
@@ -32,6 +33,8 @@ class Fitted(Protocol):
     corpus: str
     calibration: Calibration
     relative: Any
+    durations: tuple[float, ...]
+    shorter: Any
 
     @property
     def name(self) -> str:
@@ -68,7 +71,7 @@ def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset |
     if isinstance(data, Waveforms):
         each = estimator_probabilities(model, data, title_of(data.labels))
         return predictions(each, model.classes, recording_numbers(data.labels), model.calibration)
-    table = data
+    table, model = data, suited(model, durations_of(data))
     tables, used, colour = channels_of(table), model, None
     if reference is not None:
         if model.relative is None:

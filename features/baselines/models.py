@@ -32,6 +32,7 @@ from features.baselines.records import (
     DEFAULT_GROUPS,
     FloatArray,
     check_classes,
+    durations_of,
     features_of,
     labelled_records,
     record_digests,
@@ -45,17 +46,19 @@ from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.channels import channels_of
 from features.definitions import GROUPS
+from features.recording_table import suited
 from features.waveforms import Waveforms
 from gen.corpus import UNKNOWN_CODE, check_result, corpus_name
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
 
-FORMAT = 6
+FORMAT = 7
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 _TRAINING = ("corpus", "records", "seed", "widths", "digests", "versions")
-_STORED = ("estimator", "name", "classes", "features", "groups", "band", *_TRAINING, "calibration")
-"""Fields in a model file."""
+_STORED = ("estimator", "name", "classes", "features", "groups", "band", "durations", *_TRAINING, "calibration")
+_PARTS = ("relative", "shorter")
+"""Fields in a model file, and those that are models."""
 
 Data = xr.Dataset | Waveforms | Path | str
 """A feature table, the folder or file of a corpus, or records in memory; for classifiers of the user also waveforms."""
@@ -83,6 +86,8 @@ class Model(Shown):
         The features it takes, and the band that they are computed from.
     corpus, records
         Title and number of records of the training corpus.
+    durations
+        Shortest and longest of these records [s]; empty if they are not known.
     widths
         Intervals of fault width [m] that the training covered, by class, as in `features.baselines.severities`.
     digests
@@ -94,6 +99,8 @@ class Model(Shown):
     relative
         The same for records relative to healthy records of their rig, as in `features.baselines.references`; None if the
         training corpus has no virtual references.
+    shorter
+        The same for records that are shorter than those of the training; None if there is none.
     """
 
     classifier: str | Maker = DEFAULT_ESTIMATOR
@@ -106,11 +113,13 @@ class Model(Shown):
     band: tuple[float, float] = DEFAULT_BAND
     corpus: str = ""
     records: int = 0
+    durations: tuple[float, ...] = ()
     widths: Covered = field(default_factory=dict)
     digests: NDArray[np.uint64] = field(default_factory=lambda: np.empty(0, np.uint64))
     versions: Mapping[str, str] = field(default_factory=dict)
     calibration: Calibration = UNCALIBRATED
     relative: "Model | None" = None
+    shorter: "Model | None" = None
 
     @property
     def name(self) -> str:
@@ -210,15 +219,16 @@ class Model(Shown):
         return replace(self._scores(chosen.table, chosen.reference, seed), reference=chosen.sentence)
 
     def _scores(self, data: xr.Dataset | Waveforms, reference: xr.Dataset | None, seed: int) -> Scores:
+        model = self if isinstance(data, Waveforms) else suited(self, durations_of(data))
         if isinstance(data, Waveforms):
             records = records_of(data, ())
             tested, seen = records.features, int(np.isin(record_digests(records.features), self.digests).sum())
         else:
             records = labelled_records(data, self.features)
             tested = data.isel(record=data["fault"].values != UNKNOWN_CODE)
-            seen = seen_records(records.features.to_numpy()[:, : len(self.features)], self.digests)
+            seen = seen_records(records.features.to_numpy()[:, : len(self.features)], model.digests)
         scores = score(records, predict(tested, self, reference), seed)
-        return replace(scores, seen=seen, uncovered_widths=uncovered_widths(self.widths, records))
+        return replace(scores, seen=seen, uncovered_widths=uncovered_widths(model.widths, records))
 
     def _tables(self, data: Data, reference: Data | None) -> tuple[Any, xr.Dataset | None]:
         """Feature tables of the data and of its reference, with ``bands`` if there is one; waveforms as they are."""
@@ -253,8 +263,7 @@ class Model(Shown):
                 f"{path}: {self.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."
             )
         check_result(Path(path), "model")
-        relative = None if self.relative is None else _content(self.relative)
-        write_model_file({"raceway_model": FORMAT, **_content(self), "relative": relative}, Path(path))
+        write_model_file({"raceway_model": FORMAT, **_content(self)}, Path(path))
 
     @classmethod
     def load(cls, path: Path | str) -> Self:
@@ -268,18 +277,16 @@ class Model(Shown):
         content = read_model_file(Path(path))
         if not isinstance(content, dict) or content.pop("raceway_model", None) != FORMAT:
             raise CorpusError(f"{path}: not a model of this version of raceway; train it again with raceway train.")
-        relative = content.pop("relative", None)
-        model = cls._of(path, content)
-        model.relative = None if relative is None else cls._of(path, relative)
-        return model
+        return cls._of(path, content)
 
     @classmethod
     def _of(cls, path: Path | str, content: Mapping[str, Any]) -> Self:
         """Model of the fields in a model file."""
-        if set(content) != set(_STORED):
+        if set(content) != {*_STORED, *_PARTS}:
             raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
         own = {name: value for name, value in content.items() if name != "name"}
-        return cls(content["name"], **{**own, "calibration": Calibration(**content["calibration"])})
+        parts = {name: None if own[name] is None else cls._of(path, own[name]) for name in _PARTS}
+        return cls(content["name"], **{**own, **parts, "calibration": Calibration(**content["calibration"])})
 
 
 def _fit(model: Model, data: xr.Dataset | Waveforms, workers: int, done: Callable[[int], None]) -> None:
@@ -299,14 +306,16 @@ def _fit(model: Model, data: xr.Dataset | Waveforms, workers: int, done: Callabl
         records, model.classifier, model.seed, workers=workers, done=done
     )
     model.classes = fault_names(model.estimator.classes_)
+    model.durations = durations_of(data) if isinstance(data, xr.Dataset) else ()
     model.widths = covered_widths(records)
     model.digests = record_digests(records.features.to_numpy() if model.features else records.features)
     model.versions = {library: version(library) for library in _LIBRARIES}
 
 
 def _content(model: Model) -> dict[str, Any]:
-    """Fields of a model file without the relative part."""
-    return {name: getattr(model, name) for name in _STORED} | {"calibration": model.calibration.model_dump()}
+    """Fields of a model file."""
+    parts = {name: None if (part := getattr(model, name)) is None else _content(part) for name in _PARTS}
+    return {name: getattr(model, name) for name in _STORED} | {"calibration": model.calibration.model_dump()} | parts
 
 
 def _holds_signals(data: Data) -> TypeGuard[Path | str | xr.Dataset]:

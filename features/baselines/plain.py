@@ -19,13 +19,16 @@ if TYPE_CHECKING:
     from features.baselines.models import Model
 
 TEXTS = ("name", "classes", "features", "groups")
+SHORTER = "shorter_"
+NUMBERS = ("band", "durations")
 NODES = ("children_left", "children_right", "feature", "threshold")
 
 
 class PlainModel(NamedTuple):
     """Facts of a model, medians that replace missing features, nodes of all trees, and logistic regression of scaled features.
 
-    The roots are those of the trees, a leaf has no children (-1), and ``shares`` are those of the classes at each node.
+    The roots are those of the trees, a leaf has no children (-1), and ``shares`` are those of the classes at each node. ``shorter`` is
+    the same for shorter records.
     """
 
     name: str
@@ -33,6 +36,7 @@ class PlainModel(NamedTuple):
     features: tuple[str, ...]
     groups: tuple[str, ...]
     band: tuple[float, float]
+    durations: tuple[float, ...]
     calibration: Calibration
     weights: FloatArray
     medians: FloatArray
@@ -43,6 +47,7 @@ class PlainModel(NamedTuple):
     scale: FloatArray
     slopes: FloatArray
     intercept: FloatArray
+    shorter: "PlainModel | None" = None
 
     @classmethod
     def of(cls, model: "Model") -> Self:
@@ -57,11 +62,12 @@ class PlainModel(NamedTuple):
             first = np.repeat(roots[:-1], np.diff(roots))
             nodes[name] = np.where(nodes[name] < 0, -1, nodes[name] + first)
         shares = np.concatenate([tree.value[:, 0] for tree in trees])
-        held: dict[str, Any] = {name: getattr(model, name) for name in (*TEXTS, "band", "calibration")}
+        held: dict[str, Any] = {name: getattr(model, name) for name in (*TEXTS, *NUMBERS, "calibration")}
         held |= {"weights": np.array(model.estimator.weights, float), "medians": imputer.statistics_}
         held |= {"nodes": nodes, "roots": roots[:-1], "shares": shares}
         held |= {"mean": scaler.mean_, "scale": scaler.scale_}
-        return cls(**held, slopes=regression.coef_, intercept=regression.intercept_)
+        held |= {"slopes": regression.coef_, "intercept": regression.intercept_}
+        return cls(**held, shorter=None if model.shorter is None else cls.of(model.shorter))
 
     def probabilities(self, rows: FloatArray) -> FloatArray:
         """Probability of each class before calibration, shape (record, feature) to (record, class)."""
@@ -80,10 +86,8 @@ class PlainModel(NamedTuple):
 
     def save(self, path: Path) -> None:
         """Write a file of arrays, whole or not at all."""
-        facts: dict[str, Any] = self._asdict() | {"calibration": self.calibration.model_dump_json()}
-        nodes = facts.pop("nodes")
         file = io.BytesIO()
-        np.savez(file, **facts, **nodes)
+        np.savez(file, **_arrays(self))
         write_durably(file.getvalue(), path)
 
     @classmethod
@@ -91,13 +95,23 @@ class PlainModel(NamedTuple):
         """Model of a file, None if it is missing, damaged or of another version."""
         try:
             with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
-                held: dict[str, Any] = dict(file)
-            held["nodes"] = {name: held.pop(name) for name in NODES}
-            held |= {name: tuple(held[name].tolist()) for name in (*TEXTS[1:], "band")}
-            held |= {
-                "name": str(held["name"]),
-                "calibration": Calibration.model_validate_json(str(held["calibration"])),
-            }
-            return cls(**held)
+                return cls._read(dict(file))
         except (OSError, ValueError, EOFError, KeyError, TypeError, AttributeError, zipfile.BadZipFile):
             return None
+
+    @classmethod
+    def _read(cls, arrays: dict[str, Any]) -> Self:
+        held = {name: array for name, array in arrays.items() if not name.startswith(SHORTER)}
+        its = {name.removeprefix(SHORTER): array for name, array in arrays.items() if name not in held}
+        held["nodes"] = {name: held.pop(name) for name in NODES}
+        held |= {name: tuple(held[name].tolist()) for name in (*TEXTS[1:], *NUMBERS)}
+        held |= {"name": str(held["name"]), "calibration": Calibration.model_validate_json(str(held["calibration"]))}
+        return cls(**held, shorter=cls._read(its) if its else None)
+
+
+def _arrays(model: PlainModel) -> dict[str, Any]:
+    """Arrays of a file by their name."""
+    facts: dict[str, Any] = model._asdict() | {"calibration": model.calibration.model_dump_json()}
+    nodes, shorter = facts.pop("nodes"), facts.pop("shorter")
+    its = {} if shorter is None else _arrays(shorter)
+    return facts | nodes | {f"{SHORTER}{name}": array for name, array in its.items()}

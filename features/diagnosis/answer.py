@@ -37,7 +37,7 @@ from features.diagnosis.wording import (
 )
 from features.faults import HEALTHY
 from features.indicators import Orders, feature_names, indicators
-from features.recording_table import recording_table, windows_of
+from features.recording_table import recording_table, suited, windows_of
 from features.signal.rows import FloatArray, mean_row
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
@@ -289,6 +289,7 @@ def _predict(
     recording: Recorded, pair: Pair, model: "Model | PlainModel", references: Sequence[Recorded]
 ) -> Predictions:
     """Predictions of windows and recording; without a reference they need no xarray, and with a plain model no scikit-learn."""
+    model = suited(model, [_duration(one) for one in (recording, *references)])
     if references:
         import xarray as xr
 
@@ -300,7 +301,10 @@ def _predict(
         numbered = [one.assign(recording=one["recording"] + number) for number, one in enumerate(healthy)]
         known = xr.concat(numbered, "record", combine_attrs="override")
         return predict(_table(recording, recording.signals, pair, model, UNKNOWN), model, known)
-    rows = [_rows(recording, name, pair, model) for name in recording.signals]
+    rows = [
+        _rows(windows_of(signal, recording.fs, model), recording.fs, pair, model)
+        for signal in recording.signals.values()
+    ]
     means = [mean_row(some)[None] for some in rows]
     each, whole = (
         np.stack([_probabilities(model, some, recording.name) for some in values]) for values in (rows, means)
@@ -332,7 +336,7 @@ def _table(
         with_energies(model.groups),
         Band(*model.band),
     )
-    windows = {name: windows_of(recording.signals[name], fs) for name in channels}
+    windows = {name: windows_of(recording.signals[name], fs, model) for name in channels}
     tables = {
         name: recording_table(of_channel, fs, pair.rate, pair.orders, code, groups, band)
         for name, of_channel in windows.items()
@@ -340,12 +344,11 @@ def _table(
     return joined_channels(tables).assign_attrs(title=recording.name)
 
 
-def _rows(recording: Recorded, channel: str, pair: Pair, model: "Model | PlainModel") -> FloatArray:
-    """Features of the windows of a channel that the model takes, shape (window, feature)."""
-    windows = windows_of(recording.signals[channel], recording.fs)
+def _rows(windows: FloatArray, fs: float, pair: Pair, model: "Model | PlainModel") -> FloatArray:
+    """Features of windows, shape (window, time), that the model takes, shape (window, feature)."""
     each = Orders(*(np.full(len(windows), float(order)) for order in pair.orders))
     rates = np.full(len(windows), pair.rate)
-    values, names = indicators(windows, recording.fs, rates, each, model.groups, Band(*model.band))
+    values, names = indicators(windows, fs, rates, each, model.groups, Band(*model.band))
     return values[:, [names.index(name) for name in model.features]]
 
 

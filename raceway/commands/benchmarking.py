@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.commands.feature_tables import notice_of_unknown, table_of
-from raceway.commands.models import ESTIMATORS, warn_of_seen, warn_of_severities
+from raceway.commands.models import ESTIMATORS, warn_of_durations, warn_of_seen, warn_of_severities
 from raceway.console import show
 from raceway.console.options import (
     A_MODEL,
@@ -238,8 +238,9 @@ def _score_models(
     """Scores of trained models on each corpus, by name."""
     scored = {name: tuple(model.score(table, seed=seed) for table in tables) for name, model in models.items()}
     for name, of_model in scored.items():
-        for scores in of_model:
+        for scores, table in zip(of_model, tables, strict=True):
             warn_of_seen(name, scores)
+            warn_of_durations(name, models[name], table)
     return scored
 
 

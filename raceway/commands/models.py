@@ -27,7 +27,9 @@ from raceway.console.options import (
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
-    from features.baselines import Answer, Calibration, Results, Scores
+    import xarray as xr
+
+    from features.baselines import Answer, Calibration, Model, Results, Scores
     from features.recording_speeds import Speed
 
 # a copy of the names, since help must not import the registry; a test compares the two
@@ -91,7 +93,7 @@ def train(
     Next: raceway evaluate OTHER --model MODEL
     """
     from features.baselines import count_unknown
-    from raceway.studies.reference_model import kept_model, recipe_table, train_and_score
+    from raceway.studies.reference_model import kept_model, recipe_tables, train_and_score
 
     folder = Path(source)
     from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
@@ -111,9 +113,9 @@ def train(
     elif output is None:
         raise click.UsageError("Missing option '-o' / '--output': only the model of a RECIPE is kept without it.")
     else:
-        table = recipe_table(source, team) if corpus is None else table_of(corpus, "off", team, analysis)
-        notice_of_unknown(corpus or folder, count_unknown(table))
-        model, scores = train_and_score(table, estimator, team)
+        tables = recipe_tables(source, team) if corpus is None else [table_of(corpus, "off", team, analysis)]
+        notice_of_unknown(corpus or folder, count_unknown(tables[0]))
+        model, scores = train_and_score(tables, estimator, team)
         model.save(output)
     warn_of_severities(scores)
     if as_json:
@@ -195,6 +197,7 @@ def evaluate(
     scores = loaded.score(table, reference=healthy)
     warn_of_severities(scores)
     warn_of_seen("the model", scores)
+    warn_of_durations("the model", loaded, table)
     if as_json:
         facts = {"corpus": corpus, "model": source, "estimator": loaded.name, **show.plain(scores)}
         show.as_json(
@@ -248,6 +251,24 @@ def warn_of_seen(model: str, scores: "Scores") -> None:
         notice(
             f"warning: {model} was trained on {scores.seen:,} of these {scores.records:,} records; this is no fair test."
         )
+
+
+def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
+    """Warn of records that are shorter or longer than those of the training."""
+    from features.baselines.records import durations_of
+    from features.recording_table import SAME_DURATION, suited
+
+    tested = durations_of(table)
+    trained = suited(model, tested).durations
+    if tested and trained and not trained[0] / SAME_DURATION < tested[0] <= tested[1] < trained[1] * SAME_DURATION:
+        notice(
+            f"warning: the records last {_span(tested)} s, and those that {name} was trained on {_span(trained)} s; lines rise higher "
+            "above the floor in longer records. Use records of the same duration."
+        )
+
+
+def _span(durations: tuple[float, ...]) -> str:
+    return " to ".join(dict.fromkeys(f"{one:.3g}" for one in durations))
 
 
 def warn_of_severities(*tested: "Scores | Results | None") -> None:

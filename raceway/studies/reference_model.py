@@ -2,8 +2,9 @@
 
 ``recipe -> corpus in a temporary folder -> feature table -> model``
 
-The feature table of the reference model ships with Raceway, so that its first use takes seconds. ``make reference`` writes it; unlike a
-model file it depends on no version of scikit-learn.
+The reference model is trained on records of 2 s, in which lines rise higher above the floor than in the half seconds of its recipe, and
+holds a model trained on those for shorter recordings. The feature table of both corpora ships with Raceway, so that its first use takes
+seconds. ``make reference`` writes it; unlike a model file it depends on no version of scikit-learn.
 
 A kept model is named after the recipe, the estimator, the versions of Raceway and scikit-learn, and a hash of all that it was made from:
 the file of the recipe, sources and libraries. The file beside it with its SHA-256 and name tells whether it is the one that was made
@@ -13,13 +14,14 @@ under this name; else it is made again. A lock keeps two processes from making i
 import hashlib
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from features.recording_table import DURATION
 from gen.corpus import write_durably
 from gen.support.errors import CorpusError
 from gen.support.locking import hold_lock
@@ -32,22 +34,27 @@ if TYPE_CHECKING:
 
     from features.baselines import Model, Scores
     from features.baselines.plain import PlainModel
+    from gen.recipe import Recipe
 
 REFERENCE = "domain_randomised"
 ESTIMATOR = "ensemble"
 CACHE_VARIABLE = "RACEWAY_CACHE"
+LONG = 2.0  # s, duration of the records of the reference model
 HASH_LETTERS = 16
 SHIPPED_TABLE = Path(__file__).with_name(f"{REFERENCE}.nc")
 _OWN_SOURCES = ("raceway/studies/reference_model.py", f"raceway/studies/{SHIPPED_TABLE.name}")
 _LIBRARIES = ("scikit-learn", "skops", "numpy", "scipy", "numba")  # whose versions make other models or files
-_LABELS = ("fault", "width", "rig", "specimen", "recording", "split", "shaft_rate")  # what a training needs
-_FACTS = ("title", "recipe_sha256", "channel", "band_low_hz", "band_high_hz")
+_LABELS = ("fault", "width", "rig", "specimen", "recording", "split", "shaft_rate", DURATION)  # what a training needs
+_FACTS = ("title", "channel", "band_low_hz", "band_high_hz")
 
 
-def train_and_score(table: "xr.Dataset", estimator: str, team: Team = USUAL) -> tuple["Model", "Scores | None"]:
+def train_and_score(
+    tables: Sequence["xr.Dataset"], estimator: str, team: Team = USUAL
+) -> tuple["Model", "Scores | None"]:
     """Model trained on a feature table without its test split, and its scores on that split, with progress.
 
-    A table without a test split, or with nothing else, is trained on as a whole and not scored.
+    A table without a test split, or with nothing else, is trained on as a whole and not scored. From a second table, of shorter records,
+    the model for these is trained; the scores are those of the first.
 
     Raises
     ------
@@ -57,16 +64,21 @@ def train_and_score(table: "xr.Dataset", estimator: str, team: Team = USUAL) -> 
     from features.baselines import Model
     from gen.corpus import SPLITS
 
-    test = table["split"].values == SPLITS.index("test")
-    whole = not test.any() or test.all()
-    with progress("training", "fits") as report:
-        workers = team.options(len(test))["workers"]
-        model = Model(estimator).fit(table if whole else table.isel(record=~test), workers=workers, progress=report)
-    return model, None if whole else model.score(table.isel(record=test))
+    def trained(some: "xr.Dataset") -> "tuple[Model, Scores | None]":
+        test = some["split"].values == SPLITS.index("test")
+        whole = not test.any() or test.all()
+        with progress("training", "fits") as report:
+            workers = team.options(len(test))["workers"]
+            model = Model(estimator).fit(some if whole else some.isel(record=~test), workers=workers, progress=report)
+        return model, None if whole else model.score(some.isel(record=test))
+
+    (model, scores), *shorter = map(trained, tables)
+    model.shorter = shorter[0][0] if shorter else None
+    return model, scores
 
 
-def recipe_table(recipe: Path | str, team: Team = USUAL) -> "xr.Dataset":
-    """Feature table of the corpus of a recipe: the shipped one, or one that is made now, with progress.
+def recipe_tables(recipe: Path | str, team: Team = USUAL) -> "list[xr.Dataset]":
+    """Feature table of the corpus of a recipe, made now, with progress; both shipped ones for the recipe of the reference model.
 
     Raises
     ------
@@ -74,27 +86,55 @@ def recipe_table(recipe: Path | str, team: Team = USUAL) -> "xr.Dataset":
         As `make_table`.
     """
     from features.table_files import read_table
-    from gen.recipe import read_recipe, recipe_hash
+    from gen.recipe import read_recipe
 
     shipped = read_table(SHIPPED_TABLE)
-    return shipped if shipped.attrs["recipe_sha256"] == recipe_hash(read_recipe(recipe)) else make_table(recipe, team)
+    if shipped.attrs["recipe_sha256"] != _hashes(both_lengths(read_recipe(recipe))):
+        return [make_table(recipe, team)]
+    long = shipped[DURATION].values == LONG
+    return [shipped.isel(record=long), shipped.isel(record=~long)]
 
 
 def write_reference_table(output: Path) -> None:
-    """Write the feature table of the reference model: features that the model takes, and labels that its training needs."""
+    """Write the feature table of the reference model."""
+    from features.table_files import write_table
+    from gen.recipe import read_recipe, shipped_recipes
+
+    write_table(reference_table(read_recipe(shipped_recipes()[REFERENCE])), output)
+
+
+def reference_table(recipe: "Recipe", team: Team = USUAL) -> "xr.Dataset":
+    """Features that the reference model takes, and labels that its training needs, of the corpora of `both_lengths`."""
+    import xarray as xr
+
     from features.baselines.records import DEFAULT_GROUPS
     from features.baselines.references import with_energies
-    from features.table_files import write_table
-    from gen.recipe import shipped_recipes
 
-    table = make_table(shipped_recipes()[REFERENCE])
-    kept = table.reset_coords()[["features", "group", *_LABELS]].set_coords("group")
-    kept = kept.isel(feature=kept["group"].isin(with_energies(DEFAULT_GROUPS)))
-    kept.attrs = {name: table.attrs[name] for name in _FACTS}
-    write_table(kept, output)
+    parts, recipes = list["xr.Dataset"](), both_lengths(recipe)
+    for one in recipes:
+        table = make_table(one, team)
+        kept = table.reset_coords()[["features", "group", *_LABELS]].set_coords("group")
+        kept = kept.isel(feature=kept["group"].isin(with_energies(DEFAULT_GROUPS)))
+        kept.attrs = {name: table.attrs[name] for name in _FACTS}
+        parts.append(kept)
+    both = xr.concat(parts, "record", data_vars="minimal", join="exact", combine_attrs="identical")
+    return both.assign_attrs(recipe_sha256=_hashes(recipes))
 
 
-def make_table(recipe: Path | str, team: Team = USUAL) -> "xr.Dataset":
+def both_lengths(recipe: "Recipe") -> tuple["Recipe", "Recipe"]:
+    """A recipe with records of 2 s, and as it is."""
+    recording = recipe.recording.model_copy(update={"duration_s": LONG})
+    return recipe.model_copy(update={"recording": recording}), recipe
+
+
+def _hashes(recipes: Iterable["Recipe"]) -> str:
+    """SHA-256 of the recipes that a table was made from."""
+    from gen.recipe import recipe_hash
+
+    return " ".join(map(recipe_hash, recipes))
+
+
+def make_table(recipe: "Path | str | Recipe", team: Team = USUAL) -> "xr.Dataset":
     """Feature table of a corpus that is generated in a temporary folder and removed again, with progress.
 
     Raises
@@ -202,7 +242,7 @@ def keep_model(recipe: Path | str, estimator: str = ESTIMATOR, *, team: Team = U
             notice(f"{path}: is altered, or was not made here. It is made again.")
             path.unlink()  # it may be no model, and nothing else is replaced
         notice(f"training a model on the recipe {recipe_name(recipe)}; it is kept as {path}.")
-        model, scores = train_and_score(recipe_table(recipe, team), estimator, team)
+        model, scores = train_and_score(recipe_tables(recipe, team), estimator, team)
         model.save(path)
         _seal(path)
     return path, scores
