@@ -39,6 +39,11 @@ def mean(found: Sequence[Mapping[str, float | None]], figure: str) -> str:
     return spread(found, figure).partition(" ")[0]
 
 
+def _longest(results: Results) -> Mapping[str, Any]:
+    """Figures of the longest windows."""
+    return next(iter(results["windows"].values()))
+
+
 def _markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     lines = [header, ["---", *["---:"] * (len(header) - 1)], *rows]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
@@ -46,30 +51,30 @@ def _markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 def _summary(results: Results) -> str:
     """The four sets in short: zero-shot, and with one healthy recording."""
-    zero, reference = results["zero_shot"], results["reference"]
-    rows = [
-        [NAMES[name], *(spread(zero[name][test], "window") for test in zero[name])]
-        for name in ("envelope_rule", "ensemble")
-    ]
-    known = [spread(reference[test], "window") if test in reference else "-" for test in zero["ensemble"]]
     heads = {"wang": "CWRU, Wang's subset", "cwru": "CWRU, all 64", "mfpt": "MFPT, 2 classes", "uestc": "UESTC"}
-    return _markdown(
-        ["", *(heads[test] for test in zero["ensemble"])],
-        [*rows, ["ensemble, with one healthy recording of the machine", *known]],
-    )
+    rows: list[list[str]] = []
+    for window, found in results["windows"].items():
+        zero, reference = found["zero_shot"], found["reference"]
+        rows += [
+            [f"{NAMES[name]}, {window} s", *(spread(zero[name][test], "window") for test in heads)]
+            for name in ("envelope_rule", "ensemble")
+        ]
+        known = [spread(reference[test], "window") if test in reference else "-" for test in heads]
+        rows.append([f"ensemble, with one healthy recording of the machine, {window} s", *known])
+    return _markdown(["", *heads.values()], rows)
 
 
 def _zero_shot(results: Results) -> str:
-    zero = results["zero_shot"]
-    tests = list(zero["ensemble"])
+    tests = list(_longest(results)["zero_shot"]["ensemble"])
     header = ["", *(f"{test} {unit}" for test in tests for unit in ("window", "recording")), "own rigs, CV"]
     rows = [
         [
-            NAMES[name],
+            f"{NAMES[name]}, {window} s",
             *(spread(found[test], unit) for test in tests for unit in ("window", "recording")),
-            mean([results["own_rigs"][name]], "window"),
+            mean([its["own_rigs"][name]], "window"),
         ]
-        for name, found in zero.items()
+        for window, its in results["windows"].items()
+        for name, found in its["zero_shot"].items()
     ]
     return _markdown(header, rows)
 
@@ -77,9 +82,13 @@ def _zero_shot(results: Results) -> str:
 def _details(results: Results) -> str:
     """Every figure of the default estimator."""
     ways = {
-        "zero-shot": results["zero_shot"]["ensemble"],
-        "speed corrected": results["speed_corrected"],
-        "one healthy recording": results["reference"],
+        f"{way}, {window} s": found
+        for window, its in results["windows"].items()
+        for way, found in {
+            "zero-shot": its["zero_shot"]["ensemble"],
+            "speed corrected": its["speed_corrected"],
+            "one healthy recording": its["reference"],
+        }.items()
     }
     header = [
         *("set", "way", "window", "recording", "false alarms", "of recordings"),
@@ -91,7 +100,7 @@ def _details(results: Results) -> str:
             *(mean(found[test], name) for name in ("false_alarms", "recording_false_alarms", "auc", "log_loss", "ece")),
             *(mean(found[test], name) for name in ("coverage", "answered_accuracy")),
         ]
-        for test in results["zero_shot"]["ensemble"]
+        for test in _longest(results)["zero_shot"]["ensemble"]
         for way, found in ways.items()
         if test in found
     ]
@@ -102,18 +111,19 @@ def _teachers(results: Results) -> str:
     rows = [
         [
             teaching.replace("synthetic", f"`{results['recipe']}`"),
-            test,
+            f"{test}, {window} s",
             *(spread(found, name) for name in ("window", "recording")),
             *(mean(found, name) for name in ("false_alarms", "auc", "log_loss")),
         ]
-        for test, teachers in results["teachers"].items()
+        for window, its in results["windows"].items()
+        for test, teachers in its["teachers"].items()
         for teaching, found in teachers.items()
     ]
     return _markdown(["trained on", "tested on", "window", "recording", "false alarms", "AUC", "log-loss"], rows)
 
 
 def _confusion(results: Results, test: str) -> str:
-    found = results["confusion"][test]
+    found = _longest(results)["confusion"][test]
     rows = [[name, *map(str, row)] for name, row in zip(found["true"], found["windows"], strict=True)]
     return _markdown(["true", *found["predicted"]], rows)
 

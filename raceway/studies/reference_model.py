@@ -123,8 +123,12 @@ def reference_table(recipe: "Recipe", team: Team = USUAL) -> "xr.Dataset":
 
 def both_lengths(recipe: "Recipe") -> tuple["Recipe", "Recipe"]:
     """A recipe with records of 2 s, and as it is."""
-    recording = recipe.recording.model_copy(update={"duration_s": LONG})
-    return recipe.model_copy(update={"recording": recording}), recipe
+    return lasting(recipe, LONG), recipe
+
+
+def lasting(recipe: "Recipe", seconds: float) -> "Recipe":
+    """A recipe with records of another duration."""
+    return recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"duration_s": seconds})})
 
 
 def _hashes(recipes: Iterable["Recipe"]) -> str:
