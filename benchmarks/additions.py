@@ -107,7 +107,7 @@ def main() -> None:
     found: dict[str, list[dict[str, Any]]] = {}
     with tempfile.TemporaryDirectory() as name:
         real = {title: tables(corpus) for title, corpus in real_corpora(options.real, Path(name)).items()}
-        for seed, corpus in enumerate(corpora(RECIPE, options.seeds, Path(name), 2)):
+        for seed, corpus in enumerate(corpora(RECIPE, 0.5, options.seeds, Path(name), 2)):
             for addition, table in tables(corpus).items():
                 model = Model(BEST, seed=seed).fit(table)
                 scored = {"unseen rigs": figures(cross_validate(table, BEST, track="rig", seed=seed))["window"]}

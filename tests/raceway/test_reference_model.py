@@ -15,11 +15,12 @@ from features import feature_table
 from features.baselines import Model
 from features.baselines.records import DEFAULT_GROUPS
 from features.baselines.references import with_energies
-from features.table_files import read_table
 from gen import generate
-from gen.recipe import read_recipe, recipe_hash, shipped_recipes
+from gen.recipe import read_recipe, shipped_recipes
 from raceway.cli import cli
+from raceway.commands.models import warn_of_durations
 from raceway.studies import reference_model
+from tests.model_files import make_table
 
 
 @pytest.fixture
@@ -28,7 +29,7 @@ def trainings(tiny_corpus, tmp_path, monkeypatch):
     table, made = feature_table(tiny_corpus), []
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr("features.baselines.estimators.TREES", 2)
-    monkeypatch.setattr(reference_model, "recipe_table", lambda recipe, _: made.append(recipe) or table)
+    monkeypatch.setattr(reference_model, "recipe_tables", lambda recipe, _: made.append(recipe) or [table])
     return made
 
 
@@ -217,15 +218,19 @@ def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(tmp_path, monkeyp
 
 def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_path):
     """Other processors may round the signals otherwise by a count or two of the converter."""
-    table = read_table(reference_model.SHIPPED_TABLE)
-    fresh = feature_table(generate("domain_randomised", tmp_path / "corpus", records=4).path)
-    assert table.attrs["recipe_sha256"] == recipe_hash(read_recipe("domain_randomised"))
-    names = fresh["feature"].values[np.isin(fresh["group"].values, with_energies(DEFAULT_GROUPS))]
-    assert list(table["feature"].values) == list(names)
-    stored, again = (one.set_index(record="recording") for one in (table, fresh))
-    stored = stored.sel(record=again["record"])
-    assert (stored[["fault", "rig", "specimen", "split"]] == again[["fault", "rig", "specimen", "split"]]).all()
-    np.testing.assert_allclose(stored["features"], again["features"].sel(feature=names), rtol=1e-3, atol=1e-3)
+    tables, labels = (
+        reference_model.recipe_tables("domain_randomised"),
+        ["fault", "rig", "specimen", "split", "duration"],
+    )
+    for table, recipe in zip(tables, reference_model.both_lengths(read_recipe("domain_randomised")), strict=True):
+        seconds = recipe.recording.duration_s
+        fresh = feature_table(generate(recipe, tmp_path / f"{seconds}", records=4).path)
+        names = fresh["feature"].values[np.isin(fresh["group"].values, with_energies(DEFAULT_GROUPS))]
+        assert list(table["feature"].values) == list(names)
+        stored, again = (one.set_index(record="recording") for one in (table, fresh))
+        stored = stored.sel(record=again["record"])
+        assert (stored[labels] == again[labels]).all()
+        np.testing.assert_allclose(stored["features"], again["features"].sel(feature=names), rtol=1e-3, atol=1e-3)
 
 
 def test_another_recipe_is_not_trained_on_the_shipped_table(tmp_path, monkeypatch):
@@ -233,5 +238,30 @@ def test_another_recipe_is_not_trained_on_the_shipped_table(tmp_path, monkeypatc
     text = shipped_recipes()["domain_randomised"].read_text(encoding="utf-8")
     (tmp_path / "same.yaml").write_text(f"# another comment\n{text}", encoding="utf-8")
     (tmp_path / "other.yaml").write_text(text.replace("seed: 20260", "seed: 20261"), encoding="utf-8")
-    assert reference_model.recipe_table(tmp_path / "same.yaml").sizes["record"] > 2900
-    assert reference_model.recipe_table(tmp_path / "other.yaml") == "made"
+    assert [table.sizes["record"] > 2900 for table in reference_model.recipe_tables(tmp_path / "same.yaml")] == [
+        True,
+        True,
+    ]
+    assert reference_model.recipe_tables(tmp_path / "other.yaml") == ["made"]
+
+
+def test_a_second_table_trains_the_model_for_shorter_records():
+    """Its scores are on the test split of the first table."""
+    one, other = (make_table(records=48, seed=seed).assign(split=("record", np.arange(48) % 3)) for seed in (0, 1))
+    tables = [one.assign(duration=("record", np.full(48, 2.0))), other.assign(duration=("record", np.full(48, 0.5)))]
+    model, scores = reference_model.train_and_score(tables, "logistic_regression")
+    alone, of_first = reference_model.train_and_score(tables[:1], "logistic_regression")
+    assert (model.durations, model.shorter.durations, alone.shorter) == ((2.0, 2.0), (0.5, 0.5), None)
+    assert scores == of_first
+    np.testing.assert_array_equal(model.predict_proba(tables[1]), model.shorter.predict_proba(tables[1]))
+    np.testing.assert_array_equal(model.predict_proba(tables[0]), alone.predict_proba(tables[0]))
+
+
+@pytest.mark.parametrize(("seconds", "told"), [(0.2, "0.2"), (1.0, "1"), (0.503, ""), (2.0, "")])
+def test_records_of_another_duration_than_those_of_the_training_are_told(seconds, told, capfd):
+    of = [make_table().assign(duration=("record", np.full(24, one))) for one in (2.0, 0.5, seconds)]
+    model, short = (Model("majority").fit(table) for table in of[:2])
+    model.shorter = short
+    warn_of_durations("the model", model, of[2])
+    sentence = f"warning: the records last {told} s, and those that the model was trained on 0.5 s"
+    assert sentence in capfd.readouterr().err if told else capfd.readouterr().err == ""

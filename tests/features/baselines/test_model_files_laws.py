@@ -10,6 +10,7 @@ from sklearn.base import BaseEstimator
 
 from features.baselines import ESTIMATORS, Model, estimators, predict
 from features.baselines.model_file import TRUSTED
+from features.baselines.models import FORMAT
 from gen.support.errors import CorpusError
 from tests.model_files import Archive, make_table, write_models
 
@@ -73,7 +74,7 @@ def test_a_type_that_is_renamed_in_the_file_is_refused_by_name(files, tmp_path):
         (b"\x80\x04K*.", "not a readable model"),
         (skops.io.dumps({"raceway_model": 99}), "not a model of this version"),
         (skops.io.dumps([1, 2]), "not a model of this version"),
-        (skops.io.dumps({"raceway_model": 6, "estimator": 3}), "not a complete model"),
+        (skops.io.dumps({"raceway_model": FORMAT, "estimator": 3}), "not a complete model"),
     ],
 )
 def test_a_file_that_is_no_model_is_refused(content, sentence, tmp_path):
@@ -109,6 +110,15 @@ def test_a_model_larger_than_the_limit_is_refused(files, monkeypatch):
 def test_a_model_that_was_loaded_is_saved_with_the_same_bytes(files, tmp_path, name):
     Model.load(files[name]).save(tmp_path / "m")
     assert (tmp_path / "m").read_bytes() == files[name].read_bytes()
+
+
+def test_the_model_for_shorter_records_is_in_the_same_file(tmp_path):
+    model = Model("logistic_regression").fit(make_table())
+    model.shorter = Model("logistic_regression", seed=1).fit(make_table(seed=1))
+    model.save(tmp_path / "m")
+    loaded, table = Model.load(tmp_path / "m").shorter, make_table(seed=2)
+    assert loaded.shorter is None
+    np.testing.assert_array_equal(loaded.predict_proba(table), model.shorter.predict_proba(table))
 
 
 def test_bytes_between_the_fields_of_a_node_are_zero(files):

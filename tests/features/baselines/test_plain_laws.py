@@ -23,11 +23,13 @@ def model(monkeypatch):
 def test_the_arrays_predict_the_bits_of_scikit_learn(model, tmp_path):
     rows = feature_rows(make_table(6, 300, seed=3), model.features).copy()
     rows.iloc[::7, 2] = np.nan
+    model.shorter = Model("ensemble").fit(make_table(6, 200, seed=4).assign(duration=("record", np.full(200, 0.5))))
     PlainModel.of(model).save(tmp_path / "plain.npz")
     plain = PlainModel.read(tmp_path / "plain.npz")
-    np.testing.assert_array_equal(plain.probabilities(rows.to_numpy()), estimator_probabilities(model, rows, ""))
-    for name in ("name", "classes", "features", "groups", "band", "calibration"):
-        assert getattr(plain, name) == getattr(model, name)
+    for arrays, its in ((plain, model), (plain.shorter, model.shorter)):
+        np.testing.assert_array_equal(arrays.probabilities(rows.to_numpy()), estimator_probabilities(its, rows, ""))
+        for name in ("name", "classes", "features", "groups", "band", "durations", "calibration"):
+            assert getattr(arrays, name) == getattr(its, name)
 
 
 def test_a_file_that_is_missing_or_damaged_is_no_model(model, tmp_path):

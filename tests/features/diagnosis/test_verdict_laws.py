@@ -2,7 +2,10 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
 from features.diagnosis import Given, Pair, Recorded
 from features.diagnosis.answer import LONGEST, Judged, _conclude, _usable
@@ -11,7 +14,7 @@ from features.diagnosis.search import Found
 from features.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
 from features.diagnosis.wording import MISSED, answer_in_words, missed_faults
 from features.indicators import Orders
-from features.recording_table import windows_of
+from features.recording_table import SAME_DURATION, suited, windows_of
 from gen.corpus import FAULTS
 
 FS, RATE = 12_000.0, 25.0
@@ -210,7 +213,19 @@ def test_a_channel_that_tells_nothing_is_left_out_unless_it_is_the_only_one():
     assert "constant" in _usable(Recorded({"y": 0 * x}, FS), GIVEN)[1].useless
 
 
-def test_windows_follow_each_other_and_a_short_signal_is_one():
-    x = np.arange(1300.0)
-    np.testing.assert_array_equal(windows_of(x, 1000.0), x[:1000].reshape(2, 500))
-    np.testing.assert_array_equal(windows_of(x[:400], 1000.0), x[None, :400])
+@pytest.mark.parametrize(("durations", "length"), [((), 500), ((0.3, 0.6), 600), ((0.2, 0.2), 200)])
+def test_windows_are_as_long_as_the_longest_training_records_and_a_short_signal_is_one(durations, length):
+    model, x = Model(durations=durations), np.arange(1300.0)
+    count = 1300 // length
+    np.testing.assert_array_equal(windows_of(x, 1000.0, model), x[: count * length].reshape(count, length))
+    np.testing.assert_array_equal(windows_of(x[:150], 1000.0, model), x[None, :150])
+
+
+@given(st.lists(st.floats(0.01, 100), max_size=4))
+@settings(deadline=None)
+def test_shorter_records_are_for_the_model_of_these(durations):
+    short = Model(durations=(0.5, 0.5))
+    model = Model(durations=(2.0, 2.0), shorter=short)
+    below = bool(durations) and min(durations) < 2 / SAME_DURATION
+    assert suited(model, durations) is (short if below else model)
+    assert suited(short, durations) is short
