@@ -9,6 +9,7 @@ module           responsibility
 ================ =================================================================================
 band             band of frequencies that features are computed from [pure]
 channels         channel of a corpus by name or number
+durations        durations of records, and the model that suits them [pure]
 faults           the fault classes: colour, lines and telling features of each, in one table
 signal           spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
 definitions      name, unit, meaning, formula and range of every feature [pure]

@@ -4,12 +4,13 @@ The recording is cut into windows, which become the records of the table.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol, Self, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from features.band import DEFAULT_BAND, Band, band_attributes
 from features.definitions import GROUPS, feature_coordinates
+from features.durations import DURATION, Trained
 from features.indicators import Orders, indicators
 from features.signal.rows import FloatArray
 
@@ -17,31 +18,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 WINDOW = 0.5  # s, for a model that does not tell the duration of its training records
-DURATION = "duration"  # of each record of a feature table [s]
-SAME_DURATION = 1.01  # ratio
-
-
-class Trained(Protocol):
-    """What is asked of a model here: shortest and longest of its training records [s], if known, and a model for shorter ones."""
-
-    @property
-    def durations(self) -> tuple[float, ...]:
-        """See `features.baselines.Model`."""
-        ...
-
-    @property
-    def shorter(self) -> Self | None:
-        """See `features.baselines.Model`."""
-        ...
-
-
-Model = TypeVar("Model", bound=Trained)
-
-
-def suited(model: Model, durations: Sequence[float]) -> Model:
-    """The model, or its model for shorter records if the shortest of these durations [s] is below that of its training."""
-    shorter = model.shorter
-    return shorter if shorter and durations and SAME_DURATION * min(durations) < min(model.durations) else model
 
 
 def windows_of(signal: FloatArray, fs: float, model: Trained) -> FloatArray:

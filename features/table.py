@@ -21,6 +21,7 @@ import xarray as xr
 from features.band import DEFAULT_BAND, Band, band_attributes, band_of, checked_band
 from features.channels import channel_number, joined_channels
 from features.definitions import GROUPS, feature_coordinates
+from features.durations import DURATION
 from features.indicators import Orders, indicators
 from features.recording_speeds import (
     Speed,
@@ -31,7 +32,6 @@ from features.recording_speeds import (
     recording_speeds,
     with_speeds,
 )
-from features.recording_table import DURATION
 from features.signal.rows import FloatArray
 from gen.corpus import DRAWS, RecordBlock, corpus_name, open_corpus, read_channel, record_blocks
 from gen.support.progress import Progress, counter

@@ -10,11 +10,11 @@ from features.baselines.calibration import Calibration
 from features.baselines.colour import Colour
 from features.baselines.estimators import class_probabilities
 from features.baselines.predictions import Predictions, impulsiveness_of, predictions
-from features.baselines.records import FloatArray, durations_of, feature_rows, title_of
+from features.baselines.records import FloatArray, feature_rows, title_of
 from features.baselines.references import colour_of, relative_to
 from features.channels import channels_of
+from features.durations import durations_of, suited
 from features.recording_speeds import recording_numbers
-from features.recording_table import suited
 from features.signal.rows import group_means
 from features.waveforms import Waveforms
 from gen.support.errors import CorpusError

@@ -32,7 +32,6 @@ from features.baselines.records import (
     DEFAULT_GROUPS,
     FloatArray,
     check_classes,
-    durations_of,
     features_of,
     labelled_records,
     record_digests,
@@ -46,7 +45,7 @@ from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.channels import channels_of
 from features.definitions import GROUPS
-from features.recording_table import suited
+from features.durations import durations_of, suited
 from features.waveforms import Waveforms
 from gen.corpus import UNKNOWN_CODE, check_result, corpus_name
 from gen.support.errors import CorpusError

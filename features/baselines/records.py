@@ -14,7 +14,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from features.recording_speeds import recording_numbers
-from features.recording_table import DURATION
 from features.signal.rows import FloatArray, IntArray
 from features.waveforms import Waveforms
 from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
@@ -223,12 +222,6 @@ def check_table(table: object) -> None:
         raise CorpusError(
             f"{type(table).__name__} given in place of a feature table; make one with features.feature_table."
         )
-
-
-def durations_of(table: xr.Dataset) -> tuple[float, ...]:
-    """Shortest and longest duration of the records of a feature table [s]; empty if it does not tell them."""
-    known = DURATION in table and table.sizes["record"]
-    return (float(table[DURATION].min()), float(table[DURATION].max())) if known else ()
 
 
 def title_of(table: xr.Dataset) -> str:

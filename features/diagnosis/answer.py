@@ -35,9 +35,10 @@ from features.diagnosis.wording import (
     speed_warning,
     unexplained,
 )
+from features.durations import suited
 from features.faults import HEALTHY
 from features.indicators import Orders, feature_names, indicators
-from features.recording_table import recording_table, suited, windows_of
+from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray, mean_row
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError

@@ -255,15 +255,15 @@ def warn_of_seen(model: str, scores: "Scores") -> None:
 
 def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
     """Warn of records that are shorter or longer than those of the training."""
-    from features.baselines.records import durations_of
-    from features.recording_table import SAME_DURATION, suited
+    from features.durations import SAME_DURATION, durations_of, suited
 
     tested = durations_of(table)
     trained = suited(model, tested).durations
+    known = ((model.shorter.durations,) if model.shorter else ()) + (model.durations,)
     if tested and trained and not trained[0] / SAME_DURATION < tested[0] <= tested[1] < trained[1] * SAME_DURATION:
         notice(
-            f"warning: the records last {_span(tested)} s, and those that {name} was trained on {_span(trained)} s; lines rise higher "
-            "above the floor in longer records. Use records of the same duration."
+            f"warning: the records last {_span(tested)} s, and those that {name} was trained on {' or '.join(map(_span, known))} s; lines "
+            "rise higher above the floor in longer records. Use records of such a duration."
         )
 
 

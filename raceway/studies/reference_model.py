@@ -21,7 +21,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from features.recording_table import DURATION
+from features.durations import DURATION
 from gen.corpus import write_durably
 from gen.support.errors import CorpusError
 from gen.support.locking import hold_lock

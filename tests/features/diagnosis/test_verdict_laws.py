@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
@@ -14,7 +12,7 @@ from features.diagnosis.search import Found
 from features.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
 from features.diagnosis.wording import MISSED, answer_in_words, missed_faults
 from features.indicators import Orders
-from features.recording_table import SAME_DURATION, suited, windows_of
+from features.recording_table import windows_of
 from gen.corpus import FAULTS
 
 FS, RATE = 12_000.0, 25.0
@@ -219,13 +217,3 @@ def test_windows_are_as_long_as_the_longest_training_records_and_a_short_signal_
     count = 1300 // length
     np.testing.assert_array_equal(windows_of(x, 1000.0, model), x[: count * length].reshape(count, length))
     np.testing.assert_array_equal(windows_of(x[:150], 1000.0, model), x[None, :150])
-
-
-@given(st.lists(st.floats(0.01, 100), max_size=4))
-@settings(deadline=None)
-def test_shorter_records_are_for_the_model_of_these(durations):
-    short = Model(durations=(0.5, 0.5))
-    model = Model(durations=(2.0, 2.0), shorter=short)
-    below = bool(durations) and min(durations) < 2 / SAME_DURATION
-    assert suited(model, durations) is (short if below else model)
-    assert suited(short, durations) is short
