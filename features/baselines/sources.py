@@ -10,6 +10,7 @@ _MAKES_SCORES = (
     "features/band.py",
     "features/channels.py",
     "features/definitions.py",
+    "features/durations.py",
     "features/faults.py",
     "features/indicators.py",
     "features/recording_speeds.py",

@@ -246,6 +246,7 @@ def test_a_table_is_unchanged_in_the_columns_of_parquet(tmp_path, table):
     assert set(again.column_names) == {
         *feature_names(),
         *(variable.name for variable in (*SCHEMA, SNR)),
+        "duration",
         "fault_name",
         "split_name",
     }
