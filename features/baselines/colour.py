@@ -38,14 +38,11 @@ class Colour(NamedTuple):
     def distances(self, numbers: IntArray) -> FloatArray:
         """Distance of the mean change of the records with each number, from 0 and without a gap, in scatters.
 
-        It is the mean of the channels that have energies, shape (number,), and 0 without any: the axes of a housing differ at once, and
-        the largest of them would refuse `healthy` to most recordings of another load.
+        It is the largest of all channels, shape (number,), and 0 without energies.
         """
         means = np.stack([group_means(channel, numbers) for channel in self.changes])
         _, first = np.unique(numbers, return_index=True)
-        each = distance(means) / self.scatter[:, first]
-        known = np.isfinite(each)
-        return np.where(known, each, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+        return np.nan_to_num(np.fmax.reduce(distance(means) / self.scatter[:, first], axis=0))
 
 
 def distance(changes: FloatArray) -> FloatArray:
