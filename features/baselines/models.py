@@ -281,7 +281,7 @@ class Model(Shown):
     @classmethod
     def _of(cls, path: Path | str, content: Mapping[str, Any]) -> Self:
         """Model of the fields in a model file."""
-        if set(content) != {*_STORED, *_PARTS}:
+        if not isinstance(content, Mapping) or set(content) != {*_STORED, *_PARTS}:
             raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
         own = {name: value for name, value in content.items() if name != "name"}
         parts = {name: None if own[name] is None else cls._of(path, own[name]) for name in _PARTS}

@@ -12,6 +12,7 @@ quality  signals that tell nothing, and signals to be read with care
 levels   rms, peak, crest factor, kurtosis and velocity
 wording  sentences
 verdict  agreement of classifier and lines
+result   a recording, and its diagnosis
 answer   verdict, probabilities and evidence of a recording
 arrays   one call for a recording that is at hand as an array
 corpora  verdicts on the recordings of a corpus, counted

@@ -8,7 +8,7 @@ the signal tells nothing. Evidence is measured in the signal alone, whatever the
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,8 +19,9 @@ from features.baselines.plain import PlainModel
 from features.baselines.predictions import DAMAGED, UNSURE, Predictions, impulsiveness_of, predictions
 from features.definitions import GROUPS
 from features.diagnosis.evidence import Line, find_evidence
-from features.diagnosis.levels import ACCELERATION, Levels, levels_of
+from features.diagnosis.levels import levels_of
 from features.diagnosis.quality import ENOUGH, Quality, quality_of
+from features.diagnosis.result import LONGEST, Diagnosis, Recorded
 from features.diagnosis.search import Found, Given, Pair, find_pairs, mean_spectra, strange_comb
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.diagnosis.verdict import judge
@@ -42,30 +43,13 @@ from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray, mean_row
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
-from gen.support.shown import Shown
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from features.baselines.models import Model
 
-LONGEST = 60.0  # s; of a longer recording the beginning is used
 WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
-
-
-class Recorded(NamedTuple):
-    """A recording: signals of equal length by the name of their channel, shape (time,), sample rate [Hz], name, and unit."""
-
-    signals: Mapping[str, FloatArray]
-    fs: float
-    name: str = "the recording"
-    unit: str = ACCELERATION
-
-    @property
-    def used(self) -> "Recorded":
-        """At most the first 60 s."""
-        most = round(LONGEST * self.fs)
-        return self._replace(signals={name: signal[:most] for name, signal in self.signals.items()})
 
 
 class Judged(NamedTuple):
@@ -79,78 +63,6 @@ class Judged(NamedTuple):
     windows: int
     lines: list[Line]
     spectra: list[BandSpectrum]
-
-
-@dataclass(frozen=True, repr=False)
-class Diagnosis(Shown):
-    """A diagnosis.
-
-    Attributes
-    ----------
-    verdict
-        A class of the model, "damaged" for a fault whose part is not known, or "unsure".
-    probabilities
-        Of each class that the model can predict, combined over windows and channels; all equal if there is no prediction.
-    threshold
-        The least probability that is answered; NaN if there is no prediction.
-    given
-        Bearings and speeds as given.
-    bearing, orders, shaft_rate
-        Name, nominal orders and shaft rate [Hz] that the evidence refers to.
-    evidence
-        Lines that stand above the floor, strongest family first.
-    explanations
-        Pairs of bearing and speed within those given that explain the lines, the one of the evidence first.
-    elsewhere
-        Other pairs, which explain a strong comb that the given ones do not explain.
-    sentence
-        The verdict with its reason.
-    advice
-        How to get a surer answer, one sentence each; empty if there is no advice.
-    warnings
-        Reasons to read the diagnosis with care, one sentence each.
-    windows
-        Number of windows that the classifier used.
-    missed
-        Share of faulty recordings of about this length, on three machines, that were called healthy; NaN unless the verdict is healthy.
-    levels
-        Of each channel of the recording, then of the healthy ones.
-    spectrum
-        Envelope spectrum of the band with the highest evidence, or of the most impulsive band; None for a useless signal.
-    """
-
-    verdict: str
-    probabilities: Mapping[str, float]
-    threshold: float
-    given: Given
-    bearing: str
-    orders: Orders
-    shaft_rate: float
-    evidence: tuple[Line, ...]
-    sentence: str
-    advice: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-    explanations: tuple[Pair, ...] = ()
-    elsewhere: tuple[Pair, ...] = ()
-    windows: int = 0
-    missed: float = np.nan
-    levels: tuple[Levels, ...] = ()
-    spectrum: BandSpectrum | None = field(default=None, compare=False)
-
-    def _heading(self) -> str:
-        return f"Diagnosis: {self.verdict}"
-
-    def _facts(self) -> Mapping[str, object]:
-        lines = [f"{line.name} at {line.frequency:.4g} Hz, {line.level:.0f} dB" for line in self.evidence]
-        return {
-            "why": self.sentence,
-            "probabilities": candidates(self.probabilities),
-            "bearing": self.bearing,
-            "speed": f"{60 * self.shaft_rate:,.4g} rpm",
-            "lines": "; ".join(lines),
-            "advice": " ".join(self.advice),
-            "warnings": " ".join(self.warnings),
-        }
 
 
 def diagnose_recording(

@@ -9,7 +9,7 @@ import skops.io
 from sklearn.base import BaseEstimator
 
 from features.baselines import ESTIMATORS, Model, estimators, predict
-from features.baselines.model_file import TRUSTED
+from features.baselines.model_file import TRUSTED, read_model_file
 from features.baselines.models import FORMAT
 from gen.support.errors import CorpusError
 from tests.model_files import Archive, make_table, write_models
@@ -80,6 +80,14 @@ def test_a_type_that_is_renamed_in_the_file_is_refused_by_name(files, tmp_path):
 def test_a_file_that_is_no_model_is_refused(content, sentence, tmp_path):
     (tmp_path / "m").write_bytes(content)
     assert sentence in refusal(tmp_path / "m")
+
+
+@pytest.mark.parametrize("part", ["relative", "shorter"])
+@pytest.mark.parametrize("value", [3, "text", [1, 2], {"name": "svm"}])
+def test_a_part_that_is_no_model_is_refused(files, tmp_path, part, value):
+    content = read_model_file(files["svm"]) | {part: value}
+    (tmp_path / "m").write_bytes(skops.io.dumps(content))
+    assert "not a complete model" in refusal(tmp_path / "m")
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.99])

@@ -6,8 +6,9 @@ import pytest
 from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
 from features.diagnosis import Given, Pair, Recorded
-from features.diagnosis.answer import LONGEST, Judged, _conclude, _usable
+from features.diagnosis.answer import Judged, _conclude, _usable
 from features.diagnosis.evidence import Line
+from features.diagnosis.result import LONGEST
 from features.diagnosis.search import Found
 from features.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
 from features.diagnosis.wording import MISSED, answer_in_words, missed_faults
