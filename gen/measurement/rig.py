@@ -218,7 +218,7 @@ def base_transmissibility(modes: tuple[Mode, ...], frequency: FloatArray) -> NDA
 def high_pass(corner: float, frequency: FloatArray) -> NDArray[np.complex128]:
     """Response of a sensor that does not measure down to 0 Hz, a high pass of first order, shape (frequency,) [1].
 
-    ``corner`` is where it has lost 3 dB [Hz]; 0 for none. T. G. Beckwith, Mechanical Measurements, chapter on charge amplifiers.
+    ``corner`` is where it has lost 3 dB [Hz]; 0 for none. With ``u = f / corner`` the response is ``i u / (1 + i u)``.
     """
     if corner == 0:
         return np.ones(len(frequency), complex)
