@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft
 
 from gen.scenarios import MachineCondition
+from gen.scenarios.sensing import Drawn
 
 FloatArray = NDArray[np.float64]
 
@@ -21,17 +22,21 @@ _PERIOD = 2**15  # samples of a table of one period: the 400th line is in it to 
 
 
 def condition_lines(condition: MachineCondition, angles: FloatArray) -> FloatArray:
-    """Lines of a condition over the rms of the background noise, for ``angles`` of the shaft [rad], shape (time,) [1]."""
-    if not condition.lines:
+    """Lines of a condition over the rms of the background noise, for ``angles`` of the shaft [rad], shape (time,) [1].
+
+    A line that passes half the sample rate anywhere in the record, where the anti-alias filter would remove it, is left out.
+    """
+    fastest = float(np.abs(np.diff(angles)).max()) * condition.order
+    lines = condition.lines[: math.ceil(math.pi / fastest) - 1] if fastest > 0 else condition.lines
+    if not lines:
         return np.zeros(len(angles))
-    spectrum = [0.0, *(line["level"] * np.exp(1j * line["phase"]) for line in condition.lines)]
+    spectrum = [0.0, *(line["level"] * np.exp(1j * line["phase"]) for line in lines)]
     period = irfft(spectrum, _PERIOD) * (_PERIOD / math.sqrt(2))
     return np.interp(condition.order * angles, np.arange(_PERIOD) * (2 * math.pi / _PERIOD), period, period=2 * math.pi)
 
 
-def condition_bursts(condition: MachineCondition, angles: FloatArray, rng: np.random.Generator) -> FloatArray:
+def condition_bursts(drawn: Drawn, angles: FloatArray, rng: np.random.Generator) -> FloatArray:
     """Bursts of a condition at their rms over that of the background noise, for ``angles`` of the shaft [rad], shape (time,) [1]."""
-    drawn = condition.bursts
     sharpness = 1 / drawn["length"] ** 2
     bells = np.exp(sharpness * (np.cos(drawn["order"] * angles + drawn["start"]) - 1))
     return drawn["level"] * bells / math.sqrt(np.mean(bells**2)) * rng.standard_normal(len(angles))

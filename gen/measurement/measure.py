@@ -233,7 +233,8 @@ def _sources(scenario: Scenario, angles: NDArray[np.float64]) -> Iterator[NDArra
         yield gear_mesh(gear, angles, scenario.rng(Purpose.GEAR_PHASE))
     if condition is not None:
         yield condition_lines(condition, angles)
-        yield condition_bursts(condition, angles, scenario.rng(Purpose.BURSTS))
+        if condition.bursts is not None:
+            yield condition_bursts(condition.bursts, angles, scenario.rng(Purpose.BURSTS))
 
 
 def _mix(part: Part, gains: Gains) -> Float32Array:

@@ -10,6 +10,17 @@ from gen.recipe.section import Probability, Section, Weight
 MachineKind = Literal["unbalance", "bent_shaft", "misalignment", "looseness", "rub", "belt"]
 
 
+class Bursts(Section):
+    """Bursts of noise that come and go with the shaft, as parts that strike or rub make them."""
+
+    level_db: Distribution = within(-80, 40)
+    """Rms of the bursts relative to that of the background noise."""
+    order: Distribution = within(0.05, 50, default=1.0)
+    """Number of bursts in a turn of the shaft."""
+    length_deg: Distribution = within(1, 180, default=30.0)
+    """Length of a burst, in degrees from burst to burst: a short one gives many harmonics."""
+
+
 class MachineCondition(Section):
     """What one condition adds to the background: lines at multiples of an order of the shaft, and bursts of noise locked to it."""
 
@@ -20,17 +31,13 @@ class MachineCondition(Section):
     order: Distribution = within(0.05, 50, default=1.0)
     """Order of the shaft whose multiples it shows: 1 for the shaft, 0.5 for looseness and rub, that of the belt for a belt."""
     count: Distribution = within(0, 400, default=0.0)
-    """Number of lines, at 1, 2, ... times `order`; rounded to a whole number."""
+    """Number of lines, at 1, 2, ... times `order`, rounded to a whole number; those beyond half the sample rate are left out."""
     level_db: Distribution = within(-80, 40, default=-20.0)
     """Rms of a line relative to that of the background noise, drawn for each."""
     strongest: Annotated[StrictInt, Field(ge=1, le=400)] | None = None
     """Number of the line that gets the largest of the drawn levels: 1 for unbalance, 2 for misalignment; any if left out."""
-    bursts_db: Distribution = within(-80, 40, default=-80.0)
-    """Rms of the bursts of noise, as parts that strike or rub make them, relative to that of the background noise."""
-    burst_order: Distribution = within(0.05, 50, default=1.0)
-    """Number of bursts in a turn of the shaft."""
-    burst_deg: Distribution = within(1, 180, default=30.0)
-    """Length of a burst, in degrees from burst to burst: a short one gives many harmonics."""
+    bursts: Bursts | None = None
+    """Bursts of noise locked to the shaft; none if left out."""
 
 
 class MachineConditionsSection(Section):

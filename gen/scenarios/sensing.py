@@ -87,8 +87,8 @@ class MachineCondition:
     """Order of the shaft of which the lines are multiples [1]."""
     lines: tuple[Drawn, ...]
     """Of each multiple: rms over that of the noise [1], and phase at shaft angle 0 [rad]."""
-    bursts: Drawn
-    """Order of the shaft at which they come, rms over that of the noise [1], length and start [rad of a period]."""
+    bursts: Drawn | None
+    """Order of the shaft at which they come, rms over that of the noise [1], length and start [rad of a period]; None for none."""
 
 
 @dataclass(frozen=True)

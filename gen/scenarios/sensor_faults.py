@@ -93,8 +93,11 @@ def draw_machine_condition(recipe: Recipe, rig: int) -> MachineCondition | None:
         place, largest = min(entry.strongest, len(levels)) - 1, int(np.argmax(levels))
         levels[place], levels[largest] = levels[largest], levels[place]
     lines = [{"level": level, "phase": _angle(draws)} for level in levels]
-    bursts = {"order": drawn["burst_order"], "level": decibel_to_ratio(drawn["bursts"]), "length": drawn["burst"]}
-    return MachineCondition(entry.kind, drawn["order"], tuple(lines), {**bursts, "start": _angle(draws)})
+    bursts = None
+    if entry.bursts is not None:
+        of_bursts = draws.section(entry.bursts)
+        bursts = of_bursts | {"level": decibel_to_ratio(of_bursts["level"]), "start": _angle(draws)}
+    return MachineCondition(entry.kind, drawn["order"], tuple(lines), bursts)
 
 
 def _angle(draws: Draws) -> float:

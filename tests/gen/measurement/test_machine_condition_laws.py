@@ -2,20 +2,22 @@
 
 import math
 from collections import Counter
+from typing import get_args
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gen.corpus.simulated import MACHINE_CONDITIONS
 from gen.measurement.machine_condition import condition_bursts, condition_lines
 from gen.recipe import read_recipe
+from gen.recipe.machine_conditions import MachineKind
 from gen.scenarios import MachineCondition, draw_scenarios
 
 law = settings(deadline=None, max_examples=25)
 TURNS, N = 40, 24_000
 STEADY = 2 * np.pi * TURNS / N * np.arange(N)
-SILENT = {"order": 1.0, "level": 0.0, "length": 0.5, "start": 0.0}
 
 
 @law
@@ -25,7 +27,7 @@ SILENT = {"order": 1.0, "level": 0.0, "length": 0.5, "start": 0.0}
 def test_the_lines_are_at_the_multiples_of_the_order_with_their_levels(order, drawn):
     lines = tuple({"level": level, "phase": phase} for level, phase in drawn)
     spectrum = (
-        np.sqrt(2) / N * np.abs(np.fft.rfft(condition_lines(MachineCondition("rub", order, lines, SILENT), STEADY)))
+        np.sqrt(2) / N * np.abs(np.fft.rfft(condition_lines(MachineCondition("rub", order, lines, None), STEADY)))
     )
     places = np.round(order * TURNS * np.arange(1, len(lines) + 1)).astype(int)
     np.testing.assert_allclose(spectrum[places], [line["level"] for line in lines], rtol=1e-3, atol=1e-5)
@@ -36,9 +38,7 @@ def test_the_lines_are_at_the_multiples_of_the_order_with_their_levels(order, dr
 def test_bursts_come_at_their_order_with_their_rms(order):
     drawn = {"order": order, "level": 0.3, "length": math.radians(20), "start": 1.0}
     rng = np.random.default_rng(0)
-    squares = np.mean(
-        [condition_bursts(MachineCondition("rub", 1.0, (), drawn), STEADY, rng) ** 2 for _ in range(300)], axis=0
-    )
+    squares = np.mean([condition_bursts(drawn, STEADY, rng) ** 2 for _ in range(300)], axis=0)
     assert np.sqrt(squares.mean()) == pytest.approx(0.3, rel=0.02)
     lines = np.abs(np.fft.rfft(squares))[1:]
     assert 1 + np.argmax(lines) == order * TURNS
@@ -73,6 +73,20 @@ def test_a_section_of_conditions_moves_no_other_draw(recipe_with):
         assert (one.record, one.specimen, one.rig.machine, one.rig.path) == (
             other.record, other.specimen, other.rig.machine, other.rig.path,
         )  # fmt: skip
+
+
+def test_no_line_aliases_in_a_record_whose_speed_rises():
+    """A line at half the sample rate or above would come back as one of no order of the shaft."""
+    turns = np.cumsum(np.linspace(20.0, 60.0, N)) / 12_000
+    lines = tuple({"level": 1.0, "phase": 0.0} for _ in range(300))
+    found = condition_lines(MachineCondition("rub", 1.0, lines, None), 2 * np.pi * turns)
+    # 99 lines at 60 Hz lie below 6 kHz
+    kept = sum(np.cos(2 * np.pi * order * turns) for order in range(1, 100))
+    np.testing.assert_allclose(found, np.sqrt(2) * kept, atol=1e-3 * np.abs(kept).max())
+
+
+def test_the_kinds_of_a_recipe_are_the_classes_of_the_label():
+    assert {"sound", *get_args(MachineKind), "unknown"} == set(MACHINE_CONDITIONS.values())
 
 
 def test_domain_randomised_has_machines_of_every_condition():
