@@ -9,7 +9,7 @@ from features.faults import CLASSES, HEALTHY, SIDES
 from features.signal.speed import DISAGREEMENT
 
 AT_END = 0.002  # distance of a speed from the end of the search, relative
-MISSED = ((0.5, (16, 86), (1, 288)), (2.0, (12, 86), (0, 288)), (10.0, (10, 86), (0, 288)))
+MISSED = ((0.5, (15, 86), (1, 288)), (2.0, (12, 86), (0, 288)), (10.0, (10, 86), (0, 288)))
 """Length of recordings [s], and how many faulty ones of how many were called healthy, without and with a healthy recording of the
 machine: of CWRU, MFPT and UESTC, by ``python -m benchmarks.verdicts REAL --missed``."""
 
