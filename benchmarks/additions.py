@@ -20,10 +20,10 @@ from benchmarks.envelope_bands import NARROWEST, ORDER, Signal, record_combs
 from benchmarks.speed import real_corpora
 from benchmarks.transfer import BEST, GROUPS, RECIPE, corpora, figures
 from features import feature_table, signal
-from features.band import DEFAULT_BAND
 from features.baselines import Model, cross_validate
 from features.signal.lines import Orders, families, single_lines
 from features.signal.spectra import fourier_coefficients
+from features.table.band import DEFAULT_BAND
 from gen.corpus import SIGNAL, open_corpus
 
 FS = 2 * DEFAULT_BAND.high

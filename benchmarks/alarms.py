@@ -23,7 +23,7 @@ from features.baselines import Model
 from features.baselines.predictions import UNSURE
 from features.diagnosis import Given, Recorded, diagnose_recording
 from features.faults import CLASSES, HEALTHY
-from features.indicators import Orders
+from features.table.indicators import Orders
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.support.units import rpm_to_hertz

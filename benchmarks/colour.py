@@ -15,8 +15,8 @@ from benchmarks.speed import real_corpora
 from features import feature_table
 from features.baselines.colour import COUNTED, distance
 from features.baselines.records import feature_rows
-from features.recording_speeds import recording_numbers
 from features.signal.rows import group_means
+from features.table.recording_speeds import recording_numbers
 from gen.corpus import FAULTS
 
 HEALTHY = FAULTS.index("healthy")

@@ -15,12 +15,12 @@ import numpy as np
 from scipy.fft import irfft
 
 from benchmarks.speed import Recording, real_corpora, recordings
-from features.band import DEFAULT_BAND
-from features.indicators import FLOOR_WIDTH, WHITENING_WIDTH
 from features.signal import comb_bands, kurtogram, prediction_residual, separate_random
 from features.signal.demodulation import ZERO_PADDING, analytic_band, envelope_spectrum, log_level
 from features.signal.lines import combs
 from features.signal.spectra import fourier_coefficients, whiten_by_psd, whiten_cepstrally
+from features.table.band import DEFAULT_BAND
+from features.table.indicators import FLOOR_WIDTH, WHITENING_WIDTH
 
 FAMILIES = ("outer", "inner", "ball")
 CLEAR = 1.0  # nepers

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.pairs import Line, Skipped, interleaved, row, seconds
-from features.indicators import Orders, feature_names, indicators
+from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import SCHEMA, Codec, finish_corpus, make_dataset, part_name, write_part
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE

@@ -16,9 +16,9 @@ import xarray as xr
 
 from benchmarks.realism import UESTC_LABELLED
 from features import shaft_speed
-from features.recording_speeds import recording_numbers
 from features.signal.lines import Orders
 from features.signal.speed import ShaftSpeed
+from features.table.recording_speeds import recording_numbers
 from gen import generate
 from gen.corpus import FAULTS, SIGNAL, open_corpus
 from gen.importers import import_cwru, import_generic, import_mfpt

@@ -20,7 +20,7 @@ from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
 from features.diagnosis import ANY_RATE, Diagnosis, Given, Recorded, diagnose_recording
 from features.faults import CLASSES, HEALTHY
-from features.indicators import Orders
+from features.table.indicators import Orders
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from raceway.studies.reference_model import load_reference_model

@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import xarray as xr
 
-from features.band import DEFAULT_BAND
 from features.signal.cyclic import enhanced_envelope_spectrum, spectral_coherence
 from features.signal.envelopes import band_envelope_spectrum
 from features.signal.impulsive import kurtogram, spectral_kurtosis
@@ -19,6 +18,7 @@ from features.signal.orders import order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
 from features.signal.separation import cepstrum, prediction_residual, separate_random
 from features.signal.spectra import psd
+from features.table.band import DEFAULT_BAND
 from gen.support.shown import Shown
 
 TIME = "elapsed_time"

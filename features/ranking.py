@@ -32,8 +32,8 @@ from features.baselines.records import (
     labelled_records,
 )
 from features.baselines.tracks import track_splits
-from features.indicators import GROUPS
 from features.signal.rows import group_means
+from features.table.indicators import GROUPS
 from gen.support.errors import CorpusError
 
 MEASURES = {

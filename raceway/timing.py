@@ -16,7 +16,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from features.table import block_features
+from features.table.corpora import block_features
 from gen.corpus import RecordBlock, write_part
 from gen.generation.labels import part_dataset
 from gen.measurement.measure import measure

@@ -5,18 +5,18 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 import xarray as xr
 
-from features.band import band_of
 from features.baselines.calibration import Calibration
 from features.baselines.colour import Colour
 from features.baselines.estimators import class_probabilities
 from features.baselines.predictions import Predictions, impulsiveness_of, predictions
 from features.baselines.records import FloatArray, feature_rows, title_of
 from features.baselines.references import colour_of, relative_to
-from features.channels import channels_of
-from features.durations import durations_of, suited
-from features.recording_speeds import recording_numbers
 from features.signal.rows import group_means
-from features.waveforms import Waveforms
+from features.table.band import band_of
+from features.table.channels import channels_of
+from features.table.durations import durations_of, suited
+from features.table.recording_speeds import recording_numbers
+from features.table.waveforms import Waveforms
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.indicators import feature_names
 from features.signal.rows import FloatArray, IntArray, group_means
+from features.table.indicators import feature_names
 
 ENERGIES = tuple(name for name in feature_names(("bands",)) if name.endswith("_Hz"))
 COUNTED = tuple(name for name in ENERGIES if int(name.split("_")[1].split("-")[0]) >= 200)

@@ -15,7 +15,7 @@ from features.baselines.records import DEFAULT_GROUPS, IntArray, Records, record
 from features.baselines.scores import Scores
 from features.baselines.splits import grouped_case, score_splits
 from features.baselines.tracks import Split
-from features.waveforms import Waveforms
+from features.table.waveforms import Waveforms
 
 LEAST_OF_A_CLASS = 2  # training specimens of a class in the smallest set, on average
 

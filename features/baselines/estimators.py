@@ -32,7 +32,7 @@ from gen.corpus import FAULTS
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from features.waveforms import Waveforms
+    from features.table.waveforms import Waveforms
 
 Estimator = Any  # a scikit-learn classifier of indices into FAULTS; the stubs define no common type
 

@@ -14,7 +14,6 @@ import xarray as xr
 from numpy.typing import NDArray
 from sklearn.exceptions import NotFittedError
 
-from features.band import DEFAULT_BAND, Band, band_of
 from features.baselines.calibration import UNCALIBRATED, Calibration
 from features.baselines.classifying import predict
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
@@ -43,10 +42,11 @@ from features.baselines.reference_choice import check_durations, choose_referenc
 from features.baselines.references import RELATIVE, paired_table, with_energies
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
-from features.channels import channels_of
-from features.definitions import GROUPS
-from features.durations import durations_of, suited
-from features.waveforms import Waveforms
+from features.table.band import DEFAULT_BAND, Band, band_of
+from features.table.channels import channels_of
+from features.table.definitions import GROUPS
+from features.table.durations import durations_of, suited
+from features.table.waveforms import Waveforms
 from gen.corpus import UNKNOWN_CODE, check_result, corpus_name
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
@@ -337,6 +337,6 @@ def _feature_table(
             f"{', '.join(GROUPS)}; train the model again."
         )
         raise CorpusError(message)
-    from features.table import feature_table  # not at the top: dask takes a sixth of the time of a diagnosis
+    from features.table.corpora import feature_table  # not at the top: dask takes a sixth of the time of a diagnosis
 
     return feature_table(corpus, groups, band=band)

@@ -13,9 +13,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from features.recording_speeds import recording_numbers
 from features.signal.rows import FloatArray, IntArray
-from features.waveforms import Waveforms
+from features.table.recording_speeds import recording_numbers
+from features.table.waveforms import Waveforms
 from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 

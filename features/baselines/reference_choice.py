@@ -10,12 +10,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from features.band import DEFAULT_BAND, Band
 from features.baselines.records import FloatArray, feature_rows, record_digests, title_of
 from features.baselines.references import SAME_SPEED, by_rig, healthy_records
-from features.indicators import Orders
-from features.recording_speeds import recording_numbers
-from features.recording_table import recording_table
+from features.table.band import DEFAULT_BAND, Band
+from features.table.indicators import Orders
+from features.table.recording_speeds import recording_numbers
+from features.table.recordings import recording_table
 from gen.corpus import UNKNOWN_CODE, corpus_name, open_corpus
 from gen.support.errors import CorpusError
 

@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from features.band import band_of
 from features.baselines.colour import COUNTED, ENERGIES, Colour, scatter_of
 from features.baselines.records import (
     FloatArray,
@@ -22,10 +21,11 @@ from features.baselines.records import (
     record_digests,
     title_of,
 )
-from features.channels import channels_of
 from features.faults import HEALTHY
-from features.recording_speeds import recording_numbers
 from features.signal.rows import group_means, mean_row
+from features.table.band import band_of
+from features.table.channels import channels_of
+from features.table.recording_speeds import recording_numbers
 from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 

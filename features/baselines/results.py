@@ -32,8 +32,8 @@ from features.baselines.severities import Widths, uncovered_in_splits
 from features.baselines.sources import score_sources
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
 from features.baselines.tracks import TRACKS, Split, Track
-from features.definitions import measured_quantity
-from features.waveforms import Waveforms
+from features.table.definitions import measured_quantity
+from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter

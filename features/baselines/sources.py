@@ -6,18 +6,9 @@ _MAKES_SCORES = (
     "gen/corpus",
     "gen/support",
     "features/signal",
+    "features/table",
     "features/baselines",
-    "features/band.py",
-    "features/channels.py",
-    "features/definitions.py",
-    "features/durations.py",
     "features/faults.py",
-    "features/indicators.py",
-    "features/recording_speeds.py",
-    "features/recording_table.py",
-    "features/speed.py",
-    "features/table.py",
-    "features/waveforms.py",
 )
 """Folders and files by which a corpus becomes scores; a test looks for others."""
 

@@ -19,7 +19,7 @@ from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Rec
 from features.baselines.scores import Scores, confusion_matrix, figures, score
 from features.baselines.severities import uncovered_in_splits
 from features.baselines.tracks import Split, Track, check_taught, grouped_splits, track_splits
-from features.waveforms import Waveforms
+from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS
 
 Case = tuple[IntArray, list[Split]]

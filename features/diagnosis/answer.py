@@ -13,11 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from features.band import Band
 from features.baselines.calibration import HEALTHY_SHARE
 from features.baselines.plain import PlainModel
 from features.baselines.predictions import DAMAGED, UNSURE, Predictions, impulsiveness_of, predictions
-from features.definitions import GROUPS
 from features.diagnosis.evidence import Line, find_evidence
 from features.diagnosis.levels import levels_of
 from features.diagnosis.quality import ENOUGH, Quality, quality_of
@@ -36,11 +34,13 @@ from features.diagnosis.wording import (
     speed_warning,
     unexplained,
 )
-from features.durations import suited
 from features.faults import HEALTHY
-from features.indicators import Orders, feature_names, indicators
-from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray, mean_row
+from features.table.band import Band
+from features.table.definitions import GROUPS
+from features.table.durations import suited
+from features.table.indicators import Orders, feature_names, indicators
+from features.table.recordings import recording_table, windows_of
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 
@@ -241,7 +241,7 @@ def _table(
     recording: Recorded, channels: Iterable[str], pair: Pair, model: "Model | PlainModel", fault: str
 ) -> "xr.Dataset":
     from features.baselines.references import with_energies
-    from features.channels import joined_channels
+    from features.table.channels import joined_channels
 
     fs, code, groups, band = (
         recording.fs,

@@ -10,7 +10,7 @@ from features.baselines.models import Model
 from features.diagnosis.answer import diagnose_recording
 from features.diagnosis.result import Diagnosis, Recorded
 from features.diagnosis.search import ANY_RATE, Given
-from features.indicators import Orders
+from features.table.indicators import Orders
 from gen.support.units import rpm_to_hertz
 
 

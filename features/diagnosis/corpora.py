@@ -15,13 +15,13 @@ from features.baselines.classifying import predict
 from features.baselines.models import Model
 from features.baselines.predictions import UNSURE, Predictions
 from features.baselines.reference_choice import choose_reference
-from features.channels import channel_number
 from features.diagnosis.evidence import Line, find_evidence
 from features.diagnosis.quality import quality_of
 from features.diagnosis.spectrum import band_spectra
 from features.diagnosis.verdict import judge
-from features.indicators import Orders
-from features.recording_speeds import rates_to_use
+from features.table.channels import channel_number
+from features.table.indicators import Orders
+from features.table.recording_speeds import rates_to_use
 from gen.corpus import FAULTS, SIGNAL, UNKNOWN_CODE, open_corpus
 
 

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.band import DEFAULT_BAND
-from features.indicators import LOWEST_RATE, SHORTEST, Orders
 from features.signal.rows import FloatArray
+from features.table.band import DEFAULT_BAND
+from features.table.indicators import LOWEST_RATE, SHORTEST, Orders
 
 CLIPPED_SHARE = 1e-3  # of the samples at the highest or lowest value, from which a signal counts as clipped
 CLIPPED_SAMPLES = 5  # at least so many of them

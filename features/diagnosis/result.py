@@ -11,8 +11,8 @@ from features.diagnosis.levels import ACCELERATION, Levels
 from features.diagnosis.search import Given, Pair
 from features.diagnosis.spectrum import BandSpectrum
 from features.diagnosis.wording import candidates
-from features.indicators import Orders
 from features.signal.rows import FloatArray
+from features.table.indicators import Orders
 from gen.support.shown import Shown
 
 LONGEST = 60.0  # s; of a longer recording the beginning is used

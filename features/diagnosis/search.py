@@ -12,10 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from features.band import DEFAULT_BAND
 from features.diagnosis.evidence import SHAFT_DRIFT, TOLERANCE, Line, side_of
 from features.faults import CLASSES
-from features.indicators import SHORTEST, Orders
 from features.signal.demodulation import ZERO_PADDING
 from features.signal.lines import families
 from features.signal.rows import FloatArray, centre
@@ -35,7 +33,9 @@ from features.signal.speed import (
     spread_of,
 )
 from features.signal.speed import TOLERANCE as LABEL_TOLERANCE
-from features.speed import LONGEST, level_spectra
+from features.table.band import DEFAULT_BAND
+from features.table.indicators import SHORTEST, Orders
+from features.table.speed import LONGEST, level_spectra
 
 ANY_RATE = (5.0, 100.0)  # Hz, of a shaft whose speed is not known
 TURNS = 4.0  # of the shaft in a window at least

@@ -17,12 +17,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import gammainccinv, gammaincinv
 
-from features.band import DEFAULT_BAND
-from features.indicators import WHITENING_WIDTH
 from features.signal.demodulation import analytic_band, envelope_spectrum, running_median
 from features.signal.impulsive import band_kurtosis, equal_bands
 from features.signal.rows import FloatArray
 from features.signal.spectra import fourier_coefficients, whiten_by_psd
+from features.table.band import DEFAULT_BAND
+from features.table.indicators import WHITENING_WIDTH
 
 SEGMENT_TURNS = (20, 40)  # least and most shaft revolutions of a segment; 40 resolve a twentieth of an order
 SEGMENT_SECONDS = 0.5  # its least length [s]

@@ -11,9 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import irfft
 
-from features.band import DEFAULT_BAND
 from features.faults import CLASSES, COMBS
-from features.indicators import FLOOR_WIDTH, Orders
 from features.signal.colour import centroid, roll_off, tonality
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.impulsive import band_kurtosis, equal_bands
@@ -22,6 +20,8 @@ from features.signal.modulation import cyclostationarity, highest_place, phase_w
 from features.signal.rows import FloatArray, squared_modulus
 from features.signal.shape import envelope_shape, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd
+from features.table.band import DEFAULT_BAND
+from features.table.indicators import FLOOR_WIDTH, Orders
 
 LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their amplifiers differ
 UPPER_BAND = 3500.0  # Hz

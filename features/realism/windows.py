@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from features.indicators import Orders
 from features.realism.measures import NAMES, compute_measures, limit_band
 from features.signal.rows import FloatArray
+from features.table.indicators import Orders
 from gen.corpus import FAULTS, SIGNAL, UNKNOWN_CODE, open_corpus
 from gen.support.errors import CorpusError
 

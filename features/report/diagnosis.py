@@ -9,7 +9,6 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.band import DEFAULT_BAND, Band
 from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels, Recorded
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.diagnosis.wording import probability_in_words
@@ -30,6 +29,7 @@ from features.report.templates import template, three_digits
 from features.signal.lines import Orders
 from features.signal.motion import velocity_band
 from features.signal.rows import FloatArray
+from features.table.band import DEFAULT_BAND, Band
 from gen.corpus import check_result, write_text_durably
 
 LOWEST_DB, MARGIN_DB = -5.0, 4.0  # ends of the axis of levels: below the floor, and above the highest

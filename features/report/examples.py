@@ -8,7 +8,6 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from features.faults import COMBS, LOOKS
-from features.indicators import Orders, feature_names, indicators
 from features.report.pictures import (
     STYLE,
     WIDTH,
@@ -19,6 +18,7 @@ from features.report.pictures import (
     picture,
 )
 from features.report.shown import can_be_drawn, shown_of
+from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULT_NAMES
 
 CANDIDATES = 15  # records of a class among which its example is chosen

@@ -21,10 +21,7 @@ import numpy as np
 import xarray as xr
 from scipy.signal import resample
 
-from features.band import DEFAULT_BAND, Band, checked_band
-from features.channels import channel_number, channels_of
 from features.faults import COMBS, FUNDAMENTALS, LOOKS, SHAFT
-from features.indicators import Orders
 from features.report.pictures import (
     SEGMENT,
     TOLERANCE,
@@ -39,7 +36,10 @@ from features.report.templates import template
 from features.report.views import BRIGHTEST_DB, envelope_map
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
-from features.table_files import read_table
+from features.table.band import DEFAULT_BAND, Band, checked_band
+from features.table.channels import channel_number, channels_of
+from features.table.files import read_table
+from features.table.indicators import Orders
 from gen.corpus import (
     DRAWS,
     IDENTITY,

@@ -18,13 +18,13 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.band import DEFAULT_BAND, Band
 from features.faults import FUNDAMENTALS, HEALTHY, LOOKS, SHAFT
-from features.indicators import WHITENING_WIDTH, Orders
 from features.signal.demodulation import amplitude_spectrum, analytic_band
 from features.signal.orders import order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray, squared_modulus
 from features.signal.spectra import fourier_coefficients, psd, whiten_by_psd
+from features.table.band import DEFAULT_BAND, Band
+from features.table.indicators import WHITENING_WIDTH, Orders
 from gen.corpus import GENERATOR, check_result, write_durably
 from gen.support.errors import CorpusError
 

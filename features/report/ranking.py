@@ -4,10 +4,10 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from pandas import DataFrame
 
-from features.definitions import GROUPS
 from features.ranking import MEASURES
 from features.report.pictures import BLUE, INK, STYLE, WIDTH
 from features.report.summaries import TEST_MARKERS
+from features.table.definitions import GROUPS
 
 DRAWN = 25  # features
 COLOURS: dict[str, str] = dict(zip(GROUPS, (BLUE, *(colour for colour, _ in TEST_MARKERS)), strict=False))

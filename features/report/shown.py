@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from features.band import LEAST_WIDTH, Band
-from features.channels import channel_number
 from features.faults import FUNDAMENTALS, UNKNOWN
-from features.indicators import Orders
 from features.report.pictures import Shown, fault_lines
 from features.signal.orders import angles_from_speed
 from features.signal.rows import FloatArray
 from features.signal.tracking import track_speed
+from features.table.band import LEAST_WIDTH, Band
+from features.table.channels import channel_number
+from features.table.indicators import Orders
 from gen.corpus import FAULT_NAMES, SIGNAL, corpus_name, open_corpus
 from gen.support.errors import CorpusError
 

@@ -12,7 +12,6 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.band import Band
 from features.faults import FUNDAMENTALS, LOOKS, SHAFT
 from features.report.pictures import (
     FAINT,
@@ -36,6 +35,7 @@ from features.signal.impulsive import comb_bands, kurtogram
 from features.signal.orders import order_map, order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
 from features.signal.separation import cepstrum
+from features.table.band import Band
 
 HEIGHT = 3.6  # inches
 FAINTEST = 1e-12  # of an amplitude

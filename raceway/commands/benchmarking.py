@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
     from features.baselines import Baseline, Model, Results, Scores
     from features.baselines.own import Maker
-    from features.recording_speeds import Speed
-    from features.waveforms import Waveforms
+    from features.table.recording_speeds import Speed
+    from features.table.waveforms import Waveforms
 
 # a copy of the names, since help must not import the registry; a test compares the two
 TRACKS = ("specimen", "rig", "bearing", "speed", "severity", "shape")
@@ -205,7 +205,7 @@ def _waveforms(
 ) -> "list[Waveforms]":
     """Waveforms of the corpus and of the other corpora, resampled to the same number of turns, at the speeds of their tables."""
     from features import open_waveforms
-    from features.recording_speeds import rates_to_use
+    from features.table.recording_speeds import rates_to_use
 
     signals = [open_waveforms(corpus, channel=channel or 0, normalise=True, per_turn=per_turn)]
     turns = None if per_turn is None else signals[0].samples // per_turn

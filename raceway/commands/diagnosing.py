@@ -203,7 +203,7 @@ def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -
     import numpy as np
 
     from features.diagnosis import ANY_RATE, Given
-    from features.indicators import Orders
+    from features.table.indicators import Orders
     from gen.physics.bearing import orders
     from gen.support.units import rpm_to_hertz
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from pandas import DataFrame
 
-    from features.recording_speeds import Speed
+    from features.table.recording_speeds import Speed
 
 PICTURES = (".png", ".svg", ".pdf")
 PRINTED = 10  # features of a ranking
@@ -80,7 +80,7 @@ def features(
         return
     if corpus is None or output is None:
         raise click.UsageError("Missing argument 'DIR' or option '-o' / '--output': only --list needs neither.")
-    from features.table_files import check_destination, write_table
+    from features.table.files import check_destination, write_table
 
     check_destination(output)
     one, *more = channel or (None,)
@@ -120,7 +120,7 @@ def _ranking(table: "xr.Dataset", path: Path) -> "DataFrame":
 
 
 def _list_features(analysis: Analysis, as_json: bool) -> None:
-    from features.definitions import define_features
+    from features.table.definitions import define_features
 
     defined = define_features(band=analysis.options()["band"])
     if as_json:
@@ -141,8 +141,8 @@ def table_of(
 ) -> "xr.Dataset":
     """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
     from features import feature_table
-    from features.recording_speeds import speed_warnings
-    from features.table import band_warnings
+    from features.table.corpora import band_warnings
+    from features.table.recording_speeds import speed_warnings
     from gen.corpus import read_manifest
 
     options = team.options(read_manifest(corpus).records) | analysis.options()

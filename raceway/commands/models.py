@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from features.baselines import Answer, Calibration, Model, Results, Scores
-    from features.recording_speeds import Speed
+    from features.table.recording_speeds import Speed
 
 # a copy of the names, since help must not import the registry; a test compares the two
 ESTIMATORS = (
@@ -255,7 +255,7 @@ def warn_of_seen(model: str, scores: "Scores") -> None:
 
 def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
     """Warn of records that are shorter or longer than those of the training."""
-    from features.durations import SAME_DURATION, durations_of, suited
+    from features.table.durations import SAME_DURATION, durations_of, suited
 
     tested = durations_of(table)
     trained = suited(model, tested).durations

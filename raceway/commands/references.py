@@ -13,7 +13,7 @@ from raceway.console.progress import notice
 if TYPE_CHECKING:
     import xarray as xr
 
-    from features.recording_speeds import Speed
+    from features.table.recording_speeds import Speed
 
 
 _OPTIONS = {key: f"--reference-{key}" for key in ("column", "variable", "rate", "delimiter")}

@@ -96,7 +96,7 @@ class Analysis(NamedTuple):
 
     def options(self) -> dict[str, Any]:
         """Arguments ``channel`` and ``band`` of a function of features."""
-        from features.band import DEFAULT_BAND, Band  # not at the top: help needs nothing of features
+        from features.table.band import DEFAULT_BAND, Band  # not at the top: help needs nothing of features
 
         return {"channel": self.channel or 0, "band": Band(*(self.band or DEFAULT_BAND))}
 
@@ -109,7 +109,7 @@ def _checked_band(
 ) -> tuple[float, float] | None:
     if edges is None:
         return None
-    from features.band import checked_band
+    from features.table.band import checked_band
 
     try:
         return checked_band(*edges)

@@ -21,7 +21,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from features.durations import DURATION
+from features.table.durations import DURATION
 from gen.corpus import write_durably
 from gen.support.errors import CorpusError
 from gen.support.locking import hold_lock
@@ -85,7 +85,7 @@ def recipe_tables(recipe: Path | str, team: Team = USUAL) -> "list[xr.Dataset]":
     RecipeError, SimulationError, CorpusError
         As `make_table`.
     """
-    from features.table_files import read_table
+    from features.table.files import read_table
     from gen.recipe import read_recipe
 
     shipped = read_table(SHIPPED_TABLE)
@@ -97,7 +97,7 @@ def recipe_tables(recipe: Path | str, team: Team = USUAL) -> "list[xr.Dataset]":
 
 def write_reference_table(output: Path) -> None:
     """Write the feature table of the reference model."""
-    from features.table_files import write_table
+    from features.table.files import write_table
     from gen.recipe import read_recipe, shipped_recipes
 
     write_table(reference_table(read_recipe(shipped_recipes()[REFERENCE])), output)

@@ -1,7 +1,8 @@
 """The table of the benchmark of shaft speeds, on a made-up corpus."""
 
-from benchmarks.speed import recordings, report
 from tests.features.test_recording_speeds import SPEEDS, TRUTH, WINDOWS, write_machines
+
+from benchmarks.speed import recordings, report
 
 
 def test_the_table_has_a_row_per_class_and_known_speeds(tmp_path):

@@ -11,10 +11,10 @@ import pytest
 from features.baselines import estimators
 from features.baselines.estimators import EnvelopeRule
 from features.faults import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, LOOKS, FaultClass, Line
-from features.indicators import Orders, feature_names
 from features.report import pictures
 from features.report.pictures import Shown, draw_record, fault_lines
 from features.signal.lines import FAMILIES
+from features.table.indicators import Orders, feature_names
 from gen.corpus import FAULTS
 from tests.paths import ROOT
 

@@ -12,8 +12,8 @@ import pytest
 from click.testing import CliRunner
 
 from features.baselines import DEFAULT_ESTIMATOR, ESTIMATORS
-from features.indicators import feature_names
-from features.table_files import read_table
+from features.table.files import read_table
+from features.table.indicators import feature_names
 from gen.corpus import FAULTS, SIGNAL, open_corpus
 from gen.simulation.simulate import response_of
 from gen.support.limits import VARIABLE

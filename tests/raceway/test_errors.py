@@ -8,8 +8,8 @@ import h5py
 import pytest
 
 from features.baselines import Model
-from features.table import feature_table
-from features.table_files import write_table
+from features.table.corpora import feature_table
+from features.table.files import write_table
 from raceway.console import ending, show
 from tests.tampering import edit_manifest, edited, seal
 

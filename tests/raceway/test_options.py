@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from features.band import DEFAULT_BAND
+from features.table.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
 from gen.support.workers import cores
 
@@ -131,7 +131,7 @@ def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_p
     made = told("features", tiny_corpus, "-o", tmp_path / "features.nc")
     assert made["records_with_missing_features"] == 0
     one = {"records_with_missing_features": 1}
-    monkeypatch.setattr("features.table_files.write_table", lambda table, _: table.attrs.update(one))
+    monkeypatch.setattr("features.table.files.write_table", lambda table, _: table.attrs.update(one))
     made = told("features", tiny_corpus, "-o", tmp_path / "features.nc")
     assert made["records_with_missing_features"] == 1
     shown = run("features", tiny_corpus, "-o", tmp_path / "features.nc").stdout

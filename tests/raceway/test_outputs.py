@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from features.band import DEFAULT_BAND
 from features.baselines import Model
 from features.report.pictures import draw_record, write_picture
 from features.report.shown import shown_record
-from features.table import feature_table
-from features.table_files import write_table
+from features.table.band import DEFAULT_BAND
+from features.table.corpora import feature_table
+from features.table.files import write_table
 from gen import copy, generate, write_corpus
 from gen.corpus import card_folder, corpus_files, read_manifest, result_folder
 from gen.corpus.files import _HOST

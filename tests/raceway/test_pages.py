@@ -5,7 +5,7 @@ import shlex
 
 import pytest
 
-from features.definitions import GROUPS, VIEWS, define_features
+from features.table.definitions import GROUPS, VIEWS, define_features
 from raceway.cli import cli
 from raceway.pages import TABLES, draw_features, with_tables
 from tests.page_examples import run_blocks

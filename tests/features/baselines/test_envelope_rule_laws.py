@@ -11,7 +11,7 @@ from scipy.special import softmax
 
 from features.baselines.estimators import EnvelopeRule
 from features.faults import CLASSES, COMBS, EVIDENCE
-from features.indicators import Orders, feature_names, indicators
+from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
 
 FS, TURNS, RECORDS = 12_000.0, 30, 40

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from features.baselines import Model, benchmark
-from features.definitions import feature_coordinates
+from features.table.definitions import feature_coordinates
 
 
 @pytest.fixture(scope="module")

@@ -46,7 +46,10 @@ def test_an_altered_or_foreign_row_is_scored_again(tmp_path, monkeypatch):
 
 
 def test_the_sources_of_scores_cover_all_that_is_loaded_to_make_them():
-    code = "import sys, features.table, features.waveforms, features.baselines.results_file, features.baselines.models; print(*sys.modules)"
+    modules = (
+        "features.table.corpora, features.table.waveforms, features.baselines.results_file, features.baselines.models"
+    )
+    code = f"import sys, {modules}; print(*sys.modules)"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
     loaded = {name.replace(".", "/") for name in run.stdout.split() if name.startswith(("gen.", "features."))}

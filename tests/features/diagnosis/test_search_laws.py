@@ -7,7 +7,7 @@ from features.diagnosis import ANY_RATE, Given, Pair
 from features.diagnosis.evidence import Line
 from features.diagnosis.search import LevelSpectra, find_pairs, mean_spectra, strange_comb
 from features.diagnosis.wording import speed_warning
-from features.indicators import Orders
+from features.table.indicators import Orders
 
 FS, RATE = 12_000.0, 29.5
 NINE, EIGHT = Orders(0.3983, 3.5848, 5.4152, 2.3567), Orders(0.3821, 3.0530, 4.9470, 1.9940)

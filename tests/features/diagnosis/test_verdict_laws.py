@@ -12,8 +12,8 @@ from features.diagnosis.result import LONGEST
 from features.diagnosis.search import Found
 from features.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
 from features.diagnosis.wording import MISSED, answer_in_words, missed_faults
-from features.indicators import Orders
-from features.recording_table import windows_of
+from features.table.indicators import Orders
+from features.table.recordings import windows_of
 from gen.corpus import FAULTS
 
 FS, RATE = 12_000.0, 25.0

@@ -5,8 +5,8 @@ import pytest
 from scipy.signal import resample_poly
 
 from features.faults import CLASSES
-from features.indicators import Orders
 from features.realism.measures import MEASURES, NAMES, compute_measures, limit_band
+from features.table.indicators import Orders
 from gen.corpus import FAULTS
 from tests.paths import ROOT
 from tests.pulses import LINES, ORDERS, pulse_train

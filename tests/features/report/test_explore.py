@@ -9,11 +9,11 @@ from unicodedata import category
 import numpy as np
 import pytest
 
-from features.band import DEFAULT_BAND
 from features.report.explore import BLOCK, FIELDS, LEVELS, SCALES, STEP_DB, reduce_record, write_explorer
 from features.report.shown import shown_recording
-from features.table import feature_table
-from features.table_files import read_table, write_table
+from features.table.band import DEFAULT_BAND
+from features.table.corpora import feature_table
+from features.table.files import read_table, write_table
 from gen.support.errors import CorpusError
 from tests.browser import CHROMIUM, browser
 from tests.features.report.test_report import write_corpus

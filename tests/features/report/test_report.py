@@ -11,17 +11,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.band import DEFAULT_BAND
 from features.baselines import ESTIMATORS, Model, benchmark
 from features.baselines.detection import detection
-from features.indicators import Orders
 from features.report import examples
 from features.report.curves import draw_detection, draw_reliability, draw_roc
 from features.report.page import QUANTITIES, _detection_caption, _findings, _of_faults, write_report
 from features.report.pictures import Shown, draw_record, fault_lines, picture, squared_envelope, thin, write_picture
 from features.report.shown import shown_record
 from features.report.summaries import draw_scores
-from features.table import feature_table
+from features.table.band import DEFAULT_BAND
+from features.table.corpora import feature_table
+from features.table.indicators import Orders
 from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus, open_corpus
 from gen.support.errors import CorpusError
 from tests.browser import CHROMIUM, browser

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from features.band import DEFAULT_BAND
 from features.report.pictures import draw_record, picture, squared_envelope
 from features.report.shown import shown_recording
 from features.report.views import MAPS, VIEWS, band_by, draw_view
+from features.table.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
 from raceway.commands import plotting
 from tests.pulses import pulse_train

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.definitions import LINES
 from features.signal.lines import FAMILIES, Orders, combs, families, fitted_combs, read_lines, single_lines
+from features.table.definitions import LINES
 
 law = settings(deadline=None, max_examples=40)
 ORDERS = Orders(*(np.array([order]) for order in (0.3983, 3.5848, 5.4152, 2.3567)))

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 
-from features.table import feature_table
+from features.table.corpora import feature_table
 from gen.corpus import SIGNAL, open_corpus, part_name, read_manifest, validate_corpus
 from gen.corpus.card.additions import CardAdditions, CardPicture, write_additions
 from gen.corpus.part import deflate

@@ -15,7 +15,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from features.table import feature_table
+from features.table.corpora import feature_table
 from gen.corpus import SIGNAL, data_card, open_corpus, validate_corpus
 from gen.corpus.manifest import manifest_text
 from gen.support.errors import RacewayError

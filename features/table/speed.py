@@ -8,13 +8,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from features.band import DEFAULT_BAND
-from features.indicators import BATCH, FLOOR_WIDTH, LOWEST_RATE, SHORTEST, bands_of, usable_records
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray, centre, squared_modulus
 from features.signal.spectra import fourier_coefficients
 from features.signal.speed import TOLERANCE, ShaftSpeed, find_speed, levels_at, line_orders, near_label
+from features.table.band import DEFAULT_BAND
+from features.table.indicators import BATCH, FLOOR_WIDTH, LOWEST_RATE, SHORTEST, bands_of, usable_records
 
 LONGEST = 1.0  # seconds; the lines of a longer signal are narrower than a candidate, and wander with the speed
 

@@ -6,7 +6,8 @@ import xarray as xr
 from distributed import Client
 
 from features import feature_table, shaft_speed
-from features.recording_speeds import (
+from features.table.files import read_table, write_table
+from features.table.recording_speeds import (
     BY,
     ESTIMATE,
     UNCERTAINTY,
@@ -18,7 +19,6 @@ from features.recording_speeds import (
     recording_speeds,
     speed_warnings,
 )
-from features.table_files import read_table, write_table
 from gen.corpus import (
     FAULTS,
     SCHEMA,

@@ -2,13 +2,13 @@
 
 ``records -> six whitened analytic signals -> level of their envelope spectra -> lines; moduli -> shape``
 
-The six signals are a broad band (`features.band`, 0.3-5 kHz by default) with cepstral pre-whitening, the same band
+The six signals are a broad band (`features.table.band`, 0.3-5 kHz by default) with cepstral pre-whitening, the same band
 divided by its power spectral density, and four narrower bands of the latter; another band has its own narrower ones.
 Frequencies above the band are not used, so that features depend as little as possible on the recording equipment.
 ``lines`` and ``shape`` are independent of gain and spectral colour; ``bands`` and ``time`` are not, and depend strongly
 on the machine. The lines are those of [1]_.
 
-`features.definitions` has the name and definition of every feature. A new group needs its definitions there and a function
+`features.table.definitions` has the name and definition of every feature. A new group needs its definitions there and a function
 in ``GROUP_FEATURES``.
 
 .. [1] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics: a tutorial", *Mech. Syst. Signal
@@ -21,13 +21,13 @@ from itertools import combinations
 import numpy as np
 from scipy.fft import irfft, next_fast_len
 
-from features.band import DEFAULT_BAND, Band
-from features.definitions import ENERGY_ORDERS, GROUPS, SHAPES, define_features
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.lines import FAMILIES, Orders, families, fitted_combs, highest_order, read_lines
 from features.signal.rows import ComplexArray, FloatArray, centre, squared_modulus
 from features.signal.shape import envelope_shape, moments, peaks, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd, whiten_cepstrally
+from features.table.band import DEFAULT_BAND, Band
+from features.table.definitions import ENERGY_ORDERS, GROUPS, SHAPES, define_features
 
 __all__ = ["Orders", "feature_names", "indicators"]
 

@@ -10,11 +10,11 @@ import xarray as xr
 from distributed import Client
 
 from features import feature_table
-from features.band import Band, band_attributes, band_of
-from features.definitions import GROUPS
-from features.indicators import Orders, feature_names, indicators
-from features.table import band_warnings, block_features
-from features.table_files import read_table, write_table
+from features.table.band import Band, band_attributes, band_of
+from features.table.corpora import band_warnings, block_features
+from features.table.definitions import GROUPS
+from features.table.files import read_table, write_table
+from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import (
     MISSING_COUNT,
     ROLES,

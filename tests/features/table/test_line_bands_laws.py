@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 
 import gen
-from features.line_bands import fault_bands, fault_metrics
 from features.signal import order_spectrum
 from features.signal.demodulation import amplitude_spectrum
+from features.table.line_bands import fault_bands, fault_metrics
 
 FS, RATE = 4000.0, 25.0
 ORDERS = gen.bearing_orders("6205")

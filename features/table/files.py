@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from features.channels import channels_of
+from features.table.channels import channels_of
 from gen.corpus import LIBRARY_LOCK, check_result, whole_or_not_at_all
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit

@@ -10,11 +10,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from features.band import DEFAULT_BAND
-from features.indicators import BATCH, SHORTEST, bands_of, levels_and_shape, usable_records
 from features.signal.lines import FAMILIES, Orders, families
 from features.signal.rows import FloatArray, centre, row_kernel
 from features.signal.spectra import fourier_coefficients
+from features.table.band import DEFAULT_BAND
+from features.table.indicators import BATCH, SHORTEST, bands_of, levels_and_shape, usable_records
 
 CELLS = 48  # per multiple of an order
 MULTIPLES = 3.3  # end of the grid
@@ -52,7 +52,7 @@ def envelope_orders(x: Signals, known: Mapping[str, ArrayLike]) -> FloatArray:
     -------
     Shape (record, family, band, multiple): the families BPFO, BPFI, 2 BSF and twice the shaft rate; and the broad band after
     cepstral pre-whitening, the same divided by its power spectral density, and four narrower bands, as in
-    `features.indicators`. The levels are 0 where there is no spectrum: beyond half the sample rate, and for records that are
+    `features.table.indicators`. The levels are 0 where there is no spectrum: beyond half the sample rate, and for records that are
     constant, not finite, shorter than two turns or 0.05 s, or whose shaft rate or orders are not positive numbers.
     """
     levels = np.zeros((len(x), len(FAMILY_NAMES), BANDS, len(GRID)), np.float32)

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from features.baselines import Model
-from features.durations import SAME_DURATION, durations_of, suited
+from features.table.durations import SAME_DURATION, durations_of, suited
 from tests.model_files import make_table
 
 

@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 
 from features import feature_table
-from features.band import DEFAULT_BAND, ENERGY_EDGES, Band, checked_band
 from features.baselines import Model, predict
-from features.indicators import Orders, feature_names, indicators
+from features.table.band import DEFAULT_BAND, ENERGY_EDGES, Band, checked_band
+from features.table.indicators import Orders, feature_names, indicators
 from gen.support.errors import CorpusError
 from tests.tone_corpora import write_corpus
 

@@ -15,11 +15,11 @@ from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.utils import Tags
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from features.band import DEFAULT_BAND, checked_band
-from features.definitions import GROUPS
-from features.indicators import Orders, feature_names, indicators
 from features.signal.rows import FloatArray
-from features.speed import shaft_speed
+from features.table.band import DEFAULT_BAND, checked_band
+from features.table.definitions import GROUPS
+from features.table.indicators import Orders, feature_names, indicators
+from features.table.speed import shaft_speed
 
 _FLOATS = (np.float64, np.float32)  # types of signals that are not converted
 
@@ -27,7 +27,7 @@ _FLOATS = (np.float64, np.float32)  # types of signals that are not converted
 class IndicatorTransformer(TransformerMixin, BaseEstimator):
     """Signals, shape (record, time), to features, shape (record, feature).
 
-    Features are NaN as in `features.indicators.indicators`: all of them for a signal that is constant or not finite,
+    Features are NaN as in `features.table.indicators.indicators`: all of them for a signal that is constant or not finite,
     lines and shape for a signal that is too short. If your signals can be so, add an imputer after this transformer.
 
     Parameters
@@ -39,7 +39,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
     ftf, bpfo, bpfi, bsf
         Nominal fault orders, by default those of a 6205; ``bsf`` is the ball spin frequency.
     groups
-        Some of ``features.definitions.GROUPS``.
+        Some of ``features.table.definitions.GROUPS``.
     band
         Lowest and highest frequency that lines and shape are computed from [Hz].
     speed

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.band import DEFAULT_BAND
-from features.definitions import GROUPS, define_features
-from features.indicators import GROUP_FEATURES, Orders, feature_names, indicators
 from features.signal.lines import FAMILIES
+from features.table.band import DEFAULT_BAND
+from features.table.definitions import GROUPS, define_features
+from features.table.indicators import GROUP_FEATURES, Orders, feature_names, indicators
 
 law = settings(deadline=None, max_examples=12)
 seeds = st.integers(0, 2**32 - 1)

@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import DTypeLike, NDArray
 
-from features.channels import channel_number
 from features.signal.orders import resample_to_orders
+from features.table.channels import channel_number
 from gen.corpus import DRAWS, SIGNAL, corpus_name, open_corpus, operating_variables
 from gen.support.errors import CorpusError
 

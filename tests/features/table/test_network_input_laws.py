@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from features import envelope_orders, open_waveforms
-from features.network_input import FAMILY_NAMES, GRID
 from features.signal.lines import Orders
+from features.table.network_input import FAMILY_NAMES, GRID
 from tests.tone_corpora import write_corpus
 
 ORDERS = Orders(0.4, 3.58, 5.42, 2.36)

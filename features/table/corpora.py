@@ -18,12 +18,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 import xarray as xr
 
-from features.band import DEFAULT_BAND, Band, band_attributes, band_of, checked_band
-from features.channels import channel_number, joined_channels
-from features.definitions import GROUPS, feature_coordinates
-from features.durations import DURATION
-from features.indicators import Orders, indicators
-from features.recording_speeds import (
+from features.signal.rows import FloatArray
+from features.table.band import DEFAULT_BAND, Band, band_attributes, band_of, checked_band
+from features.table.channels import channel_number, joined_channels
+from features.table.definitions import GROUPS, feature_coordinates
+from features.table.durations import DURATION
+from features.table.indicators import Orders, indicators
+from features.table.recording_speeds import (
     Speed,
     block_sums,
     checked_speed,
@@ -32,7 +33,6 @@ from features.recording_speeds import (
     recording_speeds,
     with_speeds,
 )
-from features.signal.rows import FloatArray
 from gen.corpus import DRAWS, RecordBlock, corpus_name, open_corpus, read_channel, record_blocks
 from gen.support.progress import Progress, counter
 from gen.support.workers import run
@@ -62,7 +62,7 @@ def feature_table(
     corpus
         Folder or file of the corpus, or records in memory, of `gen.records` or chosen from `gen.open_corpus`.
     groups
-        Some of ``features.definitions.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
+        Some of ``features.table.definitions.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
     speed
         ``check`` also estimates the shaft speed of every recording (`features.shaft_speed`); ``correct`` does so too and
         computes the features at the estimated speed where it is clear. Simulated corpora are not checked.
@@ -148,7 +148,7 @@ def block_features(
     shaft_rate: FloatArray | None = None,
     band: Band = DEFAULT_BAND,
 ) -> FloatArray:
-    """Features of a block of records, shape (record, feature); NaN as in `features.indicators`.
+    """Features of a block of records, shape (record, feature); NaN as in `features.table.indicators`.
 
     ``shaft_rate`` [Hz], shape (record,), replaces the labelled rates.
     """

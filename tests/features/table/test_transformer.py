@@ -8,8 +8,8 @@ from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import make_pipeline
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from features.indicators import Orders, feature_names, indicators
-from features.transformer import IndicatorTransformer
+from features.table.indicators import Orders, feature_names, indicators
+from features.table.transformer import IndicatorTransformer
 from tests.pulses import pulse_train
 
 FAST = {"fs": 3000.0, "shaft_rate": 400.0}  # at this speed the few samples of the checks are several revolutions

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from features.faults import CLASSES, SHAFT, FaultClass
-from features.indicators import FLOOR_WIDTH
 from features.signal.demodulation import ZERO_PADDING, running_median
 from features.signal.lines import LINE_TOLERANCE, Orders
 from features.signal.rows import FloatArray
+from features.table.indicators import FLOOR_WIDTH
 
 if TYPE_CHECKING:
     import xarray as xr

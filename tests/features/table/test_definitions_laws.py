@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.band import DEFAULT_BAND, Band
-from features.definitions import GROUPS, define_features, feature_coordinates
-from features.indicators import Orders, feature_names, indicators
+from features.table.band import DEFAULT_BAND, Band
+from features.table.definitions import GROUPS, define_features, feature_coordinates
+from features.table.indicators import Orders, feature_names, indicators
 
 FS = 12_000.0
 TIME = np.arange(6000) / FS

@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.band import DEFAULT_BAND, Band
 from features.signal.lines import FAMILIES, FITTED_TOLERANCE
+from features.table.band import DEFAULT_BAND, Band
 
 ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
 
@@ -196,7 +196,7 @@ GROUPS = ("lines", "shape", "bands", "time")
 
 
 def define_features(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> tuple[Feature, ...]:
-    """Definitions of the features of some groups, in the order of the columns of `features.indicators.indicators`.
+    """Definitions of the features of some groups, in the order of the columns of `features.table.indicators.indicators`.
 
     Raises
     ------

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 
-from features.definitions import TIMES
-from features.indicators import Orders, feature_names, indicators
 from features.signal.shape import time_statistics
+from features.table.definitions import TIMES
+from features.table.indicators import Orders, feature_names, indicators
 from tests.paths import REAL
 
 CWRU = REAL / "cwru" / "12k_drive_end"

@@ -14,7 +14,7 @@ from sklearn.preprocessing import FunctionTransformer
 
 from features import open_waveforms
 from features.baselines import controls, cross_validate
-from features.waveforms import _samples_in_turns
+from features.table.waveforms import _samples_in_turns
 from gen.corpus import UNKNOWN_CODE
 from gen.support.errors import CorpusError
 from tests.tone_corpora import FS, TONES, write_corpus
@@ -59,7 +59,7 @@ def test_chosen_waveforms_keep_their_labels_and_read_nothing(corpus, monkeypatch
 def test_a_slice_decodes_a_limited_number_of_records_at_a_time(corpus, monkeypatch):
     folder, signal = corpus
     X, sizes = open_waveforms(folder), []
-    monkeypatch.setattr("features.waveforms.BLOCK", 10)
+    monkeypatch.setattr("features.table.waveforms.BLOCK", 10)
     read = type(X)._read
     monkeypatch.setattr(type(X), "_read", lambda self, rows: sizes.append(len(rows)) or read(self, rows))
     np.testing.assert_array_equal(X[:], signal)

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.band import DEFAULT_BAND, Band, band_attributes
-from features.definitions import GROUPS, feature_coordinates
-from features.durations import DURATION, Trained
-from features.indicators import Orders, indicators
 from features.signal.rows import FloatArray
+from features.table.band import DEFAULT_BAND, Band, band_attributes
+from features.table.definitions import GROUPS, feature_coordinates
+from features.table.durations import DURATION, Trained
+from features.table.indicators import Orders, indicators
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,13 +49,13 @@ def recording_table(
     fault
         Code of the class of all windows.
     groups
-        Some of ``features.definitions.GROUPS``.
+        Some of ``features.table.definitions.GROUPS``.
     band
         Band that lines and shape are computed from.
 
     Returns
     -------
-    A table as of `features.table.feature_table`, with the variables that a prediction needs.
+    A table as of `features.table.corpora.feature_table`, with the variables that a prediction needs.
 
     Raises
     ------
