@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
 
-class Line(NamedTuple):
+class NominalLine(NamedTuple):
     """Line of an envelope spectrum: its label in pictures, and its order as a multiple of a nominal order.
 
     ``base`` is a field of `features.signal.lines.Orders`, or ``shaft`` for the shaft rate itself.
@@ -52,7 +52,7 @@ class FaultClass(NamedTuple):
 
     name: str
     colour: str
-    lines: tuple[Line, ...] = ()
+    lines: tuple[NominalLine, ...] = ()
     comb: str = ""
     single_lines: tuple[str, ...] = ()
     words: str = ""
@@ -67,13 +67,13 @@ class FaultClass(NamedTuple):
         return (self.comb,) if self.comb else self.single_lines
 
 
-def _harmonics(base: str, *multiples: int) -> tuple[Line, ...]:
-    return tuple(Line(f"{n} {base.upper()}" if n > 1 else base.upper(), base, n) for n in multiples)
+def _harmonics(base: str, *multiples: int) -> tuple[NominalLine, ...]:
+    return tuple(NominalLine(f"{n} {base.upper()}" if n > 1 else base.upper(), base, n) for n in multiples)
 
 
 BPFI, BPFO = _harmonics("bpfi", 1, 2, 3), _harmonics("bpfo", 1, 2, 3)
 BSF, FTF = _harmonics("bsf", 2, 4, 6), _harmonics("ftf", 1, 2, 3)
-SHAFT = Line("shaft", "shaft", 1)
+SHAFT = NominalLine("shaft", "shaft", 1)
 
 HEALTHY, UNKNOWN = "healthy", "unknown"
 CLASSES: Mapping[str, FaultClass] = {

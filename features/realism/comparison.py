@@ -11,7 +11,7 @@ import numpy as np
 
 from features.realism.contrast import auc, quantiles
 from features.realism.measures import MEASURES, NAMES
-from features.realism.windows import Common, Windows, common_ground, measured_windows
+from features.realism.windows import CommonForm, Windows, common_ground, measured_windows
 from features.signal.rows import FloatArray
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
@@ -50,7 +50,7 @@ class Comparison:
     quantiles: dict[str, dict[str, dict[str, list[float]]]]
     yardstick: dict[str, Table]
     counts: dict[str, dict[str, dict[str, int]]]
-    common: Common
+    common: CommonForm
     synthetic: Windows
     real: tuple[Windows, ...]
 
@@ -121,7 +121,7 @@ def _names(folders: Sequence[Path]) -> list[str]:
     return short if clear else [str(folder) for folder in folders]
 
 
-def contrast(synthetic: Windows, real: tuple[Windows, ...], common: Common) -> Comparison:
+def contrast(synthetic: Windows, real: tuple[Windows, ...], common: CommonForm) -> Comparison:
     """Compare measured windows.
 
     Raises

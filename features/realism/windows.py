@@ -20,7 +20,7 @@ BLOCK = 32  # windows read and measured together
 SHORTEST = 0.05  # s
 
 
-class Common(NamedTuple):
+class CommonForm(NamedTuple):
     """What all corpora are brought to: length of a window [s], sample rate [Hz] and upper edge of the band [Hz]."""
 
     window: float
@@ -56,7 +56,7 @@ class Windows(NamedTuple):
     unknown: int = 0
 
 
-def common_ground(folders: list[Path], top: float, window: float | None) -> Common:
+def common_ground(folders: list[Path], top: float, window: float | None) -> CommonForm:
     """Shortest record (or ``window``, if that is shorter), lowest sample rate, and the upper edge of the band.
 
     Raises
@@ -79,7 +79,7 @@ def common_ground(folders: list[Path], top: float, window: float | None) -> Comm
         if window is not None and lengths[-1] < window * (1 - 1e-9):
             message = f"{folder}: its records are {lengths[-1]:g} s long, shorter than the window of {window:g} s; choose a shorter one."
             raise CorpusError(message)
-    common = Common(min(lengths) if window is None else window, min(rates), top)
+    common = CommonForm(min(lengths) if window is None else window, min(rates), top)
     if common.window < SHORTEST:
         folder = folders[int(np.argmin(lengths))]
         message = f"{folder}: its records are {min(lengths):g} s long; envelopes need at least {SHORTEST:g} s."
@@ -87,7 +87,7 @@ def common_ground(folders: list[Path], top: float, window: float | None) -> Comm
     return common
 
 
-def measured_windows(folder: Path, name: str, common: Common, most: int) -> Windows:
+def measured_windows(folder: Path, name: str, common: CommonForm, most: int) -> Windows:
     """Measure at most ``most`` windows of each class of a corpus, spread evenly over its rigs and specimens.
 
     Windows without a finite, varying signal are left out, and records whose class is not known.
@@ -164,7 +164,7 @@ def _blocks(columns: dict[str, np.ndarray], record: np.ndarray) -> list[tuple[st
 def _measure_block(
     corpus: xr.Dataset,
     columns: dict[str, np.ndarray],
-    common: Common,
+    common: CommonForm,
     record: np.ndarray,
     start: np.ndarray,
     fault: str,
@@ -184,7 +184,7 @@ def _measure_block(
     return values
 
 
-def window_length(common: Common, fs: float) -> int:
+def window_length(common: CommonForm, fs: float) -> int:
     """Samples of a window at a sample rate [Hz]; the last sample is not lost to rounding."""
     return int(common.window * fs * (1 + 1e-9))
 
@@ -199,7 +199,7 @@ def read_windows(corpus: xr.Dataset, record: np.ndarray, start: np.ndarray, leng
 
 
 def typical_window(
-    windows: Windows, fault: str, measure: str, common: Common
+    windows: Windows, fault: str, measure: str, common: CommonForm
 ) -> tuple[int, FloatArray, dict[str, float]]:
     """The window with the median of a measure in its class: number of its record, band-limited signal, and conditions.
 

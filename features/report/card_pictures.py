@@ -18,7 +18,7 @@ from PIL import Image
 from features.faults import LOOKS
 from features.report.examples import chosen_example
 from features.report.page import quantities
-from features.report.pictures import STYLE, WIDTH, Shown, draw_envelope_spectrum, draw_waveform, picture
+from features.report.pictures import STYLE, WIDTH, DrawnRecord, draw_envelope_spectrum, draw_waveform, picture
 from features.report.summaries import draw_content
 from gen.corpus import (
     FAULT_NAMES,
@@ -102,7 +102,7 @@ def _write_pictures(folder: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]
 
 
 @rc_context(STYLE)
-def draw_example(shown: Shown) -> Figure:
+def draw_example(shown: DrawnRecord) -> Figure:
     """Waveform above the squared envelope spectrum of a record, with the lines at the nominal orders."""
     figure = Figure(figsize=(WIDTH, 4.6), layout="constrained")
     figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)

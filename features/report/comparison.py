@@ -13,7 +13,7 @@ from features.faults import CLASSES
 from features.realism.comparison import SHARES, Comparison
 from features.realism.measures import MEASURES, NAMES, Measure
 from features.realism.windows import Windows, typical_window
-from features.report.pictures import Shown, picture
+from features.report.pictures import DrawnRecord, picture
 from features.report.sides import draw_distributions, draw_sides
 from features.report.templates import template, three_digits
 from features.signal.rows import FloatArray
@@ -109,10 +109,10 @@ def _column(windows: Windows, fault: str, measure: str) -> FloatArray:
     return values[np.isfinite(values)]
 
 
-def _shown(windows: Windows, fault: str, title: str, comparison: Comparison) -> Shown:
+def _shown(windows: Windows, fault: str, title: str, comparison: Comparison) -> DrawnRecord:
     record, signal, known = typical_window(windows, fault, TYPICAL, comparison.common)
     orders = Orders(*(np.asarray(known[name]) for name in Orders._fields))
-    return Shown(f"{title}, record {record}", signal, known["sample_rate"], known["shaft_rate"], orders, fault)
+    return DrawnRecord(f"{title}, record {record}", signal, known["sample_rate"], known["shaft_rate"], orders, fault)
 
 
 def _row(comparison: Comparison, fault: str, measure: Measure) -> Row:

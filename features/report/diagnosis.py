@@ -19,7 +19,7 @@ from features.report.pictures import (
     STYLE,
     UNDER,
     WIDTH,
-    Shown,
+    DrawnRecord,
     draw_density,
     draw_waveform,
     name_lines,
@@ -135,12 +135,12 @@ def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded, healthy: Recorded 
     return figure
 
 
-def _shown(diagnosis: Diagnosis, recording: Recorded) -> Shown:
+def _shown(diagnosis: Diagnosis, recording: Recorded) -> DrawnRecord:
     """Channel whose spectrum is shown, or the first one, at the speed of the diagnosis."""
     channel = next(iter(recording.signals)) if diagnosis.spectrum is None else diagnosis.spectrum.channel
     signal = recording.used.signals[channel]
     band = DEFAULT_BAND if diagnosis.spectrum is None else Band(*diagnosis.spectrum.band)
-    return Shown("", signal, recording.fs, diagnosis.shaft_rate, diagnosis.orders, HEALTHY, band, recording.unit)
+    return DrawnRecord("", signal, recording.fs, diagnosis.shaft_rate, diagnosis.orders, HEALTHY, band, recording.unit)
 
 
 def _levels(spectrum: BandSpectrum, shaft_rate: float) -> tuple[FloatArray, FloatArray]:

@@ -11,7 +11,7 @@ from features.faults import COMBS, LOOKS
 from features.report.pictures import (
     STYLE,
     WIDTH,
-    Shown,
+    DrawnRecord,
     draw_envelope_spectrum,
     draw_record,
     draw_waveform,
@@ -64,7 +64,7 @@ def _example(corpus: xr.Dataset, code: int) -> Example:
     return Example(FAULT_NAMES[code], caption, b"" if shown is None else picture(draw_record(shown), "svg"))
 
 
-def chosen_example(corpus: xr.Dataset, code: int) -> tuple[Shown | None, str]:
+def chosen_example(corpus: xr.Dataset, code: int) -> tuple[DrawnRecord | None, str]:
     """Record whose level at the fault lines is the median over some records of the class, and its caption; None if none can be drawn."""
     numbers = np.flatnonzero(corpus["fault"].values == code)
     numbers = numbers[np.linspace(0, len(numbers) - 1, min(CANDIDATES, len(numbers))).astype(int)]
@@ -91,7 +91,7 @@ def _conditions(record: xr.Dataset) -> str:
     return ", ".join(known)
 
 
-def _line_level(shown: Shown) -> float:
+def _line_level(shown: DrawnRecord) -> float:
     """Highest level among the features that tell the class, or among all combs for a class without such features.
 
     -inf if the record is too short to have features.

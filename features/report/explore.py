@@ -26,7 +26,7 @@ from features.report.pictures import (
     SEGMENT,
     TOLERANCE,
     TURNS,
-    Shown,
+    DrawnRecord,
     fault_lines,
     highest_drawn_order,
     squared_envelope,
@@ -90,7 +90,7 @@ class Explored(NamedTuple):
     records: int
 
 
-class Quantity(NamedTuple):
+class ExplorerColumn(NamedTuple):
     """Quantity of the records for table, axes and conditions; numbers, or texts."""
 
     name: str
@@ -173,7 +173,7 @@ def write_explorer(
     return Explored(output, len(places), count)
 
 
-def reduce_record(shown: Shown) -> dict[str, np.ndarray]:
+def reduce_record(shown: DrawnRecord) -> dict[str, np.ndarray]:
     """Arrays of `FIELDS` of one record; without scales and levels if it cannot be drawn."""
     empty = {name: np.zeros(size, kind) for name, (kind, size) in FIELDS.items()}
     empty["scales"][:] = np.nan
@@ -185,7 +185,7 @@ def reduce_record(shown: Shown) -> dict[str, np.ndarray]:
         return empty
 
 
-def _reduced(shown: Shown) -> dict[str, np.ndarray]:
+def _reduced(shown: DrawnRecord) -> dict[str, np.ndarray]:
     visible = int(np.searchsorted(shown.turns, TURNS))
     x = shown.signal[: max(2, visible)] - np.mean(shown.signal)
     peak = max(float(np.abs(x).max()), TINY)
@@ -234,7 +234,7 @@ def _reduced_block(block: tuple[int, xr.Dataset], band: Band, sound: bool) -> tu
     return number, len(shown), [_packed(content) for content in contents]
 
 
-def _sound(shown: Shown) -> np.ndarray:
+def _sound(shown: DrawnRecord) -> np.ndarray:
     """First half second as 8 bits at 8 kHz, as loud as it goes; silence if a sample is not finite."""
     samples = np.zeros(round(SOUND_S * SOUND_RATE))
     x = shown.signal[: round(SOUND_S * shown.fs)]
@@ -244,19 +244,21 @@ def _sound(shown: Shown) -> np.ndarray:
     return np.round(127 * samples).astype(np.int8)
 
 
-def _labels(corpus: xr.Dataset, places: np.ndarray) -> Iterator[Quantity]:
+def _labels(corpus: xr.Dataset, places: np.ndarray) -> Iterator[ExplorerColumn]:
     """Number and variables of the chosen records, without scenario and identity."""
-    yield Quantity("record", "", "number of the record in the corpus", "provenance", places.tolist())
+    yield ExplorerColumn("record", "", "number of the record in the corpus", "provenance", places.tolist())
     for name, variable in corpus.variables.items():
         role = variable.attrs.get("role")
         if variable.dims != ("record",) or role not in ROLES or name in (DRAWS, IDENTITY):
             continue
         values, words = variable[places].values.tolist(), class_names(variable.attrs)
         told = [words.get(value, str(value)) for value in values] if words else _plain(values)
-        yield Quantity(str(name), _unit(variable.attrs), _text(variable.attrs.get("long_name", "")), role, told)
+        yield ExplorerColumn(str(name), _unit(variable.attrs), _text(variable.attrs.get("long_name", "")), role, told)
 
 
-def _features(path: Path | str | None, corpus: xr.Dataset, places: np.ndarray, channel: str) -> Iterator[Quantity]:
+def _features(
+    path: Path | str | None, corpus: xr.Dataset, places: np.ndarray, channel: str
+) -> Iterator[ExplorerColumn]:
     """Features of the chosen records; a table of several channels has this one among them."""
     if path is None:
         return
@@ -269,7 +271,7 @@ def _features(path: Path | str | None, corpus: xr.Dataset, places: np.ndarray, c
         raise CorpusError(f"{path}: has features of {', '.join(of)}, not of {channel}; choose one with --channel.")
     for feature in of[channel]["features"][places].transpose("feature", "record"):
         unit, meaning = _unit({"units": feature["units"].item()}), _text(feature["long_name"].item())
-        yield Quantity(str(feature["feature"].item()), unit, meaning, "feature", _plain(feature.values.tolist()))
+        yield ExplorerColumn(str(feature["feature"].item()), unit, meaning, "feature", _plain(feature.values.tolist()))
 
 
 def _plain(values: Sequence[Any]) -> list[Any]:
@@ -298,14 +300,16 @@ def _text(value: object) -> str:
     return visible(str(value))[:LONGEST_TEXT]
 
 
-def _axes(known: Sequence[Quantity]) -> list[str]:
+def _axes(known: Sequence[ExplorerColumn]) -> list[str]:
     """Names of the quantities on the axes at first: two combs of fault lines, or an operating condition and a severity."""
     varying = {one.name for one in known if len(set(one.values)) > 1} | {"record"}
     combs = [name for name in COMBS.values() if name in varying]
     return combs[:2] if len(combs) > 1 else [next(n for n in axis if n in varying) for axis in AXES]
 
 
-def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence[Sequence[str]]) -> dict[str, str]:
+def _parts(
+    facts: Mapping[str, Any], known: Sequence[ExplorerColumn], blocks: Sequence[Sequence[str]]
+) -> dict[str, str]:
     """Deflated parts of the page by their names, in the order in which they are needed."""
     about = {
         **facts,

@@ -64,7 +64,7 @@ FAINTEST_DB = 120.0  # lowest density drawn, below the highest
 TOLERANCE = 0.02  # of an order, half the width of the shaded band around a line of the fault
 
 
-class Shown(NamedTuple):
+class DrawnRecord(NamedTuple):
     """A record to draw.
 
     Attributes
@@ -134,7 +134,7 @@ def write_picture(figure: Figure, path: Path) -> None:
 
 
 @rc_context(STYLE)
-def draw_record(shown: Shown, under: Shown | None = None) -> Figure:
+def draw_record(shown: DrawnRecord, under: DrawnRecord | None = None) -> Figure:
     """Waveform, power spectral density, and squared envelope spectrum with the fault lines, one above the other."""
     figure = Figure(figsize=(WIDTH, 5.8), layout="constrained")
     figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
@@ -147,7 +147,7 @@ def draw_record(shown: Shown, under: Shown | None = None) -> Figure:
     return figure
 
 
-def draw_waveform(axes: Axes, shown: Shown, under: Shown | None = None) -> None:
+def draw_waveform(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = None) -> None:
     """Draw the first revolutions of the shaft without the mean of the signal, and those of another record; the weaker one hides none."""
     duration, turned = shown.signal.size / shown.fs, shown.turns
     visible = int(np.searchsorted(turned, TURNS)) / shown.fs
@@ -172,7 +172,7 @@ def thin(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.repeat(time[::step], 2), extremes
 
 
-def draw_density(axes: Axes, shown: Shown, under: Shown | None = None) -> None:
+def draw_density(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = None) -> None:
     """Power spectral density over that of another record, with the band of the envelope shaded."""
     for one, look in ((under, UNDER), (shown, OVER)):
         if one is not None:
@@ -185,7 +185,7 @@ def draw_density(axes: Axes, shown: Shown, under: Shown | None = None) -> None:
     axes.set_title(f"Power spectral density, dB re 1 ({shown.unit})²/Hz; envelope of {low:.3g}-{high:.3g} kHz shaded")
 
 
-def draw_envelope_spectrum(axes: Axes, shown: Shown, under: Shown | None = None) -> None:
+def draw_envelope_spectrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = None) -> None:
     """Squared envelope spectrum over orders over that of another record, with the fault lines."""
     top = draw_cursors(axes, shown)
     for one, look in ((under, UNDER), (shown, OVER)):
@@ -197,7 +197,7 @@ def draw_envelope_spectrum(axes: Axes, shown: Shown, under: Shown | None = None)
     axes.set_title(f"Squared envelope spectrum of the whitened band {low / 1e3:.3g}-{high / 1e3:.3g} kHz", pad=30)
 
 
-def draw_cursors(axes: Axes, shown: Shown) -> float:
+def draw_cursors(axes: Axes, shown: DrawnRecord) -> float:
     """Lines of the fault and of others over orders as `mark_lines`, with their names; the last order drawn."""
     own, others = mark_lines(axes, shown)
     top = highest_drawn_order(own, others)
@@ -206,7 +206,7 @@ def draw_cursors(axes: Axes, shown: Shown) -> float:
     return top
 
 
-def mark_lines(axes: Axes, shown: Shown) -> tuple[dict[str, float], dict[str, float]]:
+def mark_lines(axes: Axes, shown: DrawnRecord) -> tuple[dict[str, float], dict[str, float]]:
     """Lines of the fault over orders, shaded, with their sidebands dotted, and those of others dashed; both as `fault_lines`.
 
     The lines of the fault of another bearing are among the others.
@@ -235,7 +235,7 @@ def highest_drawn_order(own: Mapping[str, float], others: Mapping[str, float]) -
     return (1.1 if own and max(own.values()) < highest else 3.15) * highest
 
 
-def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
+def squared_envelope(shown: DrawnRecord) -> tuple[FloatArray, FloatArray]:
     """Orders of the shaft, and squared envelope spectrum of the whitened band [1], both of shape (order,)."""
     if shown.angle is not None:
         orders, spectrum = order_spectrum(envelope_over_angle(shown), PER_TURN)
@@ -245,7 +245,7 @@ def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
     return frequencies / shown.shaft_rate, spectrum[0]
 
 
-def envelope_over_angle(shown: Shown) -> FloatArray:
+def envelope_over_angle(shown: DrawnRecord) -> FloatArray:
     """Squared envelope of the whitened band at equal angles of the shaft, over its mean, shape (1, angle)."""
     power, rate = _squared_envelope_of_band(shown)
     at = np.arange(power.shape[1]) / rate
@@ -253,7 +253,7 @@ def envelope_over_angle(shown: Shown) -> FloatArray:
     return resample_to_angle(power - power.mean(), 2 * np.pi * turns[None], PER_TURN)
 
 
-def _squared_envelope_of_band(shown: Shown) -> tuple[FloatArray, float]:
+def _squared_envelope_of_band(shown: DrawnRecord) -> tuple[FloatArray, float]:
     """Squared envelope over its mean, shape (1, time), and its sample rate [Hz]."""
     duration = shown.signal.size / shown.fs
     coefficients = fourier_coefficients(shown.signal[None], shown.fs, shown.band.high)

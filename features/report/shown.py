@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from features.faults import FUNDAMENTALS, UNKNOWN
-from features.report.pictures import Shown, fault_lines
+from features.report.pictures import DrawnRecord, fault_lines
 from features.signal.orders import angles_from_speed
 from features.signal.rows import FloatArray
 from features.signal.tracking import track_speed
@@ -21,7 +21,7 @@ CONSTANT = 1.02  # largest ratio of two speeds that count as one
 MARGIN = 1.05  # by which a tracked speed may leave the labelled range
 
 
-def shown_record(corpus: Path | str | xr.Dataset, record: int, channel: int | str, band: Band) -> Shown:
+def shown_record(corpus: Path | str | xr.Dataset, record: int, channel: int | str, band: Band) -> DrawnRecord:
     """A record of a corpus.
 
     Raises
@@ -42,7 +42,7 @@ def shown_record(corpus: Path | str | xr.Dataset, record: int, channel: int | st
 
 def shown_recording(
     name: str, signal: FloatArray, fs: float, shaft_rates: tuple[float, float], orders: Sequence[float], band: Band
-) -> Shown:
+) -> DrawnRecord:
     """A recording of the user, shape (time,) [m s-2], at a shaft rate between two [Hz].
 
     Raises
@@ -53,7 +53,7 @@ def shown_recording(
     """
     signal = np.asarray(signal, dtype=float)
     nominal = Orders(*(np.asarray(order, dtype=float) for order in orders))
-    shown = Shown(name, signal, fs, float(np.mean(shaft_rates)), nominal, UNKNOWN, band)
+    shown = DrawnRecord(name, signal, fs, float(np.mean(shaft_rates)), nominal, UNKNOWN, band)
     turning = _turning(_checked(shown, name), *shaft_rates)
     if turning.angle is None and _varies(*shaft_rates):
         low, high = (60 * rate for rate in shaft_rates)
@@ -64,11 +64,11 @@ def shown_recording(
     return turning
 
 
-def shown_of(record: xr.Dataset, number: int, channel: int, *, named: bool = False) -> Shown:
+def shown_of(record: xr.Dataset, number: int, channel: int, *, named: bool = False) -> DrawnRecord:
     """Record of an opened corpus; ``named`` puts the channel into the title."""
     fault = FAULT_NAMES[int(record["fault"])]
     sensor = f", {record['channel'].values[channel]}" if named else ""
-    shown = Shown(
+    shown = DrawnRecord(
         title=f"Record {number}{sensor}: {fault}",
         signal=record[SIGNAL].isel(channel=channel).values.astype(float),
         fs=float(record["sample_rate"]),
@@ -93,7 +93,7 @@ def _lines_of_other(record: xr.Dataset) -> dict[str, float]:
     return {line.label: lines[line.label] for line in FUNDAMENTALS if line.label in lines}
 
 
-def can_be_drawn(shown: Shown) -> bool:
+def can_be_drawn(shown: DrawnRecord) -> bool:
     """Whether signal, rates and orders are finite, and the latter positive."""
     numbers = np.array([shown.fs, shown.shaft_rate, *shown.orders])
     return bool(np.isfinite(numbers).all() and (numbers > 0).all() and np.isfinite(shown.signal).all())
@@ -112,7 +112,7 @@ def _varies(slowest: float, fastest: float) -> bool:
     return fastest > CONSTANT * slowest
 
 
-def _turning(shown: Shown, slowest: float, fastest: float) -> Shown:
+def _turning(shown: DrawnRecord, slowest: float, fastest: float) -> DrawnRecord:
     """The same with its speed in the title, and with the angle of the shaft if the speed varies and can be tracked in the signal."""
     if not (can_be_drawn(shown) and _varies(slowest, fastest)):
         return shown._replace(title=f"{shown.title}, {60 * shown.shaft_rate:.0f} rpm")
@@ -126,7 +126,7 @@ def _turning(shown: Shown, slowest: float, fastest: float) -> Shown:
     return shown._replace(title=title, angle=angles_from_speed(rate, shown.fs), shaft_rate=float(rate.mean()))
 
 
-def _checked(shown: Shown, where: str) -> Shown:
+def _checked(shown: DrawnRecord, where: str) -> DrawnRecord:
     check_band(shown.band, shown.fs, where)
     if not can_be_drawn(shown):
         raise CorpusError(

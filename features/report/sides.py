@@ -18,7 +18,7 @@ from features.report.pictures import (
     TURNS,
     VERMILION,
     WIDTH,
-    Shown,
+    DrawnRecord,
     mark_lines,
     squared_envelope,
     thin,
@@ -34,7 +34,7 @@ DISTRIBUTION_COLUMNS = 3
 
 
 @rc_context(STYLE)
-def draw_sides(records: Mapping[int, Shown], top: float) -> Figure:
+def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
     """Waveform over its rms, power spectral density, and envelope spectrum of one record of each set, set beside set.
 
     The records are given by the number of their set, which sets the colour; ``top`` is the end of the axis of the density [Hz].
@@ -64,7 +64,7 @@ def _colour(number: int) -> str:
     return COLOURS[number % len(COLOURS)]
 
 
-def _draw_turns(axes: Axes, shown: Shown) -> None:
+def _draw_turns(axes: Axes, shown: DrawnRecord) -> None:
     """Draw the first revolutions of the shaft."""
     x = shown.signal[: max(2, round(TURNS / shown.shaft_rate * shown.fs))]
     turns, values = thin(np.arange(x.size) / shown.fs * shown.shaft_rate, x / np.sqrt(np.mean(shown.signal**2)))
@@ -72,7 +72,7 @@ def _draw_turns(axes: Axes, shown: Shown) -> None:
     axes.set(xlabel="revolution of the shaft", xlim=(0, turns[-1]))
 
 
-def _draw_envelope(axes: Axes, shown: Shown) -> None:
+def _draw_envelope(axes: Axes, shown: DrawnRecord) -> None:
     """Squared envelope spectrum over orders, with the fault lines marked."""
     order, spectrum = squared_envelope(shown)
     visible = (order > 0) & (order <= HIGHEST_ORDER)

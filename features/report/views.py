@@ -21,7 +21,7 @@ from features.report.pictures import (
     UNDER,
     VERMILION,
     WIDTH,
-    Shown,
+    DrawnRecord,
     draw_cursors,
     draw_density,
     draw_envelope_spectrum,
@@ -50,7 +50,7 @@ NARROWEST_BAND = 1000.0  # Hz, of a chosen band: as that of a band that is given
 
 
 @rc_context(STYLE)
-def draw_view(view: str, shown: Shown, under: Shown | None = None) -> Figure:
+def draw_view(view: str, shown: DrawnRecord, under: DrawnRecord | None = None) -> Figure:
     """Draw one of `VIEWS` of a record over that of another one.
 
     Raises
@@ -67,7 +67,7 @@ def draw_view(view: str, shown: Shown, under: Shown | None = None) -> Figure:
     return figure
 
 
-def band_by(choice: str, shown: Shown) -> Band:
+def band_by(choice: str, shown: DrawnRecord) -> Band:
     """Band of the envelope that is the most impulsive (``kurtogram``), or in which a fault line stands out most (``line``)."""
     x, fs = shown.signal[None], shown.fs
     if choice == "kurtogram":
@@ -80,7 +80,7 @@ def band_by(choice: str, shown: Shown) -> Band:
     return Band(*best.best()[0].tolist())
 
 
-def _orders(axes: Axes, shown: Shown, under: Shown | None) -> None:
+def _orders(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None:
     """Amplitude spectrum of the signal over orders."""
     top = draw_cursors(axes, shown)
     for one, look in ((under, UNDER), (shown, OVER)):
@@ -92,11 +92,11 @@ def _orders(axes: Axes, shown: Shown, under: Shown | None) -> None:
     axes.set_title("Order spectrum of the signal", pad=30)
 
 
-def _over_angle(shown: Shown, per_turn: int = PER_TURN) -> FloatArray:
+def _over_angle(shown: DrawnRecord, per_turn: int = PER_TURN) -> FloatArray:
     return resample_to_angle((shown.signal - shown.signal.mean())[None], 2 * np.pi * shown.turns[None], per_turn)
 
 
-def _waterfall(axes: Axes, shown: Shown, _: Shown | None) -> None:
+def _waterfall(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
     """Envelope spectra of windows over orders, one above the other."""
     orders, time, level = envelope_map(shown, draw_cursors(axes, shown))
     _map(axes, (orders, time, level), (0.0, BRIGHTEST_DB), "dB above the median")
@@ -104,7 +104,7 @@ def _waterfall(axes: Axes, shown: Shown, _: Shown | None) -> None:
     axes.set_title("Envelope spectrum of the whitened band over time", pad=30)
 
 
-def envelope_map(shown: Shown, top: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def envelope_map(shown: DrawnRecord, top: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Orders up to ``top``, times [s], and levels over the median [dB] of the envelope spectra of windows, shape (time, order).
 
     Raises
@@ -123,7 +123,7 @@ def envelope_map(shown: Shown, top: float) -> tuple[FloatArray, FloatArray, Floa
     return found.orders[drawn], time, level
 
 
-def _kurtogram(axes: Axes, shown: Shown, _: Shown | None) -> None:
+def _kurtogram(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
     """Kurtosis of the analytic signal of each band, a row for each division of the spectrum."""
     tree = kurtogram(shown.signal[None], shown.fs)
     divisions, score = np.unique(tree.levels), tree.score[0]
@@ -143,7 +143,7 @@ def _kurtogram(axes: Axes, shown: Shown, _: Shown | None) -> None:
     axes.set_title(f"Kurtogram: {score.max():.3g} is the highest kurtosis, in {low:.3g}-{high:.3g} kHz")
 
 
-def _coherence(axes: Axes, shown: Shown, _: Shown | None) -> None:
+def _coherence(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
     """Squared spectral coherence over orders of the envelope and frequency; what noise reaches stays white."""
     top = draw_cursors(axes, shown)
     rate = shown.shaft_rate
@@ -171,7 +171,7 @@ def _map(axes: Axes, grid: tuple[FloatArray, FloatArray, FloatArray], limits: tu
     axes.figure.colorbar(mesh, ax=axes, label=label, pad=0.01)
 
 
-def _cepstrum(axes: Axes, shown: Shown, under: Shown | None) -> None:
+def _cepstrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None:
     """Real cepstrum over revolutions: a family of lines is a peak at one revolution over its order, and at its multiples."""
     own, others = fault_lines(shown.orders, shown.fault)
     fundamentals = {line.label for line in (SHAFT, *FUNDAMENTALS)}
@@ -200,7 +200,7 @@ def _cepstrum(axes: Axes, shown: Shown, under: Shown | None) -> None:
     axes.set_title("Cepstrum", pad=30)
 
 
-VIEWS: Mapping[str, Callable[[Axes, Shown, Shown | None], None]] = {
+VIEWS: Mapping[str, Callable[[Axes, DrawnRecord, DrawnRecord | None], None]] = {
     "waveform": draw_waveform,
     "psd": draw_density,
     "envelope": draw_envelope_spectrum,

@@ -13,7 +13,7 @@ from gen.corpus.schema import UNKNOWN_CODE
 from gen.corpus.simulated import MACHINE_CONDITIONS
 from gen.measurement.measure import Measured
 from gen.measurement.sensor_faults import SensorFlags
-from gen.physics.bearing import Orders, orders
+from gen.physics.bearing import FaultOrders, orders
 from gen.scenarios import Scenario, common_settings, scenario_texts
 from gen.simulation.simulate import Response
 from gen.simulation.truth import Truth
@@ -66,7 +66,7 @@ _CONDITION_CODES = {name: code for code, name in MACHINE_CONDITIONS.items()}
 
 def _of_other(scenario: Scenario, truth: Truth | None) -> dict[str, Any]:
     """Variables of the bearing at the other end of the shaft of one record, without values if there is none."""
-    other, unknown = scenario.other, dict.fromkeys(Orders._fields, np.nan)
+    other, unknown = scenario.other, dict.fromkeys(FaultOrders._fields, np.nan)
     nominal = unknown if other is None else orders(other.bearing)._asdict()
     mean = unknown if truth is None else truth.orders._asdict()
     return {

@@ -21,7 +21,7 @@ from gen.corpus import PartRow, facts_as_attributes, file_facts, part_name, row_
 from gen.generation.labels import part_dataset
 from gen.generation.scheduling import ALONE, Crew, MadePart, made_parts
 from gen.generation.sources import sources_sha256
-from gen.generation.undetected import Records
+from gen.generation.undetected import MadeRecords
 from gen.recipe import Recipe, recipe_hash
 from gen.scenarios import settings_of
 from gen.simulation.timeline import timeline
@@ -106,7 +106,9 @@ def _write(made: MadePart, recipe: Recipe, path: Path) -> Outcome:
     return Outcome(write_part(dataset, path, recipe.storage.codec), kept=False, failures=failures)
 
 
-def dataset_of(records: Records, step_error: NDArray[np.float64] | None = None) -> tuple[xr.Dataset, tuple[str, ...]]:
+def dataset_of(
+    records: MadeRecords, step_error: NDArray[np.float64] | None = None
+) -> tuple[xr.Dataset, tuple[str, ...]]:
     """Records with their labels in the layout of the corpus (undecoded), and one sentence for each record that is left out."""
     response = records.response
     failures = tuple(response.failures[place] for place in sorted(response.failures))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.generation.step_checks import has_checks, step_changes, step_checks
-from gen.generation.undetected import Families, Family, Records, pick
+from gen.generation.undetected import Families, Family, MadeRecords, pick
 from gen.recipe import Recipe
 from gen.scenarios import settings_of
 from gen.simulation.batches import Integration, Waiting, integrate_together
@@ -49,7 +49,7 @@ class MadePart(NamedTuple):
 
     place: int
     """Of the part among those that are made."""
-    records: Records
+    records: MadeRecords
     step_error: NDArray[np.float64]
     """As from :func:`gen.generation.step_checks.step_changes`."""
 
@@ -64,7 +64,7 @@ class _Part:
     place: int
     numbers: range
     checked: bool
-    rows: dict[int, tuple[Records, int]] = field(default_factory=dict)
+    rows: dict[int, tuple[MadeRecords, int]] = field(default_factory=dict)
     """Final records: each by its number, as a place in records that were measured together."""
 
 
@@ -76,7 +76,7 @@ class _Pending:
     then: Callable[[], None]
 
 
-def make_records(recipe: Recipe, numbers: range) -> Records:
+def make_records(recipe: Recipe, numbers: range) -> MadeRecords:
     """Make the records with the given numbers."""
     (records,) = made_parts(recipe, [numbers], lambda made: made.records)
     return records
@@ -210,7 +210,7 @@ class _Making(Generic[Result]):
     def _judge(self, families: list[Family], report: Report) -> Iterable[Result]:
         """Measure and judge families; those that are final go to their parts."""
         made, again = self._families.judge(families)
-        made = Records(replace(made.response, twins=None), made.measured)
+        made = MadeRecords(replace(made.response, twins=None), made.measured)
         redrawn = {one.record.number for family in again for one in family.scenarios}
         waits = [(family.integrations, partial(self._make_ready, family)) for family in again]
         # copies, so that no part holds the accelerations of another
@@ -233,7 +233,7 @@ class _Making(Generic[Result]):
                 self._wait(integrations, then)
         return ()
 
-    def _final(self, made: Records, redrawn: set[int]) -> list[tuple[_Part, list[tuple[int, int]]]]:
+    def _final(self, made: MadeRecords, redrawn: set[int]) -> list[tuple[_Part, list[tuple[int, int]]]]:
         """Place and number of the records of each part that are not drawn again."""
         final: dict[_Part, list[tuple[int, int]]] = {}
         for place, scenario in enumerate(made.measured.scenarios):
@@ -297,9 +297,9 @@ def _bytes_of_a_record(recipe: Recipe) -> int:
     return _RECORD_BYTES + stored * recipe.n_samples * len(recipe.recording.channels)
 
 
-def _light(made: Records) -> Records:
+def _light(made: MadeRecords) -> MadeRecords:
     """Records without their accelerations and inputs."""
     count = len(made.measured.scenarios)
     none = [None] * count
     response = replace(made.response, acceleration=np.empty((count, 0, 0), np.float32), inputs=none, others=none)
-    return Records(response, made.measured)
+    return MadeRecords(response, made.measured)

@@ -27,7 +27,7 @@ FAULT_TRIES = 12  # faults drawn for a specimen until one can be seen in all of 
 
 
 @dataclass(frozen=True)
-class Records:
+class MadeRecords:
     """Records as they were made; ``measured.scenarios`` has their final scenarios."""
 
     response: Response
@@ -67,7 +67,7 @@ class Families:
         scenarios = draw_scenarios(self.recipe, numbers.start, numbers.stop)
         return self._cut(self._with_hits(scenarios) if self._redraws else scenarios, {})
 
-    def judge(self, families: list[Family]) -> tuple[Records, list[Family]]:
+    def judge(self, families: list[Family]) -> tuple[MadeRecords, list[Family]]:
         """Records of integrated families, and the families again whose fault is drawn again."""
         made = made_of([run for family in families for run in family.runs], self._other_levels)
         if not self._redraws:
@@ -130,7 +130,7 @@ class Families:
         return list(by_number.values())
 
 
-def made_from(scenarios: list[Scenario]) -> Records:
+def made_from(scenarios: list[Scenario]) -> MadeRecords:
     """Records of scenarios as they are; nothing is drawn again."""
     with simulation_errors():
         runs = runs_of(scenarios)
@@ -138,14 +138,14 @@ def made_from(scenarios: list[Scenario]) -> Records:
         return made_of(runs)
 
 
-def made_of(runs: list[Run], other_levels: Callable[[Scenario], Iterable[Scenario]] = lambda _: ()) -> Records:
+def made_of(runs: list[Run], other_levels: Callable[[Scenario], Iterable[Scenario]] = lambda _: ()) -> MadeRecords:
     """Records of scenarios that have been integrated; ``other_levels`` as for :func:`gen.measurement.measure.measure`."""
     response, scenarios = response_of(runs), [run.scenario for run in runs]
     measured = measure(response.acceleration, scenarios, response.twins, other_levels=other_levels)
-    return Records(response, with_other_faults(measured, response.acceleration, response.twins))
+    return MadeRecords(response, with_other_faults(measured, response.acceleration, response.twins))
 
 
-def pick(rows: list[tuple[Records, int]]) -> Records:
+def pick(rows: list[tuple[MadeRecords, int]]) -> MadeRecords:
     """Records from some places of others, without their twins."""
     response, measured = rows[0][0].response, rows[0][0].measured
     failures = {
@@ -155,7 +155,7 @@ def pick(rows: list[tuple[Records, int]]) -> Records:
         {name: _column([getattr(getattr(made, of), name)[place] for made, place in rows]) for name in _columns(one)}
         for of, one in (("response", response), ("measured", measured))
     ]
-    return Records(replace(response, failures=failures, twins=None, **columns[0]), replace(measured, **columns[1]))
+    return MadeRecords(replace(response, failures=failures, twins=None, **columns[0]), replace(measured, **columns[1]))
 
 
 def _column(rows: list[Any]) -> NDArray[Any] | list[Any]:
@@ -167,7 +167,7 @@ def _columns(of: Response | Measured) -> list[str]:
     return [field.name for field in fields(of) if field.name not in ("failures", "twins", "counts_per_unit")]
 
 
-def _unseen_places(made: Records) -> list[int]:
+def _unseen_places(made: MadeRecords) -> list[int]:
     """Places of the records that were made and whose fault cannot be seen; of a group, that of the largest severity alone is looked at."""
     detectable, failures = made.measured.detectable, made.response.failures
     largest = _largest_places(made.measured.scenarios)

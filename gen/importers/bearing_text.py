@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from gen.importers.mapping_values import Geometry, bearing_of
-from gen.physics.bearing import Bearing, Orders, orders
+from gen.physics.bearing import Bearing, FaultOrders, orders
 from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.support.errors import CorpusError
 from gen.support.sentences import sentences
@@ -15,7 +15,7 @@ from gen.support.sentences import sentences
 _EXAMPLE = "n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938"
 
 
-def bearing_orders(bearing: str | Mapping[str, Any]) -> Orders:
+def bearing_orders(bearing: str | Mapping[str, Any]) -> FaultOrders:
     """Nominal fault orders of a bearing, given as for `bearing_from_text` or by a dict of its dimensions.
 
     >>> [round(order, 4) for order in bearing_orders("6205")]

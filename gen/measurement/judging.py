@@ -72,7 +72,7 @@ class Window(NamedTuple):
         return slice(max(LOWEST, self.first - AROUND), self.stop + AROUND)
 
 
-class Band(NamedTuple):
+class EnvelopeLines(NamedTuple):
     """Lines of the squared envelope of a band, before the gains."""
 
     lines: list[tuple[Window, ComplexArray]]
@@ -98,7 +98,7 @@ class Judge:
         ]
         searched = len(record.fault) * sum(one.stop - one.first for _, some in self._searched for one in some)
         self._margin = math.sqrt(2 * math.log(max(searched, 1) / FALSE_ALARM))
-        self._bands: list[Band] = []
+        self._bands: list[EnvelopeLines] = []
 
     def sees(self, gains: Gains) -> bool:
         """Whether every damaged part can be seen in some band of some channel."""
@@ -114,9 +114,9 @@ class Judge:
                 return True
         return False
 
-    def _band(self, band: tuple[int, int], windows: Sequence[Window]) -> Band:
+    def _band(self, band: tuple[int, int], windows: Sequence[Window]) -> EnvelopeLines:
         if not windows:
-            return Band([], np.empty(0))
+            return EnvelopeLines([], np.empty(0))
         n, impulses = self._record.fault.shape[1], self._record.impulses
         products = _products(self._spectra[..., slice(*band)])
         if not self._record.steady:
@@ -126,7 +126,7 @@ class Judge:
         share = n / 2 / (impulses.shape[1] - 1)  # of the frequencies of the record in those of the impulses
         places = slice(round(band[0] / share), round(band[1] / share))
         of_impulses = WINDOW_RMS * products.shape[-1] * share**1.5 * impulses[:, places].sum(axis=1)
-        return Band([(window, lines[..., window.around]) for window in windows], of_impulses)
+        return EnvelopeLines([(window, lines[..., window.around]) for window in windows], of_impulses)
 
 
 def judges_of(records: Sequence[Parts]) -> list[Judge]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft
 
-from gen.scenarios import MachineCondition
+from gen.scenarios import ConditionSignal
 from gen.scenarios.sensing import Drawn
 
 FloatArray = NDArray[np.float64]
@@ -21,7 +21,7 @@ FloatArray = NDArray[np.float64]
 _PERIOD = 2**15  # samples of a table of one period: the 400th line is in it to 1e-3 of its amplitude
 
 
-def condition_lines(condition: MachineCondition, angles: FloatArray) -> FloatArray:
+def condition_lines(condition: ConditionSignal, angles: FloatArray) -> FloatArray:
     """Lines of a condition over the rms of the background noise, for ``angles`` of the shaft [rad], shape (time,) [1].
 
     A line that passes half the sample rate anywhere in the record, where the anti-alias filter would remove it, is left out.

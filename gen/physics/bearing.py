@@ -64,7 +64,7 @@ class Bearing:
         return {"inner": self.inner_radius, "outer": self.outer_radius, "ball": self.ball_diameter / 2}[site]
 
 
-class Orders(NamedTuple):
+class FaultOrders(NamedTuple):
     """Fault frequencies in orders of the shaft; a ball spall strikes both races each spin, so its line is ``2 * bsf``."""
 
     ftf: float
@@ -73,7 +73,7 @@ class Orders(NamedTuple):
     bsf: float
 
 
-def orders(bearing: Bearing) -> Orders:
+def orders(bearing: Bearing) -> FaultOrders:
     """Fault frequencies of pure rolling [orders of the shaft].
 
     >>> [round(order, 4) for order in orders(Bearing("6205", 9, 39.04e-3, 7.94e-3))]
@@ -82,14 +82,14 @@ def orders(bearing: Bearing) -> Orders:
     gamma = bearing.gamma
     ftf = (1 - gamma) / 2
     spin = bearing.pitch_diameter / (2 * bearing.ball_diameter) * (1 - gamma**2)
-    return Orders(ftf, bearing.n_balls * ftf, bearing.n_balls * (1 - ftf), spin)
+    return FaultOrders(ftf, bearing.n_balls * ftf, bearing.n_balls * (1 - ftf), spin)
 
 
-def slipping_orders(bearing: Bearing, slip: float) -> Orders:
+def slipping_orders(bearing: Bearing, slip: float) -> FaultOrders:
     """Fault frequencies of a cage that is slower than in pure rolling by the fraction ``slip`` [orders of the shaft]."""
     rolling = orders(bearing)
     ftf = rolling.ftf * (1 - slip)
-    return Orders(ftf, bearing.n_balls * ftf, bearing.n_balls * (1 - ftf), rolling.bsf)
+    return FaultOrders(ftf, bearing.n_balls * ftf, bearing.n_balls * (1 - ftf), rolling.bsf)
 
 
 def free_contact_angle(bearing: Bearing, diametral_clearance: float) -> float:

@@ -16,7 +16,7 @@ import re
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
-from gen.physics.bearing import Bearing, Orders, orders
+from gen.physics.bearing import Bearing, FaultOrders, orders
 
 INCH = 25.4  # [mm]
 
@@ -168,7 +168,7 @@ class Printed(NamedTuple):
 
     name: str
     """Size in the table."""
-    orders: Orders
+    orders: FaultOrders
     remark: str = ""
 
 
@@ -191,14 +191,16 @@ def known_designation(text: str) -> str | None:
 
 
 PRINTED_OTHERWISE = {
-    "6205": Printed("205K", Orders(0.397, 3.574, 5.426, 2.328)),
-    "6208": Printed("208K", Orders(0.394, 3.547, 5.453, 2.256)),
+    "6205": Printed("205K", FaultOrders(0.397, 3.574, 5.426, 2.328)),
+    "6208": Printed("208K", FaultOrders(0.394, 3.547, 5.453, 2.256)),
     "6305": Printed(
-        "305K", Orders(0.367, 3.574, 5.426, 2.328), "a misprint: FTF is that of 7 balls, the others are those of 205K"
+        "305K",
+        FaultOrders(0.367, 3.574, 5.426, 2.328),
+        "a misprint: FTF is that of 7 balls, the others are those of 205K",
     ),
-    "6306": Printed("306K", Orders(0.368, 2.574, 4.426, 1.757), "7 balls; the same orders as 304K"),
-    "6308": Printed("308K", Orders(0.378, 3.023, 4.977, 1.925), "SKF's 2 BSF is that of this row [3]"),
-    "UER204": Printed("204K", Orders(0.382, 3.052, 4.948, 1.992)),
+    "6306": Printed("306K", FaultOrders(0.368, 2.574, 4.426, 1.757), "7 balls; the same orders as 304K"),
+    "6308": Printed("308K", FaultOrders(0.378, 3.023, 4.977, 1.925), "SKF's 2 BSF is that of this row [3]"),
+    "UER204": Printed("204K", FaultOrders(0.382, 3.052, 4.948, 1.992)),
 }
 """Rows whose BPFO or BPFI differs by more than 0.2 % from the one that table A-9 prints for their size."""
 
@@ -274,7 +276,7 @@ def _other_orders(bearing: Bearing) -> str:
         return "-"
     name, printed, remark = PRINTED_OTHERWISE[bearing.designation]
     shares = (f"{100 * (its / own - 1):+.1f} %" for its, own in zip(printed, orders(bearing), strict=True))
-    differences = ", ".join(f"{key.upper()} {share}" for key, share in zip(Orders._fields, shares, strict=True))
+    differences = ", ".join(f"{key.upper()} {share}" for key, share in zip(FaultOrders._fields, shares, strict=True))
     return f"Timken A-9 [1], {name}: {differences}" + (f" ({remark})" if remark else "")
 
 

@@ -39,8 +39,8 @@ from gen.scenarios.model import (
 from gen.scenarios.records import with_level
 from gen.scenarios.sensing import (
     Background,
+    ConditionSignal,
     Gear,
-    MachineCondition,
     Mode,
     Path,
     Pickup,
@@ -54,9 +54,9 @@ from gen.scenarios.stored import read_scenario, read_scenarios, scenario_texts
 
 __all__ = [
     "Background",
+    "ConditionSignal",
     "Gains",
     "Gear",
-    "MachineCondition",
     "Mode",
     "Operation",
     "OtherBearing",

@@ -30,7 +30,7 @@ from gen.scenarios.faults import draw_damage
 from gen.scenarios.model import Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Operating, operating_of
 from gen.scenarios.points import points_of
-from gen.scenarios.records import Source, draw_record, record_points, source_of
+from gen.scenarios.records import SpecimenSource, draw_record, record_points, source_of
 from gen.scenarios.sensing import Background, Mode, Path, Pickup, ShaftModulation, Tone
 from gen.scenarios.sensor_faults import draw_gear, draw_machine_condition, draw_rig_sensor_faults
 from gen.support.errors import RecipeError
@@ -67,7 +67,7 @@ def draw_scenarios(
     known = {number: known_of_rig(recipe, rig) for number, rig in rigs.items()}
     classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
     others = {number: other_fault_of_each_specimen(recipe, number, of_rig) for number, of_rig in classes.items()}
-    sources: dict[int, Source] = {}
+    sources: dict[int, SpecimenSource] = {}
     operating: dict[int, Operating] = {}
     for number, point in points_of(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items():
         rig = recipe.rig_of(number)

@@ -31,7 +31,7 @@ class Operating(NamedTuple):
     """Level at which each quantity is drawn."""
 
 
-class Common(NamedTuple):
+class CommonNumbers(NamedTuple):
     """Random numbers that all records of a rig, or of a specimen, have in common: one for each operating quantity."""
 
     numbers: Mapping[str, float]
@@ -55,12 +55,14 @@ def _by_level(distributions: Distributions) -> dict[Level, Distributions]:
     return {**by_level}
 
 
-def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -> Common:
+def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -> CommonNumbers:
     """Draw the numbers that all records of a rig or a specimen have in common from a stream of that rig or specimen."""
-    return Common({key: float(rng.random()) for key in quantities(recipe.operation)}, combination)
+    return CommonNumbers({key: float(rng.random()) for key in quantities(recipe.operation)}, combination)
 
 
-def draw_conditions(operating: Operating, draws: Draws, commons: Mapping[Level, Common], known: Known) -> Conditions:
+def draw_conditions(
+    operating: Operating, draws: Draws, commons: Mapping[Level, CommonNumbers], known: Known
+) -> Conditions:
     """Operating conditions of a record, without its slip walk.
 
     ``commons`` has the numbers of rig and specimen, if some quantity is drawn at that level.

@@ -15,21 +15,21 @@ from gen.physics.rating import static_rating
 from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, Recipe, fault_class
 from gen.scenarios.draws import Combination, Draws, Known, known_of
 from gen.scenarios.model import Operation, OtherBearing, Purpose, Rig, Scenario, Specimen, stream
-from gen.scenarios.operating import Common, Level, Operating, common_numbers, draw_conditions
+from gen.scenarios.operating import CommonNumbers, Level, Operating, common_numbers, draw_conditions
 from gen.scenarios.points import points_of
 from gen.scenarios.sensor_faults import draw_record_sensor_faults
 from gen.scenarios.settings import settings_of
 from gen.support.units import percent_to_share
 
 
-class Source(NamedTuple):
+class SpecimenSource(NamedTuple):
     """Origin of the records of one specimen: its rig, itself at every rung, and the distributions of its conditions."""
 
     rig: Rig
     rungs: tuple[Specimen, ...]
     """The specimen at every rung; the specimen alone if its records are in no groups."""
     operating: Operating
-    commons: dict[Level, Common]
+    commons: dict[Level, CommonNumbers]
     """Numbers of rig and specimen, for the levels at which some operating quantity is drawn."""
     known: Known
     """Quantities of rig and specimen."""
@@ -39,13 +39,13 @@ class Source(NamedTuple):
 
 def source_of(
     recipe: Recipe, rig: Rig, known: Known, specimen: Specimen, operating: Operating, of_rig: Draws, of_specimen: Draws
-) -> Source:
+) -> SpecimenSource:
     """Origin of the records of a specimen; its operating grids go on with the combinations of ``of_rig`` and ``of_specimen``.
 
     ``known`` are the quantities of its rig.
     """
     rungs = recipe.corpus.rungs if recipe.corpus.rungs is not None and specimen.fault != "healthy" else (1.0,)
-    commons: dict[Level, Common] = {}
+    commons: dict[Level, CommonNumbers] = {}
     if "rig" in operating.levels.values():
         rng = stream(recipe.seed, rig.number, 0, 0, Purpose.RIG_OPERATION)
         commons["rig"] = common_numbers(recipe, rng, of_rig.combination.number)
@@ -58,7 +58,7 @@ def source_of(
         STATIC_RATING: lambda _: static_rating(rig.bearing),
         LEAST_AXIAL_LOAD: lambda value: least_axial_load(value("load_n"), specimen.bearing.contact_angle),
     }
-    return Source(rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known)
+    return SpecimenSource(rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known)
 
 
 def record_points(recipe: Recipe, numbers: range) -> dict[int, NDArray[np.float64]]:
@@ -75,7 +75,9 @@ def record_points(recipe: Recipe, numbers: range) -> dict[int, NDArray[np.float6
     return points
 
 
-def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int, NDArray[np.float64]]) -> Scenario:
+def draw_record(
+    recipe: Recipe, source: SpecimenSource, number: int, points: Mapping[int, NDArray[np.float64]]
+) -> Scenario:
     """Draw one record of a specimen.
 
     The records of a group have the streams of its first record, and the combination of grids and the quasi-random point of the group.

@@ -79,7 +79,7 @@ class Gear:
 
 
 @dataclass(frozen=True)
-class MachineCondition:
+class ConditionSignal:
     """What a machine that is not well adds to the background."""
 
     kind: str
@@ -138,5 +138,5 @@ class Background:
     growth: float = 0.0
     """The harmonics grow with the speed of a course to this power [1]."""
     gear: Gear | None = None
-    condition: MachineCondition | None = None
+    condition: ConditionSignal | None = None
     """None for a machine that is sound."""

@@ -12,7 +12,7 @@ from gen.recipe import Recipe, Section
 from gen.recipe.distributions import weighted_index
 from gen.scenarios.draws import Draws
 from gen.scenarios.model import Purpose, stream
-from gen.scenarios.sensing import Drawn, Gear, MachineCondition, RecordSensorFaults, RigSensorFaults
+from gen.scenarios.sensing import ConditionSignal, Drawn, Gear, RecordSensorFaults, RigSensorFaults
 from gen.support.units import decibel_to_ratio, to_si
 
 
@@ -78,7 +78,7 @@ def draw_gear(recipe: Recipe, rig: int) -> Gear | None:
     )
 
 
-def draw_machine_condition(recipe: Recipe, rig: int) -> MachineCondition | None:
+def draw_machine_condition(recipe: Recipe, rig: int) -> ConditionSignal | None:
     """Condition of the machine of a rig; None if it is sound."""
     wanted = recipe.machine_conditions
     if wanted is None:
@@ -97,7 +97,7 @@ def draw_machine_condition(recipe: Recipe, rig: int) -> MachineCondition | None:
     if entry.bursts is not None:
         of_bursts = draws.section(entry.bursts)
         bursts = of_bursts | {"level": decibel_to_ratio(of_bursts["level"]), "start": _angle(draws)}
-    return MachineCondition(entry.kind, drawn["order"], tuple(lines), bursts)
+    return ConditionSignal(entry.kind, drawn["order"], tuple(lines), bursts)
 
 
 def _angle(draws: Draws) -> float:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from gen.physics.bearing import Orders
+from gen.physics.bearing import FaultOrders
 from gen.physics.inputs import KernelInput
 from gen.scenarios import Scenario
 from gen.simulation.damage import untabulated_spalls
@@ -32,7 +32,7 @@ def load_zone(given: KernelInput) -> LoadZone:
     return LoadZone(math.atan2(y1 - y2, x1 - x2), math.acos(min(max(share, -1.0), 1.0)))
 
 
-def loaded_hits(given: KernelInput, orders: Orders, turns: float) -> int:
+def loaded_hits(given: KernelInput, orders: FaultOrders, turns: float) -> int:
     """Expected number of passages of loaded balls over all spalls in ``turns`` of the shaft, rounded [1].
 
     ``orders`` are the mean fault orders of the record. The tilt of the spin axis of a damaged ball does not count.

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
+from gen.physics.bearing import Bearing, FaultOrders, orders, slipping_orders
 from gen.physics.elementary import exponential, power, standard_normals
 from gen.physics.inputs import CONSTANT, Turning, walk_slip_rms
 from gen.physics.kernel.layout import (
@@ -165,7 +165,7 @@ class MeanMotion(NamedTuple):
 
     shaft_rate: float
     """[Hz]."""
-    orders: Orders
+    orders: FaultOrders
     """Fault frequencies in orders of the mean shaft rate [1]."""
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gen.physics.bearing import Orders
+from gen.physics.bearing import FaultOrders
 from gen.physics.inputs import KernelInput
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
@@ -52,9 +52,9 @@ class Truth(NamedTuple):
         return self._replace(**WidestSpall()._asdict(), loaded_hits=0)
 
     @property
-    def orders(self) -> Orders:
+    def orders(self) -> FaultOrders:
         """Mean fault orders, slip included [1]."""
-        return Orders(self.true_ftf, self.true_bpfo, self.true_bpfi, self.true_bsf)
+        return FaultOrders(self.true_ftf, self.true_bpfo, self.true_bpfi, self.true_bsf)
 
 
 class WidestSpall(NamedTuple):
@@ -77,7 +77,7 @@ def with_loaded_hits(truths: Sequence[Truth], inputs: Sequence[KernelInput | Non
     return completed
 
 
-def lines_of_faults(scenario: Scenario, orders: Orders) -> tuple[float, ...]:
+def lines_of_faults(scenario: Scenario, orders: FaultOrders) -> tuple[float, ...]:
     """Orders at which the faults of a record repeat; none for a worn race, which hits nothing [1]."""
     of_site = {"inner": orders.bpfi, "outer": orders.bpfo, "ball": 2 * orders.bsf}
     lines = dict.fromkeys(of_site[spall.site] for spall in scenario.specimen.spalls)

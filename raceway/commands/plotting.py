@@ -11,7 +11,7 @@ from raceway.console.options import A_PATH, Analysis, band_option, file_option
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
-    from features.report.pictures import Shown
+    from features.report.pictures import DrawnRecord
 
 PICTURES = (".png", ".svg", ".pdf")
 VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "waterfall", "cepstrum")
@@ -116,7 +116,7 @@ def _shown(
     speeds: tuple[float, float] | None,
     band: tuple[float, float] | None,
     reading: Reading,
-) -> "Shown":
+) -> "DrawnRecord":
     from features.report.shown import shown_record, shown_recording
     from gen import bearing_orders
 

@@ -10,9 +10,9 @@ import pytest
 
 from features.baselines import estimators
 from features.baselines.estimators import EnvelopeRule
-from features.faults import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, LOOKS, FaultClass, Line
+from features.faults import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, LOOKS, FaultClass, NominalLine
 from features.report import pictures
-from features.report.pictures import Shown, draw_record, fault_lines
+from features.report.pictures import DrawnRecord, draw_record, fault_lines
 from features.signal.lines import FAMILIES
 from features.table.indicators import Orders, feature_names
 from gen.corpus import FAULTS
@@ -69,7 +69,10 @@ def test_no_other_module_of_features_names_a_class():
 def looseness(monkeypatch):
     """One more class, in the format and in the table."""
     row = FaultClass(
-        "looseness", "#F0E442", (Line("fr", "shaft", 1), Line("2 fr", "shaft", 2)), single_lines=("whitened_fr",)
+        "looseness",
+        "#F0E442",
+        (NominalLine("fr", "shaft", 1), NominalLine("2 fr", "shaft", 2)),
+        single_lines=("whitened_fr",),
     )
     table = {**CLASSES, row.name: row}
     monkeypatch.setattr(estimators, "FAULTS", (*FAULTS, row.name))
@@ -84,7 +87,7 @@ def test_a_new_class_needs_one_row_to_be_predicted_and_drawn(looseness):
     np.testing.assert_array_equal(rule.predict(frame), [0, len(FAULTS)])
     assert fault_lines(ORDERS, looseness.name)[0] == {"fr": 1.0, "2 fr": 2.0}
     signal = np.random.default_rng(0).standard_normal(4000)
-    draw_record(Shown("loose", signal, 10_000.0, 30.0, ORDERS, looseness.name))
+    draw_record(DrawnRecord("loose", signal, 10_000.0, 30.0, ORDERS, looseness.name))
 
 
 def test_a_class_without_features_of_its_own_is_never_predicted_by_the_rule(monkeypatch):

@@ -16,7 +16,15 @@ from features.baselines.detection import detection
 from features.report import examples
 from features.report.curves import draw_detection, draw_reliability, draw_roc
 from features.report.page import QUANTITIES, _detection_caption, _findings, _of_faults, write_report
-from features.report.pictures import Shown, draw_record, fault_lines, picture, squared_envelope, thin, write_picture
+from features.report.pictures import (
+    DrawnRecord,
+    draw_record,
+    fault_lines,
+    picture,
+    squared_envelope,
+    thin,
+    write_picture,
+)
 from features.report.shown import shown_record
 from features.report.summaries import draw_scores
 from features.table.band import DEFAULT_BAND
@@ -300,7 +308,7 @@ def test_a_record_without_a_shaft_rate_is_refused(tmp_path):
 
 
 def test_a_constant_record_can_be_drawn():
-    shown = Shown("constant", np.ones(4000), FS, 30.0, Orders(**ORDERS), "inner")
+    shown = DrawnRecord("constant", np.ones(4000), FS, 30.0, Orders(**ORDERS), "inner")
     assert np.all(squared_envelope(shown)[1] == 0)
     assert picture(draw_record(shown), "png").startswith(b"\x89PNG")
 
@@ -308,7 +316,7 @@ def test_a_constant_record_can_be_drawn():
 @pytest.mark.parametrize("fault", ["inner", "outer", "ball", "cage"])
 def test_the_drawn_envelope_has_its_highest_lines_where_the_fault_is_marked(fault):
     rng = np.random.default_rng(2)
-    shown = Shown("made up", signal_of(fault, 31.0, rng), FS, 31.0, Orders(**ORDERS), fault)
+    shown = DrawnRecord("made up", signal_of(fault, 31.0, rng), FS, 31.0, Orders(**ORDERS), fault)
     order, spectrum = squared_envelope(shown)
     own, others = fault_lines(shown.orders, fault)
     seen = order > 0.2

@@ -13,7 +13,7 @@ from gen.corpus.simulated import MACHINE_CONDITIONS
 from gen.measurement.machine_condition import condition_bursts, condition_lines
 from gen.recipe import read_recipe
 from gen.recipe.machine_conditions import MachineKind
-from gen.scenarios import MachineCondition, draw_scenarios
+from gen.scenarios import ConditionSignal, draw_scenarios
 
 law = settings(deadline=None, max_examples=25)
 TURNS, N = 40, 24_000
@@ -26,9 +26,7 @@ STEADY = 2 * np.pi * TURNS / N * np.arange(N)
 )
 def test_the_lines_are_at_the_multiples_of_the_order_with_their_levels(order, drawn):
     lines = tuple({"level": level, "phase": phase} for level, phase in drawn)
-    spectrum = (
-        np.sqrt(2) / N * np.abs(np.fft.rfft(condition_lines(MachineCondition("rub", order, lines, None), STEADY)))
-    )
+    spectrum = np.sqrt(2) / N * np.abs(np.fft.rfft(condition_lines(ConditionSignal("rub", order, lines, None), STEADY)))
     places = np.round(order * TURNS * np.arange(1, len(lines) + 1)).astype(int)
     np.testing.assert_allclose(spectrum[places], [line["level"] for line in lines], rtol=1e-3, atol=1e-5)
     assert np.delete(spectrum, places).max() < 1e-3
@@ -79,7 +77,7 @@ def test_no_line_aliases_in_a_record_whose_speed_rises():
     """A line at half the sample rate or above would come back as one of no order of the shaft."""
     turns = np.cumsum(np.linspace(20.0, 60.0, N)) / 12_000
     lines = tuple({"level": 1.0, "phase": 0.0} for _ in range(300))
-    found = condition_lines(MachineCondition("rub", 1.0, lines, None), 2 * np.pi * turns)
+    found = condition_lines(ConditionSignal("rub", 1.0, lines, None), 2 * np.pi * turns)
     # 99 lines at 60 Hz lie below 6 kHz
     kept = sum(np.cos(2 * np.pi * order * turns) for order in range(1, 100))
     np.testing.assert_allclose(found, np.sqrt(2) * kept, atol=1e-3 * np.abs(kept).max())
