@@ -7,8 +7,6 @@ items         records one by one or in batches, for training
 columns       columns with safe names, and the page about a copy
 tables        labels and units as CSV; one file per record
 csv_files     CSV
-wav_files     WAV
-matlab_files  MATLAB and Octave
 parquet_files Parquet
 huggingface   Parquet by split with the card of the Hugging Face hub
 zarr_store    Zarr

@@ -18,8 +18,8 @@ from gen.corpus.choice import per_record
 from gen.corpus.copying import Block, Chosen
 from gen.corpus.schema import DRAWS, SCHEMA, class_names
 
-_LONGEST_NAME = 60  # letters; MATLAB allows 63
-_RESERVED = ("record", "file", "place", "units", "channels")
+_LONGEST_NAME = 60  # letters; PostgreSQL cuts names after 63
+_RESERVED = ("record", "file")
 _TERMS = {"license": "Licence", "creator_name": "Creators", "references": "References", "metadata_link": "Published at"}
 """Global attributes that the page repeats, with their headings."""
 

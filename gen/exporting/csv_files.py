@@ -19,10 +19,10 @@ def write_csv(export: Export, folder: Path) -> str:
     lines = header + "\n" + "".join(f"{time:.9g}{row}\n" for time in times)
     with label_table(export, folder) as write:
         for block in export.blocks(_BLOCK_BYTES):
-            files = [record_file(folder, number, "csv") for number in block.numbers]
+            files = [record_file(folder, number) for number in block.numbers]
             for file, signal in zip(files, block.accelerations(), strict=True):
                 (folder / file).write_text(lines % tuple(signal.T.ravel().tolist()), encoding="ascii")
-            write(block, [(file,) for file in files])
+            write(block, files)
     return export.page(_READING)
 
 

@@ -14,9 +14,7 @@ from gen.corpus.outputs import check_new
 from gen.exporting.columns import Export
 from gen.exporting.csv_files import write_csv
 from gen.exporting.huggingface import write_huggingface
-from gen.exporting.matlab_files import write_mat
 from gen.exporting.parquet_files import write_parquet, write_parquet_file
-from gen.exporting.wav_files import write_wav
 from gen.exporting.zarr_store import write_store, write_zarr
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
@@ -26,14 +24,13 @@ _PART_BYTES = 16_000_000  # of single precision
 FORMS: Mapping[str, Callable[[Export, Path], str]] = {
     "parquet": write_parquet,
     "zarr": write_zarr,
-    "mat": write_mat,
     "csv": write_csv,
-    "wav": write_wav,
     "huggingface": write_huggingface,
 }
 """Forms that are folders of files: functions that write into a folder and return its README.md."""
 SUFFIXES = (".nc", ".parquet", ".zarr")
 """Suffixes of targets of one file, or of one store; a target without is a folder."""
+_READ_BY_OTHERS = "NAME.nc is netCDF, which MATLAB, R, Julia and Octave read"
 _NEEDS = {"parquet": ("pyarrow", "parquet"), "huggingface": ("pyarrow", "parquet"), "zarr": ("zarr", "zarr")}
 """Package that a form needs, and the extra that brings it."""
 
@@ -92,7 +89,7 @@ def copy(
         Compression of the signals of a corpus, ``zlib`` without. Every netCDF-4 reader knows it.
     float32 : bool
         Store accelerations [m s-2] in single precision in place of counts.
-    to : {"parquet", "zarr", "mat", "csv", "wav", "huggingface"}, optional
+    to : {"parquet", "zarr", "csv", "huggingface"}, optional
         Form of a folder for another program.
     progress : callable, optional
         Called with the number of records written and of all that are chosen.
@@ -148,10 +145,12 @@ def _write_parts(export: Export, corpus: NewCorpus) -> None:
 def _form(target: Path, to: str | None, codec: str | None) -> str:
     """Form of a target, after a check of the options."""
     if to is not None and to not in FORMS:
-        raise CorpusError(f"to: there is no form {to!r}; allowed are {', '.join(FORMS)}.")
+        raise CorpusError(f"to: there is no form {to!r}; allowed are {', '.join(FORMS)}; {_READ_BY_OTHERS}.")
     suffix = target.suffix if target.suffix in SUFFIXES else ""
     if to is None and target.suffix[1:] in FORMS and not suffix:
         raise CorpusError(f"{target}: {target.suffix[1:]} is a folder of files; give it by --to {target.suffix[1:]}.")
+    if target.suffix in (".mat", ".wav"):
+        raise CorpusError(f"{target}: copies are not written as {target.suffix}; {_READ_BY_OTHERS}.")
     if suffix and to is not None:
         raise CorpusError(f"{target}: {suffix} is one file, and --to {to} makes a folder; leave one of the two out.")
     form = to or suffix[1:] or "folder"

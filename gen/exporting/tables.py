@@ -20,37 +20,37 @@ LABELS, VARIABLES = "labels.csv", "variables.csv"
 _FORMULA = ("=", "+", "-", "@")
 
 
-Writer = Callable[[Block, Iterable[Sequence[Any]]], None]
-"""Adds the rows of a block to a table; its second argument has, for each record, its file and what else goes before its labels."""
+Writer = Callable[[Block, Iterable[str]], None]
+"""Adds the rows of a block to a table; its second argument has the file of each record."""
 
 
 @contextmanager
-def label_table(export: Export, folder: Path, more: Sequence[str] = ()) -> Iterator[Writer]:
-    """Write ``labels.csv``, one row a record: its number in the corpus, its file, ``more``, and its labels without its scenario."""
+def label_table(export: Export, folder: Path) -> Iterator[Writer]:
+    """Write ``labels.csv``, one row a record: its number in the corpus, its file, and its labels without its scenario."""
     columns = [column for column in export.columns if column.variable != DRAWS]
     with (folder / LABELS).open("w", encoding="utf-8", newline="") as stream:
         table = csv.writer(stream, lineterminator="\n")
-        table.writerow(["record", "file", *more, *(column.name for column in columns)])
+        table.writerow(["record", "file", *(column.name for column in columns)])
 
-        def write(block: Block, files: Iterable[Sequence[Any]]) -> None:
+        def write(block: Block, files: Iterable[str]) -> None:
             cells = zip(*(map(_cell, column.of(block.dataset).tolist()) for column in columns), strict=True)
             for number, file, labels in zip(block.numbers.tolist(), files, cells, strict=True):
-                table.writerow([number, *file, *labels])
+                table.writerow([number, file, *labels])
 
         yield write
     _write_variables(columns, folder)
 
 
-def record_file(folder: Path, number: int, suffix: str) -> str:
+def record_file(folder: Path, number: int) -> str:
     """Name of the file of a record, relative to the folder of the copy; a thousand records share one folder, which is made.
 
     >>> import tempfile
-    >>> record_file(Path(tempfile.mkdtemp()), 12345, "wav")
-    'records/00012/record-0012345.wav'
+    >>> record_file(Path(tempfile.mkdtemp()), 12345)
+    'records/00012/record-0012345.csv'
     """
     within = f"records/{number // 1000:05d}"
     (folder / within).mkdir(parents=True, exist_ok=True)
-    return f"{within}/record-{number:07d}.{suffix}"
+    return f"{within}/record-{number:07d}.csv"
 
 
 def cell_text(text: str) -> str:

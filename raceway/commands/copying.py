@@ -13,7 +13,7 @@ from raceway.console.progress import notice, progress
 if TYPE_CHECKING:
     from gen.corpus import Codec
 
-FORMS = ("parquet", "zarr", "mat", "csv", "wav", "huggingface")
+FORMS = ("parquet", "zarr", "csv", "huggingface")
 
 
 def _corpora(context: click.Context, parameter: click.Parameter, paths: tuple[Path, ...]) -> list[Path]:
@@ -65,7 +65,7 @@ def copy(
     The name of TARGET gives the form:
 
       NAME            folder of a corpus
-      NAME.nc         corpus in one netCDF-4 file
+      NAME.nc         corpus in one netCDF-4 file, for MATLAB, R, Julia and Octave too
       NAME.parquet    one table: a row per record, for pandas, polars, DuckDB, Spark
       NAME.zarr       one store, for xarray
 
@@ -73,9 +73,7 @@ def copy(
 
       parquet      tables of up to 500 MB
       zarr         a store
-      mat          struct arrays for MATLAB and Octave
       csv          a table of labels, and one file per record
-      wav          a table of labels, and one sound file per record
       huggingface  Parquet by split with a card, for datasets.load_dataset
 
     Records keep samples, labels and splits, and simulated records can still be replayed. Several sources are joined, simulated and
@@ -90,7 +88,7 @@ def copy(
       raceway copy corpus.nc -o fast_inner --where "fault in ('inner', 'outer') and shaft_rate > 20"
       raceway copy corpus -o test_set --split test --channels housing
       raceway copy simulated measured -o both --rename-channel fe=accelerometer --float32
-      raceway copy corpus -o matlab --to mat --where "not (bearing == '6205' or load <= 500)"
+      raceway copy corpus -o tables --to csv --where "not (bearing == '6205' or load <= 500)"
 
     Next: raceway info TARGET, raceway validate TARGET
     """

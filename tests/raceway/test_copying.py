@@ -56,9 +56,9 @@ def test_several_corpora_are_joined(run, told, tones, tmp_path):
 
 
 def test_a_form_for_another_program_says_where_to_read_on(run, tones, tmp_path):
-    done = run("copy", tones[0], "-o", tmp_path / "out", "--to", "wav", "--where", "fault == 'inner'")
+    done = run("copy", tones[0], "-o", tmp_path / "out", "--to", "csv", "--where", "fault == 'inner'")
     assert done.exit_code == 0
-    assert "3 of 12 records, 1 channel (housing) as wav in 6 files" in done.stdout
+    assert "3 of 12 records, 1 channel (housing) as csv in 6 files" in done.stdout
     assert f"Next: read {tmp_path / 'out'}/README.md" in done.stdout
 
 

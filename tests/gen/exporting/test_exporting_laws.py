@@ -4,26 +4,23 @@ import csv
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-import scipy.io
 import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.io import wavfile
 
 import gen
 from gen.corpus import SIGNAL, Publication, copying, new_corpus, open_corpus, publish, stored_signal
-from gen.exporting import FORMS, matlab_files, parquet_files
+from gen.exporting import FORMS, parquet_files
 from gen.exporting.columns import plain_names
 from gen.exporting.tables import cell_text
 from gen.support.errors import CorpusError
-from tests.corpora import COUNTS_PER_UNIT, FS, dataset, write_corpus, write_parts
+from tests.corpora import FS, dataset, write_corpus, write_parts
 
 KINDS = ("counts", "float32")
 
@@ -88,44 +85,6 @@ def test_parquet_gives_back_every_record_with_units(corpus, tmp_path):
     assert b"comment" not in table.schema.metadata  # it is about corpus.nc
 
 
-def test_matlab_files_give_back_every_record_with_units(corpus, tmp_path, monkeypatch):
-    monkeypatch.setattr(matlab_files, "FILE_BYTES", 4 * 2 * 50 * 4)  # four records
-    gen.copy(corpus, tmp_path / "out", to="mat")
-    expected, labels = opened(corpus), rows(tmp_path / "out/labels.csv")
-    files = {path.name: scipy.io.loadmat(path) for path in (tmp_path / "out").glob("*.mat")}
-    assert [files[name]["records"].shape for name in sorted(files)] == [(1, 4), (1, 4), (1, 1)]
-    for number, row in enumerate(labels):
-        found = files[row["file"]]["records"][0, int(row["place"]) - 1]
-        np.testing.assert_array_equal(found["acceleration"].T, stored(expected)[number])
-        assert found["acceleration"].dtype == np.float32
-        assert found["fault"][0] == fault_names(expected)[number]
-        assert found["width"][0, 0] == expected["width"].values[number]
-        assert found["record"][0, 0] == number
-    about = files["records-00000.mat"]
-    assert about["units"]["width"][0, 0][0] == "m"
-    assert [name[0] for name in about["channels"][0]] == ["a", "b"]
-    assert about["sample_rate"][0, 0] == FS
-
-
-@pytest.mark.skipif(shutil.which("octave-cli") is None, reason="Octave is not installed")
-def test_octave_opens_the_struct_array(corpus, tmp_path):
-    gen.copy(corpus, tmp_path / "out", to="mat")
-    expected = opened(corpus)
-    code = (
-        "load('records-00000.mat'); inner = records(strcmp({records.fault}, 'inner')); "
-        "printf('%d %d %s %s %s\\n', size(records), class(records(1).width), units.width, channels{2}); "
-        "printf('%.9g\\n', [inner.width], double(records(3).acceleration(:, 2)));"
-    )
-    run = subprocess.run(
-        ["octave-cli", "--norc", "--eval", code], cwd=tmp_path / "out", capture_output=True, text=True, check=False
-    )
-    first, *numbers = run.stdout.split("\n")
-    assert first == "1 9 double m b", run.stderr
-    found = np.array(numbers[:-1], float)
-    inner = expected["width"].values[np.array(fault_names(expected)) == "inner"]
-    np.testing.assert_allclose(found, np.concatenate([inner, stored(expected)[2, 1]]), rtol=1e-8)
-
-
 def test_csv_gives_back_every_bit_of_single_precision(corpus, tmp_path):
     gen.copy(corpus, tmp_path / "out", to="csv")
     expected, labels = opened(corpus), rows(tmp_path / "out/labels.csv")
@@ -140,19 +99,6 @@ def test_csv_gives_back_every_bit_of_single_precision(corpus, tmp_path):
     units = {row["name"]: row["units"] for row in rows(tmp_path / "out/variables.csv")}
     assert units["width"] == "m"
     assert set(units) == set(labels[0]) - {"record", "file"}
-
-
-def test_wav_holds_the_stored_numbers_and_their_scale(corpus, tmp_path):
-    gen.copy(corpus, tmp_path / "out", to="wav")
-    expected, labels = opened(corpus), rows(tmp_path / "out/labels.csv")
-    for number, row in enumerate(labels):
-        rate, found = wavfile.read(tmp_path / "out" / row["file"])
-        assert rate == FS
-        np.testing.assert_allclose(found.T * float(row["m_s2_per_unit"]), stored(expected)[number], rtol=1e-6)
-    if float(labels[0]["m_s2_per_unit"]) != 1:
-        whole = np.rint(expected[SIGNAL].values[-1] * COUNTS_PER_UNIT)
-        assert found.dtype == np.int16
-        np.testing.assert_array_equal(found.T, whole)
 
 
 def test_xarray_opens_the_zarr_store_as_the_corpus(corpus, tmp_path):
@@ -171,21 +117,18 @@ def test_xarray_opens_the_zarr_store_as_the_corpus(corpus, tmp_path):
         np.testing.assert_array_equal(found[SIGNAL].values, stored_signal(expected[SIGNAL].variable)[0])
 
 
-@pytest.mark.parametrize(
-    ("to", "name"), [("parquet", "signal"), ("csv", "signal"), ("wav", "acceleration"), ("zarr", "signal")]
-)
-def test_the_lines_on_the_page_of_a_copy_read_it(counts, tmp_path, monkeypatch, to, name):
-    if to in ("parquet", "csv", "wav"):
+@pytest.mark.parametrize("to", ["parquet", "csv", "zarr"])
+def test_the_lines_on_the_page_of_a_copy_read_it(counts, tmp_path, monkeypatch, to):
+    if to in ("parquet", "csv"):
         pytest.importorskip("pandas")
     gen.copy(counts, tmp_path / "out", to=to)
     monkeypatch.chdir(tmp_path / "out")
     found = {}
     exec(lines_on_reading(tmp_path / "out"), found)  # noqa: S102 - our own page
-    read, expected = np.asarray(found[name]), stored(opened(counts))
+    read, expected = np.asarray(found["signal"]), stored(opened(counts))
     wanted = {
         "parquet": expected[:, 0],
         "csv": np.column_stack([np.arange(50) / FS, *expected[0]]),
-        "wav": expected[0].T,
         "zarr": expected[0, 0],
     }
     np.testing.assert_allclose(read, wanted[to], rtol=1e-6)
@@ -245,7 +188,7 @@ def test_the_same_corpus_gives_the_same_bytes(counts, tmp_path, to, monkeypatch)
 def test_a_single_file_gives_the_same_bytes_as_its_folder(counts, tmp_path):
     gen.copy(counts, tmp_path / "one.nc")
     gen.copy(tmp_path / "one.nc", tmp_path / "folder")
-    for to in ("parquet", "mat"):
+    for to in ("parquet", "csv"):
         gen.copy(tmp_path / "folder", tmp_path / f"folder_{to}", to=to)
         gen.copy(tmp_path / "one.nc", tmp_path / f"file_{to}", to=to)
         assert tree(tmp_path / f"folder_{to}") == tree(tmp_path / f"file_{to}")
@@ -284,12 +227,9 @@ def read_labels_and_signals(folder, to):
         return {
             name: table[name].to_numpy() for name in table.column_names if not name.startswith(("record", "accel"))
         } | {"signal": np.stack(table["acceleration_b"].to_numpy())}
-    signals = [path.read_bytes() for path in sorted(folder.rglob("record*.csv")) + sorted(folder.rglob("record*.wav"))]
-    signals += [each["acceleration"] for path in folder.glob("*.mat") for each in scipy.io.loadmat(path)["records"][0]]
+    signals = [path.read_bytes() for path in sorted(folder.rglob("record*.csv"))]
     labels = rows(folder / "labels.csv")
-    return {name: [row[name] for row in labels] for name in labels[0] if name not in ("record", "file", "place")} | {
-        "": signals
-    }
+    return {name: [row[name] for row in labels] for name in labels[0] if name not in ("record", "file")} | {"": signals}
 
 
 def test_licence_and_creators_go_along(tmp_path):
@@ -313,7 +253,7 @@ def test_texts_of_strangers_stay_texts(tmp_path):
     for to in FORMS:
         gen.copy(folder, tmp_path / to, to=to)
         assert all(re.fullmatch(r"[\w./-]+", name) and ".." not in name for name in tree(tmp_path / to) if to != "zarr")
-    for table in ("csv/labels.csv", "csv/variables.csv", "mat/labels.csv", "wav/labels.csv"):
+    for table in ("csv/labels.csv", "csv/variables.csv"):
         cells = [cell for row in csv.reader((tmp_path / table).read_text().split("\n")) for cell in row]
         assert not [cell for cell in cells if cell.startswith(("=", "+", "@"))]
     header = (tmp_path / "huggingface/README.md").read_text().split("---\n")[1]
@@ -342,11 +282,16 @@ def test_refusals_are_one_sentence(counts, tmp_path, monkeypatch):
     with pytest.raises(CorpusError, match=r"full: exists and is not an empty folder; give a new name"):
         gen.copy(counts, tmp_path / "full", to="csv")
     assert (tmp_path / "full/own.txt").read_text() == "mine"
-    with pytest.raises(CorpusError, match=r"to: there is no form 'xls'; allowed are parquet, zarr, mat, csv"):
+    with pytest.raises(CorpusError, match=r"to: there is no form 'xls'; allowed are parquet, zarr, csv"):
         gen.copy(counts, tmp_path / "out", to="xls")
     for name, to, sentence in (
         ("a.csv", None, "csv is a folder of files; give it by --to csv"),
-        ("a.nc", "wav", "nc is one file, and --to wav makes a folder; leave one of the two out"),
+        (
+            "a.mat",
+            None,
+            "a.mat: copies are not written as .mat; NAME.nc is netCDF, which MATLAB, R, Julia and Octave read",
+        ),
+        ("a.nc", "csv", "nc is one file, and --to csv makes a folder; leave one of the two out"),
     ):
         with pytest.raises(CorpusError, match=sentence):
             gen.copy(counts, tmp_path / name, to=to)
@@ -360,9 +305,9 @@ def test_a_full_disk_ends_in_one_sentence(counts, tmp_path, monkeypatch):
     def refuse(*_args, **_named):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(wavfile, "write", refuse)
+    monkeypatch.setattr("gen.exporting.csv_files.record_file", refuse)
     with pytest.raises(CorpusError, match=r"out: could not be written \(No space left on device\); free some space"):
-        gen.copy(counts, tmp_path / "out", to="wav")
+        gen.copy(counts, tmp_path / "out", to="csv")
     assert list(tmp_path.iterdir()) == []
 
 
