@@ -23,7 +23,6 @@ manifest        files of a corpus with size and hash, and its facts
 acdd            global attributes of a published corpus
 index           the variables of all parts in one file; opening a corpus
 visible         faults that can be seen in their records
-recoverable     labels that can be recovered from the signals
 card            data card of a corpus
 croissant       files, fields and licence for catalogues of data sets
 finishing       index, manifest and data card of finished parts

@@ -53,7 +53,7 @@ def data_card(path: Path | str) -> str:
             *terms(manifest.publication),
             *additions.pictures(added.pictures),
             *opening(path, corpus_files(path, "size")[0]),
-            *ranges(corpus, recipe_text(path)),
+            *ranges(corpus),
             *labels.findings(corpus),
             *additions.scores(added.scores),
             *citation(title, manifest, manifest.publication),

@@ -11,14 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.corpus import FAULTS, Publication, data_card, open_corpus, publish, read_manifest, read_publication
-from gen.corpus.card import ranges
 from gen.corpus.card.additions import CardAdditions, CardPicture, write_additions
 from gen.corpus.card.origin import rebuilding
-from gen.corpus.card.ranges import FEWEST, Groups, quantity_ranges, some_records, variable_ranges
+from gen.corpus.card.ranges import ranges
 from gen.corpus.card.terms import citation
 from gen.corpus.manifest import Manifest, Overrides
 from gen.support.errors import CorpusError
-from gen.support.units import UNITS
 from tests.tone_corpora import write_corpus
 
 
@@ -57,57 +55,37 @@ def test_the_tables_count_the_records_of_the_corpus(corpus):
     assert "All records belong to the split train" in card
 
 
-def test_every_variable_is_listed_with_its_range_or_its_one_value(corpus):
+def range_rows(opened):
+    """Cells of the table of ranges by variable and column."""
+    header, _, *rows = ([cell.strip() for cell in line.split("|")[1:-1]] for line in ranges(opened) if line[:1] == "|")
+    return {row[0].strip("`"): dict(zip(header, row, strict=True)) for row in rows}
+
+
+def test_every_variable_is_listed_with_its_range_by_class_or_its_one_value(corpus):
     with open_corpus(corpus) as opened:
-        rows, constant = variable_ranges(opened)
-        load, depth = opened["load"].values, opened["depth"].values
-    found = {(row.name, row.fault): row[3:] for row in rows}
-    assert found["load", "all"] == (load.min(), np.median(load), load.max())
-    assert found["depth", "outer"] == (2e-5, 2e-5, 2e-5)
-    assert not any(name == "depth" and "healthy" in fault for name, fault in found)
-    assert depth.min() == 0
-    assert "`sample_rate` 4000 Hz" in constant
+        rows, last = range_rows(opened), ranges(opened)[-1]
+        load = opened["load"].values[opened["fault"].values == FAULTS.index("outer")]
+    assert rows["load"]["outer"] == f"{load.min():.4g} / {np.median(load):.4g} / {load.max():.4g}"
+    assert (rows["load"]["unit"], rows["depth"]["outer"]) == ("N", "2e-05")
+    assert "`sample_rate` 4000 Hz" in last
+
+
+def test_values_that_are_not_finite_have_no_part_in_a_range(corpus):
+    with open_corpus(corpus) as opened:
+        load = opened["load"].values.copy()
+        fault = opened["fault"].values
+        load[fault == FAULTS.index("inner")] = np.nan
+        load[np.flatnonzero(fault == FAULTS.index("outer"))[:-1]] = np.inf
+        rows = range_rows(opened.assign(load=opened["load"].copy(data=load)))
+    assert rows["load"]["inner"] == ""
+    assert rows["load"]["outer"] == f"{load[np.flatnonzero(fault == FAULTS.index('outer'))[-1]]:.4g}"
 
 
 def test_a_level_has_the_unit_that_its_meaning_states(corpus):
     with open_corpus(corpus) as opened:
         levels = opened["load"].copy(data=np.linspace(-5.0, 40.0, opened.sizes["record"]))
         levels.attrs |= {"units": "1", "long_name": "bearing over background in decibels re 1"}
-        rows, _ = variable_ranges(opened.assign(snr=levels))
-    assert {(row.name, row.unit) for row in rows if row.name == "snr"} == {("snr", "dB")}
-
-
-@given(st.integers(0, 10_000))
-@settings(max_examples=20, deadline=None)
-def test_classes_of_one_distribution_share_a_row_and_a_class_that_is_moved_has_its_own(seed):
-    rng = np.random.default_rng(seed)
-    specimen = np.repeat(np.arange(3 * 40), 2)
-    groups = Groups(specimen % 3, specimen)
-    values = rng.uniform(0, 1, specimen.size)
-    assert [row.fault for row in quantity_ranges("x", "m", values, groups)] == ["all"]
-    moved = values + 2 * (groups.fault == 1)
-    rows = {row.fault: row for row in quantity_ranges("x", "m", moved, groups)}
-    assert set(rows) == set(FAULTS[:3])
-    assert rows["inner"].least >= 2 > rows["outer"].largest
-
-
-def test_classes_with_few_specimens_are_not_compared():
-    specimen = np.repeat(np.arange(2 * (FEWEST - 1)), 50)
-    groups = Groups(specimen % 2, specimen)
-    assert [row.fault for row in quantity_ranges("x", "m", 1.0 * groups.fault, groups)] == ["all"]
-
-
-@given(st.integers(1, 5000))
-@settings(max_examples=40, deadline=None)
-def test_the_records_whose_draws_are_read_are_some_of_the_corpus(n):
-    chosen = some_records(n)
-    assert len(chosen) == min(n, ranges.MOST_DRAWS)
-    assert (np.diff(chosen) > 0).all()
-    assert 0 <= chosen[0] <= chosen[-1] < n
-
-
-def test_every_unit_of_a_recipe_has_its_symbol_in_si():
-    assert set(ranges.SI_SYMBOLS) == set(UNITS)
+        assert range_rows(opened.assign(snr=levels))["snr"]["unit"] == "dB"
 
 
 def rms_of_first(corpus):
