@@ -26,7 +26,6 @@ from gen.physics.kernel.layout import (
     FloatArray,
 )
 from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
-from gen.physics.kernel.strikes import LONGEST_PULSE
 from gen.physics.kernel.turning import STRIDE
 from gen.physics.rotor import Machine
 
@@ -198,12 +197,12 @@ def split_mix(number: int, seed: int) -> float:
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)  # of Gauss and Legendre, for integrals over part of a half sine
 
 
-def half_sine_under_slope(since: float, reach: float, length: float = KNOCK_SECONDS) -> float:
+def half_sine_under_slope(since: float, reach: float) -> float:
     """Integral of the unit half sine that began ``since`` seconds ago, under a line from 1 now to 0 at ``reach`` from now [s]."""
-    low, high = np.clip(sorted((since, since + reach)), 0.0, length)
+    low, high = np.clip(sorted((since, since + reach)), 0.0, KNOCK_SECONDS)
     at = (low + high) / 2 + (high - low) / 2 * NODES
     line = 1 - (at - since) / reach
-    return float((high - low) / 2 * WEIGHTS @ (np.sin(np.pi * at / length) * line))
+    return float((high - low) / 2 * WEIGHTS @ (np.sin(np.pi * at / KNOCK_SECONDS) * line))
 
 
 def waviness(record: KernelInput, on_inner: FloatArray, on_outer: FloatArray) -> FloatArray:
@@ -276,7 +275,7 @@ class Meeting(NamedTuple):
     number: int
     """Of the passage."""
     share: float
-    """Factor of its drop and of its strikes [1]."""
+    """Factor of its drop [1]."""
 
 
 def meetings(record: KernelInput, angles: FloatArray, jitter: FloatArray, share: float) -> list[Meeting]:
@@ -312,43 +311,6 @@ def drops(record: KernelInput, angles: FloatArray, jitter: FloatArray, share: fl
         arc = ball if fault.site == "ball" else abs(race)
         total[number] += part * fall(fault, offset, arc, ball, race)
     return total
-
-
-def strike_forces(
-    record: KernelInput, slow: Slow, knot: float, at: int, tau: float, y: FloatArray, dt: float
-) -> FloatArray:
-    """Forces of balls that strike edges, on shaft and housing, x and y of each [N], shape (4,).
-
-    ``y`` is the state at the knot, which decides whether a ball is held by the races.
-    """
-    forces, cosine = np.zeros(4), record.machine.contact_cosine
-    if record.ball_mass == 0:
-        return forces
-    motion = [[values[at + k] for values in (slow.angles, slow.jitter)] for k in (0, 1)]
-    for one in motion:
-        one[0] = one[0] + np.array([0, 0, slow.shift[at]])
-    middle = [(first + last) / 2 for first, last in zip(*motion, strict=True)]
-    offsets = [np.array([met.offset for met in meetings(record, *some, slow.share[at + 1])]) for some in motion]
-    for number, met in enumerate(meetings(record, *middle, slow.share[at + 1])):
-        moved = wrapped(offsets[1][number] - offsets[0][number])
-        rate = moved / knot
-        place = slow.angles[at, 1] + 2 * np.pi * met.ball / record.bearing.n_balls
-        direction = np.array([math.cos(place), math.sin(place)])
-        held = cosine * direction @ (y[0:2] - y[2:4]) - record.machine.half_clearance > 0
-        arc = record.bearing.radius(met.fault.site)
-        rows = met.fault.strikes or ((), ())
-        for strike in rows[1 if met.fault.site == "ball" and met.race < 0 else 0]:
-            speed = met.share * strike.change * abs(rate) * arc
-            if not held or speed <= 0:
-                continue
-            length = max(record.hertz_time * (speed / 2) ** -0.2, strike.spread / abs(rate))
-            length = min(length, LONGEST_PULSE)
-            begun = (met.offset - moved / 2 - strike.offset) / rate + strike.spread / abs(rate) / 2
-            since = begun + tau * knot
-            mean = sum(half_sine_under_slope(since, reach, length) for reach in (-dt, dt)) / dt
-            pulse = record.ball_mass * speed * math.pi / (2 * length) * mean * cosine * direction
-            forces += np.concatenate([-pulse, [0, 0]] if met.race > 0 else [[0, 0], pulse])
-    return forces
 
 
 class Contacts(NamedTuple):
@@ -388,19 +350,10 @@ def contact_stiffness(machine: Machine, squeeze: FloatArray) -> float:
     return float(machine.contact_cosine**2 * slopes.sum())
 
 
-def right_hand_side(
-    record: KernelInput,
-    slow: Slow,
-    knot: float,
-    at: int,
-    tau: float,
-    y: FloatArray,
-    at_knot: FloatArray | None = None,
-    n_steps: int = 1,
-) -> FloatArray:
+def right_hand_side(record: KernelInput, slow: Slow, knot: float, at: int, tau: float, y: FloatArray) -> FloatArray:
     """Derivative of the state, shape (coordinate,), a share ``tau`` of the way from knot ``at`` to the next.
 
-    The equations of docs/model.md, Bodies and forces, term by term. ``at_knot`` is the state at the knot, if it is not ``y``.
+    The equations of docs/model.md, Bodies and forces, term by term.
     """
     machine = record.machine
     force = contact_force(machine, contacts(record, slow, at, tau, y))
@@ -410,7 +363,6 @@ def right_hand_side(
     outwards, across = np.array([math.cos(angle), math.sin(angle)]), np.array([math.sin(angle), -math.cos(angle)])
     turning = record.turning.unbalance * (rate**2 * outwards + speeding_up * across) + record.turning.bow * outwards
     outer = (1 - tau) * slow.forces[at, 0] + tau * slow.forces[at, 1]
-    outer = outer + strike_forces(record, slow, knot, at, tau, y if at_knot is None else at_knot, knot / n_steps)
     ring = np.array([machine.ring_stiffness_x, machine.ring_stiffness_y])
     support = np.array([machine.support_stiffness_x, machine.support_stiffness_y])
     leak = np.array([machine.support_damping_x, machine.support_damping_y])
@@ -430,13 +382,12 @@ def march_twin(record: KernelInput, start: FloatArray, n_knots: int, n_steps: in
     y = np.array(start, dtype=float)
     states, accelerations = [y], []
     for at in range(n_knots):
-        here = y
         for number in range(n_steps):
             begin, middle, end = number / n_steps, (number + 0.5) / n_steps, (number + 1) / n_steps
-            k1 = right_hand_side(record, slow, knot, at, begin, y, here, n_steps)
-            k2 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k1, here, n_steps)
-            k3 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k2, here, n_steps)
-            k4 = right_hand_side(record, slow, knot, at, end, y + dt * k3, here, n_steps)
+            k1 = right_hand_side(record, slow, knot, at, begin, y)
+            k2 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k1)
+            k3 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k2)
+            k4 = right_hand_side(record, slow, knot, at, end, y + dt * k3)
             accelerations.append(k1[6:])
             y = y + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         states.append(y)

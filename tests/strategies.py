@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, MOST_STRIKES
+from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import LINE_EXPONENT
-from gen.physics.inputs import ROUND, KernelInput, SpallInput, Strike, Turning, Waviness
+from gen.physics.inputs import ROUND, KernelInput, SpallInput, Turning, Waviness
 from gen.physics.kernel.drop import PROFILES as EVERY_PROFILE
 from gen.physics.kernel.layout import n_process_terms
 from gen.physics.rotor import Machine, sensor_springs
@@ -169,20 +169,12 @@ def profiled_spalls(draw):
     some, profile = draw(spalls()), draw(st.sampled_from(EVERY_PROFILE))
     races = 2 if some.site == "ball" else 1
     tables = st.lists(st.tuples(*[depths] * 9), min_size=races, max_size=races)
-    rows = st.lists(st.lists(strikes(), max_size=MOST_STRIKES).map(tuple), min_size=races, max_size=races)
     return some._replace(
         profile=profile,
         table=tuple(draw(tables)) if profile == "table" else (),
-        strikes=tuple(draw(rows)),
         scatter=draw(st.sampled_from((0.0, 0.3))),
         seed=draw(st.integers(0, 2**52 - 1)),
     )
-
-
-@st.composite
-def strikes(draw):
-    """A strike near the middle of a spall, sharp or spread."""
-    return Strike(draw(st.floats(-0.02, 0.02)), draw(st.floats(0.01, 0.3)), draw(st.sampled_from((0.0, 0.005))))
 
 
 @st.composite
@@ -224,6 +216,4 @@ def troubled_records(draw):
         bearing=replace(there.bearing, roller_length=8e-3),
         waviness=there.waviness._replace(balls=ball_waves(seed, rms)),
         schedule=schedule,
-        ball_mass=2e-3,
-        hertz_time=2.8e-5,
     )

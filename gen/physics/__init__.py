@@ -13,7 +13,6 @@ rating     static load rating and equivalent static load
 lubricant  oil film and temperature: clearance, stiffness, damping
 axial      squeeze of the balls by an axial load
 profile    change of speed and load over a record
-impact     where the mass of a ball strikes the edges of a spall, and for how long
 trace      path of a ball over a measured surface, and its mean over a contact
 inputs     input of the kernel for one record
 kernel     compiled: integrates and decimates many records at once

@@ -17,17 +17,6 @@ from gen.physics.rotor import Machine, as_columns, ball_angles, rest
 FloatArray = NDArray[np.float64]
 
 
-class Strike(NamedTuple):
-    """A place where the path of a ball over a spall bends away from the race, so that the mass of the ball strikes."""
-
-    offset: float
-    """From the middle of the spall [rad]."""
-    change: float
-    """Change of the slope of the path [1]."""
-    spread: float = 0.0
-    """Angle over which the slope changes, 0 for a sharp edge [rad]."""
-
-
 class SpallInput(NamedTuple):
     """One spall."""
 
@@ -44,8 +33,6 @@ class SpallInput(NamedTuple):
     profile: str = "geometric"
     table: tuple[tuple[float, ...], ...] = ()
     """Drops from edge to edge, evenly spaced [m], if ``profile`` is ``table``: one row for a race spall, one per race for a ball spall."""
-    strikes: tuple[tuple[Strike, ...], ...] = ()
-    """Strikes of a ball that has a mass: one row for a race spall, one per race for a ball spall; at most ``MOST_STRIKES`` each."""
     scatter: float = 0.0
     """Standard deviation of the logarithm of the drop from passage to passage [1]."""
     seed: int = 0
@@ -140,10 +127,6 @@ class KernelInput(NamedTuple):
     """Factors of the shaft rate (mean over the knot) and of the load (at the start of the knot), shape (knot, 2); (0, 2) if constant."""
     displacement: bool = False
     """True for channels of displacement [m], False for channels of acceleration [m s-2]."""
-    ball_mass: float = 0.0
-    """Mass of a ball that strikes the edges of spalls; 0 for balls that only change their gap [kg]."""
-    hertz_time: float = 0.0
-    """Length of the impact of a ball times the fifth root of its speed, see :mod:`gen.physics.impact` [s (m/s)^(1/5)]."""
     start: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
     """x1, y1, x2, y2 at the start of the integration, see :func:`at_rest` [m]."""
 

@@ -17,8 +17,7 @@ def check_recipe(recipe: Sections) -> None:
     """ValueError about the first reason for which a recipe cannot be made; gives every share the range of its product."""
     _check_sizes(recipe)
     problem = (
-        _edges_problem(recipe)
-        or _faults_problem(recipe)
+        _faults_problem(recipe)
         or _corpus_problem(recipe)
         or _other_bearing_problem(recipe)
         or _sensing_problem(recipe)
@@ -63,16 +62,6 @@ def _spalls(fault: Fault) -> list[RaceFault | BallFault]:
     """Parts of a fault that are spalls."""
     parts = fault.parts if isinstance(fault, CompoundFault) else (fault,)
     return [part for part in parts if isinstance(part, RaceFault | BallFault)]
-
-
-def _edges_problem(recipe: Sections) -> str | None:
-    for number, fault in enumerate(recipe.faults):
-        if recipe.contact.ball_mass == "steel" and any(spall.profile == "rectangular" for spall in _spalls(fault)):
-            return (
-                f"faults[{number}].profile: the walls of a rectangular spall have no slope that gives the speed of an impact; "
-                f"take another profile, or contact.ball_mass: none."
-            )
-    return None
 
 
 def _faults_problem(recipe: Sections) -> str | None:

@@ -263,8 +263,6 @@ class ContactSection(Section):
 
     footprint: Literal["point", "hertz"] = "point"
     """Width over which a ball feels a spall: `hertz` averages over the contact ellipse, `point` takes its centre alone."""
-    ball_mass: Literal["none", "steel"] = "none"
-    """Mass of balls over a spall: `none` changes their gap alone, `steel` also strikes the edges with a one-sided pulse of force."""
     lubricant: LubricantSection | None = None
     """Oil in the contacts; dry if left out."""
 

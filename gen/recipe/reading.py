@@ -71,10 +71,11 @@ def recipe_hash(recipe: Recipe) -> str:
 
 
 def _values(recipe: Recipe, excluded: dict[str, bool]) -> dict[str, Any]:
-    """Values of a recipe; keys that are younger than the first corpora are left out at their defaults, so that hashes stay."""
+    """Values of a recipe with the keys of the first corpora, so that hashes stay: younger ones are left out at their defaults."""
     values = recipe.model_dump(mode="json", exclude=excluded)
     if recipe.other_bearing is None:
         del values["other_bearing"]
+    values["contact"]["ball_mass"] = "none"
     return values
 
 

@@ -129,7 +129,6 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
         lubricant=oil,
         footprint=recipe.contact.footprint == "hertz",
         sensor_faults=draw_rig_sensor_faults(recipe, number),
-        ball_mass=recipe.contact.ball_mass == "steel",
         high_pass=high_pass,
         offset=offset,
     )

@@ -146,8 +146,6 @@ class Rig:
     footprint: bool = False
     """True for contacts of Hertzian width, False for point contacts."""
     sensor_faults: RigSensorFaults | None = None
-    ball_mass: bool = False
-    """True if the mass of the balls strikes the edges of spalls."""
     high_pass: float = 0.0
     """Frequency below which the sensors measure less and less; 0 if they measure down to 0 Hz [Hz]."""
     offset: float = 0.0

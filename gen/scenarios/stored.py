@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _SCENARIO = TypeAdapter(Scenario)
 _LONGEST_PLACE = 100
+_NO_BALL_MASS = ', "ball_mass": false'  # of scenarios from before 0.1.0, when a ball could have a mass
 _ADVICE = "read the corpus with the version that wrote it."
 
 
@@ -74,6 +75,7 @@ def read_scenario(text: str) -> Scenario:
     CorpusError
         If the text is not a scenario.
     """
+    text = text.replace(_NO_BALL_MASS, "")
     try:
         scenario = _SCENARIO.validate_json(text, strict=True)
     except ValidationError as error:

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from gen.physics.bearing import Bearing, orders
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import footprints
-from gen.physics.impact import edge_strikes, path_strikes
-from gen.physics.inputs import ROUND, SpallInput, Strike, Waviness
+from gen.physics.inputs import ROUND, SpallInput, Waviness
 from gen.physics.kernel.compiling import compiled_to_disk
 from gen.physics.kernel.drop import GEOMETRIC, PROFILES, drop
 from gen.physics.trace import ball_path, contact_mean, spall_positions, with_roughness
@@ -33,25 +32,8 @@ def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[SpallInput, ...]
     made = []
     for number, (spall, bare) in enumerate(zip(spalls, untabulated_spalls(scenario), strict=True)):
         known = bare._replace(scatter=spall.scatter, seed=seeds[number])
-        if scenario.rig.ball_mass:
-            known = known._replace(strikes=_strikes(scenario, number, ball_load))
         made.append(_tabulate(scenario, number, known, ball_load) if _needs_table(scenario, spall) else known)
     return tuple(made)
-
-
-def _strikes(scenario: Scenario, number: int, ball_load: float) -> tuple[tuple[Strike, ...], ...]:
-    """Strikes of a rigid ball over a spall, one row for each race; a contact of finite width spreads each over its width."""
-    spall, bearing = scenario.specimen.spalls[number], scenario.specimen.bearing
-    arc, ball, races = bearing.radius(spall.site), bearing.ball_diameter / 2, _races(bearing, spall.site)
-    if spall.profile == "geometric" and spall.roughness == 0:
-        rows = [edge_strikes(spall.width, arc, ball, race, spall.depth) for race in races]
-    else:
-        rows = [path_strikes(path, spall.width, arc) for path in spall_paths(scenario, number)]
-    wide = _half_widths(scenario, spall.site, ball_load) if scenario.rig.footprint else (0.0,) * len(races)
-    return tuple(
-        tuple(strike._replace(spread=strike.spread + 2 * b / arc) for strike in row)
-        for row, b in zip(rows, wide, strict=True)
-    )
 
 
 def _races(bearing: Bearing, site: str) -> tuple[float, ...]:

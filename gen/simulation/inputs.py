@@ -8,7 +8,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gen.physics.impact import hertz_time, rolling_mass
 from gen.physics.inputs import KernelInput, at_rest
 from gen.physics.kernel.layout import SPEED_TERMS
 from gen.scenarios import Scenario
@@ -115,8 +114,6 @@ def _without_axial_load(scenario: Scenario) -> KernelInput:
         frequencies=start.frequencies,
         phases=start.phases,
         pickups=pickups,
-        ball_mass=rolling_mass(bearing) if scenario.rig.ball_mass else 0.0,
-        hertz_time=hertz_time(bearing) if scenario.rig.ball_mass else 0.0,
     )
 
 

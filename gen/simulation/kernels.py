@@ -12,7 +12,7 @@ from gen.physics.kernel.integrate import integrate_lanes
 from gen.physics.kernel.layout import Batch, Shape
 from gen.support.kernels import KernelCache
 
-DIMENSIONS = {"schedule": 3, "tables": 2, "strikes": 3}
+DIMENSIONS = {"schedule": 3, "tables": 2}
 """Dimensions of the arrays of a batch that have more than one."""
 
 _kernel: Any = integrate_lanes

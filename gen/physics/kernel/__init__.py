@@ -13,7 +13,6 @@ chance       random numbers that are functions of a count and a seed
 pulse        half-sine pulses of force
 outer_forces load, misalignment and cage knocks from knot to knot
 waviness     the gap under every ball: clearance and waviness
-strikes      the force of a ball that strikes the edge of a spall
 spalls       the drop of every ball that passes a spall
 decimate     from the rate of the steps down to the sample rate
 batch        records laid out in lanes

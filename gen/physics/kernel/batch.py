@@ -6,8 +6,8 @@ set by its name in :mod:`gen.physics.kernel.layout`, so a row that is forgotten 
 
 import numpy as np
 
-from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, MOST_STRIKES, TABLE_POINTS
-from gen.physics.inputs import KernelInput, Strike, Turning, farthest_jitter, is_wavy, spall_span, walk_slip_rms
+from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, TABLE_POINTS
+from gen.physics.inputs import KernelInput, Turning, farthest_jitter, is_wavy, spall_span, walk_slip_rms
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
 from gen.physics.kernel.layout import (
@@ -52,7 +52,6 @@ def input_shape(record: KernelInput) -> Shape:
         forced=record.schedule.size > 0 or bool(turning.twice_x or turning.twice_y or turning.knock),
         loose=record.machine.looseness > 0,
         roller=record.bearing.roller_length is not None,
-        struck=record.ball_mass > 0 and (bool(record.spalls) or wavy),
     )
 
 
@@ -64,7 +63,7 @@ def lay_out(records: list[KernelInput], shape: Shape, knot: float) -> Batch:
     padded = records + [records[0]] * (LANES - len(records))
     machines = as_columns([record.machine for record in padded])
     turnings = as_columns([record.turning for record in padded])
-    spalls, tables, strikes = _spalls(padded)
+    spalls, tables = _spalls(padded)
     return Batch(
         state=_state(padded, turnings).ravel(),
         params=_params(padded, machines, shape).ravel(),
@@ -76,7 +75,6 @@ def lay_out(records: list[KernelInput], shape: Shape, knot: float) -> Batch:
         waves=_waves(padded, shape).ravel(),
         schedule=_schedules(padded),
         tables=tables,
-        strikes=strikes,
     )
 
 
@@ -162,8 +160,6 @@ def _drive(records: list[KernelInput], turning: Turning, machine: Machine, knot:
     drive[Drive.KNOCK], drive[Drive.KNOCK_ANGLE] = turning.knock, turning.knock_angle
     drive[Drive.KNOCK_SEED] = turning.knock_seed
     drive[Drive.LATE_BALL], drive[Drive.LATE_BY] = turning.late_ball, turning.late_by
-    drive[Drive.BALL_MASS] = [record.ball_mass for record in records]
-    drive[Drive.HERTZ_TIME] = [record.hertz_time for record in records]
     _set_chances(drive, records, turning, knot)
     return drive
 
@@ -181,26 +177,18 @@ def _set_chances(drive: FloatArray, records: list[KernelInput], turning: Turning
     drive[Drive.AXIS_TURN], drive[Drive.AXIS_TILT], drive[Drive.AXIS_SHIFT] = NEVER, 0.0, 0.0
 
 
-def _spalls(records: list[KernelInput]) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Spalls, shape (spall, row, lane), the tables of those that have one, shape (table, point), and strikes as :class:`Batch` has them."""
+def _spalls(records: list[KernelInput]) -> tuple[FloatArray, FloatArray]:
+    """Spalls, shape (spall, row, lane), and the tables of those that have one, shape (table, point)."""
     spalls = unset(max(len(record.spalls) for record in records), len(SpallRow), LANES)
-    tables, strikes = [np.zeros(TABLE_POINTS)], [np.zeros((MOST_STRIKES, 3))]
+    tables = [np.zeros(TABLE_POINTS)]
     for lane, record in enumerate(records):
         for place in range(len(spalls)):
             if place < len(record.spalls):
                 _spall(spalls[place, :, lane], record, place, len(tables))
-                spalls[place, SpallRow.STRIKES, lane] = len(strikes) if record.spalls[place].strikes else 0
-                strikes += [_strike_rows(some) for some in record.spalls[place].strikes]
                 tables += [_resampled(drops) for drops in record.spalls[place].table]
             else:
                 _no_spall(spalls[place, :, lane])
-    return spalls, np.stack(tables), np.stack(strikes)
-
-
-def _strike_rows(strikes: tuple[Strike, ...]) -> FloatArray:
-    rows = np.zeros((MOST_STRIKES, 3))
-    rows[: len(strikes)] = np.reshape(strikes, (-1, 3))
-    return rows
+    return spalls, np.stack(tables)
 
 
 def _spall(rows: FloatArray, record: KernelInput, place: int, table: int) -> None:

@@ -54,7 +54,7 @@ class Instant(NamedTuple):
     since: float
     """Half steps since the directions of the balls were last computed."""
     drops: FloatArray
-    """Drop of each ball into spalls [m], then the forces of strikes on shaft and housing [N], shape (row * LANES + lane)."""
+    """Drop of each ball into spalls [m], shape (ball * LANES + lane)."""
 
 
 @njit(**INLINE)
@@ -172,7 +172,7 @@ def contact_force(
 
 @njit(**INLINE)
 def forces(shape: Shape, instant: Instant, lane: int, params: FloatArray) -> tuple[float, float, float, float]:
-    """Outer forces on shaft and housing, and those of strikes, x and y of each [N]."""
+    """Outer forces on shaft and housing, x and y of each [N]."""
     wx, wy = params[Param.SHAFT_FORCE_X * LANES + lane], params[Param.SHAFT_FORCE_Y * LANES + lane]
     hx = hy = 0.0
     if len(shape.forced):
@@ -182,10 +182,6 @@ def forces(shape: Shape, instant: Instant, lane: int, params: FloatArray) -> tup
         wy = fma(params[Param.SHAFT_FORCE_Y_SLOPE * LANES + lane], half_step, wy)
         hx = fma(params[Param.HOUSING_FORCE_X_SLOPE * LANES + lane], half_step, hx)
         hy = fma(params[Param.HOUSING_FORCE_Y_SLOPE * LANES + lane], half_step, hy)
-    if len(shape.struck):
-        i = len(shape.balls) * LANES + lane
-        wx, wy = wx + instant.drops[i], wy + instant.drops[i + LANES]
-        hx, hy = hx + instant.drops[i + 2 * LANES], hy + instant.drops[i + 3 * LANES]
     return wx, wy, hx, hy
 
 
@@ -237,7 +233,7 @@ def accelerations(
     k2x, k2y = params[Param.SUPPORT_STIFFNESS_X * LANES + lane], params[Param.SUPPORT_STIFFNESS_Y * LANES + lane]
     c2x, c2y = params[Param.SUPPORT_DAMPING_X * LANES + lane], params[Param.SUPPORT_DAMPING_Y * LANES + lane]
     f2x, f2y = fma(-k2x, sx, fma(-c2x, u2, jx)), fma(-k2y, sy, fma(-c2y, v2, jy))
-    if len(shape.forced) or len(shape.struck):
+    if len(shape.forced):
         f2x, f2y = f2x + hx, f2y + hy
     arx = ary = 0.0
     if len(shape.resonator):

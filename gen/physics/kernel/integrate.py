@@ -84,7 +84,6 @@ def set_out(shape: Shape, batch: Batch, n_steps: int) -> Batch:
         waves=copied(batch.waves),
         schedule=batch.schedule,
         tables=batch.tables,
-        strikes=batch.strikes,
     )
 
 
@@ -111,7 +110,7 @@ def to_next_knot(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float,
     if len(shape.wavy):
         move_gaps(shape, batch, knot, n_steps, work.moves, work.scratch, work.gaps)
     if len(shape.spalled):
-        move_spalls(shape, batch, n_steps, dt, work.moves, work.scratch, work.met)
+        move_spalls(shape, batch, n_steps, work.moves, work.scratch, work.met)
     keep_turning(shape, batch, work.moves)
 
 

@@ -45,8 +45,6 @@ class Shape(NamedTuple):
     """Whether the housing has play in its support."""
     roller: tuple[None, ...]
     """Whether contacts are lines, with the exponent 10/9."""
-    struck: tuple[None, ...]
-    """Whether the mass of the balls strikes the edges of spalls."""
 
 
 def make_shape(n_balls: int, n_channels: int, **flags: bool) -> Shape:
@@ -158,18 +156,16 @@ class Drive(IntEnum):
     LATE_BALL = 25  # number of the ball out of its place, -1 for none
     LATE_BY = 26  # [rad]
     KNOCK_SEED = 27
-    BALL_MASS = 28  # [kg]
-    HERTZ_TIME = 29  # length of the impact of a ball times the fifth root of its speed [s (m/s)^(1/5)]
-    WALK = 30  # rms of the random slip of the cage that is new every STRIDE knots [1]
-    WALK_NOW = 31  # this slip now [1]
-    WALK_SEED = 32
-    AXIS_JUMPS = 33  # probability that the axis of the damaged ball jumps where this ball is opposite the load [1]
-    AXIS_SPREAD = 34  # standard deviation of tilt and spin angle after a jump [rad]
-    AXIS_ANGLE = 35  # of the cage, where the damaged ball is opposite the load [rad]
-    AXIS_SEED = 36
-    AXIS_TURN = 37  # of the cage since AXIS_ANGLE, a whole number, at the last knot
-    AXIS_TILT = 38  # of the axis since its last jump [rad]
-    AXIS_SHIFT = 39  # of the spin angle since the last jump [rad]
+    WALK = 28  # rms of the random slip of the cage that is new every STRIDE knots [1]
+    WALK_NOW = 29  # this slip now [1]
+    WALK_SEED = 30
+    AXIS_JUMPS = 31  # probability that the axis of the damaged ball jumps where this ball is opposite the load [1]
+    AXIS_SPREAD = 32  # standard deviation of tilt and spin angle after a jump [rad]
+    AXIS_ANGLE = 33  # of the cage, where the damaged ball is opposite the load [rad]
+    AXIS_SEED = 34
+    AXIS_TURN = 35  # of the cage since AXIS_ANGLE, a whole number, at the last knot
+    AXIS_TILT = 36  # of the axis since its last jump [rad]
+    AXIS_SHIFT = 37  # of the spin angle since the last jump [rad]
 
 
 class SpallRow(IntEnum):
@@ -191,9 +187,8 @@ class SpallRow(IntEnum):
     DEPTH = 10  # [m]
     PROFILE = 11  # index into PROFILES
     TABLE = 12  # row in ``tables``
-    STRIKES = 13  # row in ``strikes``
-    SCATTER = 14  # standard deviation of the logarithm of the drop from passage to passage [1]
-    SEED = 15
+    SCATTER = 13  # standard deviation of the logarithm of the drop from passage to passage [1]
+    SEED = 14
 
 
 class Site(IntEnum):
@@ -252,9 +247,6 @@ class Batch(NamedTuple):
     """Factors of shaft rate and load, shape (knot, 2, lane), or (0, 2, lane) if both are constant."""
     tables: FloatArray
     """Drops of tabulated spalls, shape (table, point) [m]; a ball spall has two, for the inner and the outer race."""
-    strikes: FloatArray
-    """Where balls strike the edges of spalls, shape (row, strike, 3): offset from the middle of the spall [rad], change of the slope of the
-    path [1], and angle over which the slope changes [rad]. Row 0 has no strikes; a ball spall has two rows."""
 
 
 @in_both
@@ -271,23 +263,17 @@ def gap_row(shape: Shape) -> int:
 
 @in_both
 def drop_row(shape: Shape) -> int:
-    """First row of the drops into spalls in ``params``: half step after half step, ``drop_width`` rows of each.
+    """First row of the drops into spalls in ``params``: half step after half step, one row for each ball.
 
-    The row before it is 1 in lane 0 if a ball of any lane drops or strikes before the next knot.
+    The row before it is 1 in lane 0 if a ball of any lane drops before the next knot.
     """
     return gap_row(shape) + (2 * len(shape.balls) if len(shape.wavy) else 0) + 1
 
 
 @in_both
-def drop_width(shape: Shape) -> int:
-    """Rows of one half step: the drop of every ball, then with strikes their force on shaft and housing, x and y of each."""
-    return len(shape.balls) + (4 if len(shape.struck) else 0)
-
-
-@in_both
 def param_rows(shape: Shape, n_steps: int) -> int:
     """Number of rows of ``params``."""
-    return drop_row(shape) + ((2 * n_steps + 1) * drop_width(shape) if len(shape.spalled) else 0)
+    return drop_row(shape) + ((2 * n_steps + 1) * len(shape.balls) if len(shape.spalled) else 0)
 
 
 @in_both

@@ -9,6 +9,7 @@ balls, or the contacts of a damaged ball, that have passed the spall since angle
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -27,13 +28,24 @@ from gen.physics.kernel.layout import (
     Site,
     SpallRow,
     drop_row,
-    drop_width,
     slow_rows,
 )
-from gen.physics.kernel.strikes import Passage, longest_pulse, strike_edges
 
 SPALL_ROWS = len(SpallRow)
 NEVER = -1e9  # number of a turn before any other
+
+
+class Passage(NamedTuple):
+    """How one ball passes one spall."""
+
+    start: float
+    """Offset of the ball from the middle of the spall at the knot [rad]."""
+    slope: float
+    """Its change per half step [rad]."""
+    share: float
+    """Factor of the drop [1]."""
+    race: float
+    """Radius of the race under the ball: positive if convex (inner), negative if concave (outer) [m]."""
 
 
 @njit(**INLINE)
@@ -82,14 +94,14 @@ def tabulated(tables: FloatArray, row: int, offset: float, half: float) -> float
 
 @njit(**ALLOCATING)
 def none_met(shape: Shape, batch: Batch) -> FloatArray:
-    """Work array of the spalls: for each row of a half step 1 if it holds drops or forces that are to be cleared.
+    """Work array of the spalls: for each ball 1 if it holds drops that are to be cleared.
 
     Then, spall after spall, the number of the last passage of each lane and the factor of its drop.
     """
-    rows, n_spalls = drop_width(shape), batch.spalls.size // (SPALL_ROWS * LANES)
-    met = zeros(rows + 2 * n_spalls * LANES)
+    n_balls, n_spalls = len(shape.balls), batch.spalls.size // (SPALL_ROWS * LANES)
+    met = zeros(n_balls + 2 * n_spalls * LANES)
     for i in range(2 * n_spalls * LANES):
-        met[rows + i] = NEVER
+        met[n_balls + i] = NEVER
     return met
 
 
@@ -106,9 +118,9 @@ def scatter(spall: FloatArray, lane: int, number: float, last: FloatArray) -> fl
 
 
 @njit(**INLINE)
-def passes(spall: FloatArray, lane: int, start: float, slope: float, n_steps: int, further: float) -> bool:
-    """Whether a ball is within ``further`` of a spall before the next knot [rad]."""
-    end, half = start + 2 * n_steps * slope, spall[SpallRow.HALF * LANES + lane] + further
+def passes(spall: FloatArray, lane: int, start: float, slope: float, n_steps: int) -> bool:
+    """Whether a ball is over a spall before the next knot."""
+    end, half = start + 2 * n_steps * slope, spall[SpallRow.HALF * LANES + lane]
     return min(start, end) < half and max(start, end) > -half
 
 
@@ -131,7 +143,7 @@ def pass_spall(
     wide()
     start, slope, share, race = passage
     n_half_steps = 2 * n_steps + 1
-    if not passes(spall, lane, start, slope, n_steps, 0.0):
+    if not passes(spall, lane, start, slope, n_steps):
         return
     met[ball] = 1.0
     half = spall[SpallRow.HALF * LANES + lane]
@@ -154,7 +166,7 @@ def pass_spall(
             falls[half_step] = drop(profile, fma(slope, half_step, start), half, arc, radius, race, depth)
     drops = batch.params[(drop_row(shape) + ball) * LANES + lane :]
     for half_step in range(n_half_steps):
-        drops[half_step * drop_width(shape) * LANES] += share * falls[half_step]
+        drops[half_step * len(shape.balls) * LANES] += share * falls[half_step]
 
 
 @njit(**INLINE)
@@ -164,13 +176,12 @@ def meet_spall(
     spall: int,
     lane: int,
     n_steps: int,
-    dt: float,
     start: float,
     slope: float,
     falls: FloatArray,
     met: FloatArray,
 ) -> None:
-    """Add the drops of all balls that meet one spall of one lane before the next knot, and the forces of those that strike it.
+    """Add the drops of all balls that meet one spall of one lane before the next knot.
 
     Ball 0, or for a ball spall the contact with the inner race, is ``start`` past the spall at the knot and moves by ``slope`` to the next
     knot [rad].
@@ -179,19 +190,16 @@ def meet_spall(
     this = batch.spalls[spall * SPALL_ROWS * LANES :]
     site, period = int(this[SpallRow.SITE * LANES + lane]), this[SpallRow.PERIOD * LANES + lane]
     nearest = np.int64(np.rint((start + 0.5 * slope) / period))
-    last = met[drop_width(shape) + 2 * spall * LANES :]
-    further = longest_pulse(slope, n_steps, dt) if len(shape.struck) else 0.0
+    last = met[n_balls + 2 * spall * LANES :]
     inner, outer = batch.drive[Drive.INNER_RADIUS * LANES + lane], -batch.drive[Drive.OUTER_RADIUS * LANES + lane]
     if site == Site.BALL:
         race, ball = inner if nearest & 1 == 0 else outer, int(this[SpallRow.CARRIER * LANES + lane])
         share = share_on_track(shape, batch, lane) * scatter(this, lane, float(nearest), last)
         passage = Passage(start - nearest * period, rate, share, race)
         pass_spall(shape, batch, this, lane, ball, passage, n_steps, falls, met)
-        if len(shape.struck):
-            strike_edges(shape, batch, this, lane, ball, passage, n_steps, dt, met)
         return
     race = inner if site == Site.INNER else outer
-    reach = this[SpallRow.REACH * LANES + lane] + 0.5 * abs(slope) + further
+    reach = this[SpallRow.REACH * LANES + lane] + 0.5 * abs(slope)
     around = min(int(reach / period + 0.5), n_balls // 2)
     for rank in range(-around, n_balls - around if 2 * around >= n_balls else around + 1):
         ball = int((rank - nearest) % n_balls)
@@ -200,34 +208,28 @@ def meet_spall(
             source = (Process.JITTER + ball) * LANES + lane
             offset += batch.slow[source]
             passing += batch.slow[slow_rows(shape) * LANES + source] / (2 * n_steps)
-        if len(shape.struck):
-            further = longest_pulse(2 * n_steps * passing, n_steps, dt)
-        if not passes(this, lane, offset, passing, n_steps, further):
+        if not passes(this, lane, offset, passing, n_steps):
             continue
         passage = Passage(offset, passing, scatter(this, lane, float(nearest - rank), last), race)
         pass_spall(shape, batch, this, lane, ball, passage, n_steps, falls, met)
-        if len(shape.struck):
-            strike_edges(shape, batch, this, lane, ball, passage, n_steps, dt, met)
 
 
 @njit(**INLINE)
 def clear_drops(shape: Shape, batch: Batch, n_steps: int, met: FloatArray) -> None:
-    """Set the drops and forces of the last knot back to zero, of the balls that have any: a knot writes a few of all rows."""
+    """Set the drops of the last knot back to zero, of the balls that have any: a knot writes a few of all rows."""
     wide()
-    for row in range(drop_width(shape)):
-        if met[row] > 0.0:
-            met[row] = 0.0
+    for ball in range(len(shape.balls)):
+        if met[ball] > 0.0:
+            met[ball] = 0.0
             for half_step in range(2 * n_steps + 1):
-                drops = batch.params[(drop_row(shape) + half_step * drop_width(shape) + row) * LANES :]
+                drops = batch.params[(drop_row(shape) + half_step * len(shape.balls) + ball) * LANES :]
                 for lane in range(LANES):  # of a length that LLVM knows: otherwise it calls memset for each row
                     drops[lane] = 0.0
 
 
 @njit(**INLINE)
-def move_spalls(
-    shape: Shape, batch: Batch, n_steps: int, dt: float, moves: FloatArray, work: FloatArray, met: FloatArray
-) -> None:
-    """Set the drops of all balls over all spalls, and the forces of strikes, at every half step up to the next knot.
+def move_spalls(shape: Shape, batch: Batch, n_steps: int, moves: FloatArray, work: FloatArray, met: FloatArray) -> None:
+    """Set the drops of all balls over all spalls, at every half step up to the next knot.
 
     ``work`` has four rows and room for all half steps; ``met`` is the array of :func:`none_met`.
     """
@@ -247,15 +249,13 @@ def move_spalls(
             slope += with_spin * moves[Angle.SPIN * LANES + lane]
             middle = start + 0.5 * slope
             away = abs(middle - period * np.rint(middle / period)) - 0.5 * abs(slope)
-            if len(shape.struck):
-                away -= longest_pulse(slope, n_steps, dt)
             work[starts + lane], work[slopes + lane] = start, slope
             work[near + lane] = 1.0 if away < this[SpallRow.REACH * LANES + lane] else 0.0
         for lane in range(lane_count()):
             if work[near + lane] > 0.0:
                 start, slope = work[starts + lane], work[slopes + lane]
-                meet_spall(shape, batch, spall, lane, n_steps, dt, start, slope, falls, met)
+                meet_spall(shape, batch, spall, lane, n_steps, start, slope, falls, met)
     dropping = 0.0
-    for row in range(drop_width(shape)):
-        dropping = max(dropping, met[row])
+    for ball in range(len(shape.balls)):
+        dropping = max(dropping, met[ball])
     batch.params[(drop_row(shape) - 1) * LANES] = dropping

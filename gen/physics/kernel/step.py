@@ -10,7 +10,7 @@ from numba import njit
 
 from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
 from gen.physics.kernel.equations import Instant, accelerations
-from gen.physics.kernel.layout import AXES, PICKUPS, FloatArray, Param, Shape, State, drop_row, drop_width
+from gen.physics.kernel.layout import AXES, PICKUPS, FloatArray, Param, Shape, State, drop_row
 
 Dynamic = tuple[float, ...]
 """Coordinates and rates of a lane, or their slopes."""
@@ -176,7 +176,7 @@ def advance(
     """
     drops, width = drop_row(shape) * LANES, 0
     if len(shape.spalled) and params[drops - LANES] > 0.0:  # otherwise the zeros of one half step serve them all
-        width = drop_width(shape) * LANES
+        width = len(shape.balls) * LANES
     for step in range(n_steps):
         half_step = 2.0 * step
         # a view of the drops: for an index, numba would test whether it counts from the end

@@ -118,8 +118,6 @@ TABLE = [
     ("0.5}", "0.5, profile: trace, trace_um: [0, deep, 0]}", "faults[1].trace_um[1]: 'deep' is not allowed here; it must be a number."),
     ("0.5}", "0.5, profile: rectangular, roughness_um: 1}",
      "faults[1].roughness_um: only a geometric or traced spall has a floor, not rectangular."),
-    ("0.5}", "0.5, profile: rectangular}\ncontact: {ball_mass: steel}",
-     "faults[1].profile: the walls of a rectangular spall have no slope that gives the speed of an impact; take another profile"),
     ("0.5}", "0.5, jagged_edge: {scatter_percent: 101}}", "faults[1].jagged_edge.scatter_percent: 101 is not in [0, 100]."),
     ("0.5}", "0.5, axis_jumps: {}}", "faults[1].axis_jumps: no such key"),
     ("0.5}", "0.5, roughness_um: 51}", "faults[1].roughness_um: 51 is not in [0, 50]."),

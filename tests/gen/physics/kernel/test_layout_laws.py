@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gen.physics.inputs import SpallInput, Strike, Turning, Waviness, at_rest
+from gen.physics.inputs import SpallInput, Turning, Waviness, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
@@ -23,12 +23,11 @@ TURNING = Turning(
     twice_y=10.0, knock=30.0, knock_angle=-1.7, knock_seed=12, late_ball=2, late_by=0.03, walk=0.01, walk_seed=13,
     axis_jumps=0.5, axis_spread=0.05, axis_seed=14,
 )  # fmt: skip
-STRIKE = Strike(0.01, 0.05)
 RAMP = tuple(np.linspace(0, 4e-6, 9))
 SPALLS = (
-    SpallInput("inner", 2e-3, 2e-6, -1.7, strikes=((STRIKE,),), scatter=0.2, seed=1),
-    SpallInput("outer", 2e-3, 5e-6, -1.4, profile="table", table=(RAMP,), strikes=((STRIKE,),), scatter=0.2, seed=2),
-    SpallInput("ball", 2e-3, 2e-6, 0.5, ball=0, strikes=((STRIKE,), (STRIKE,)), scatter=0.2, seed=3),
+    SpallInput("inner", 2e-3, 2e-6, -1.7, scatter=0.2, seed=1),
+    SpallInput("outer", 2e-3, 5e-6, -1.4, profile="table", table=(RAMP,), scatter=0.2, seed=2),
+    SpallInput("ball", 2e-3, 2e-6, 0.5, ball=0, scatter=0.2, seed=3),
 )
 # rows that count or name something, and REACH, which may be larger than it must be: another value that matters
 OTHER = {
@@ -39,7 +38,6 @@ OTHER = {
     SpallRow.CARRIER: 1,
     SpallRow.PROFILE: PROFILES.index("rectangular"),
     SpallRow.TABLE: 0,
-    SpallRow.STRIKES: 0,
     SpallRow.SEED: 4,
     Drive.WALK_SEED: 78,
     Drive.AXIS_JUMPS: 0.0,
@@ -53,7 +51,6 @@ def laid_out():
     """A shape, and a batch that holds one record with every feature in all its lanes."""
     drawn = record(MACHINE, TURNING, SPALLS)._replace(
         waviness=Waviness(race_waves(3, 5e-8), ball_waves(3, 5e-8)), schedule=np.linspace([0.9, 1.1], [1.1, 0.9], 20),
-        ball_mass=2e-3, hertz_time=3e-5,
     )  # fmt: skip
     shape = input_shape(drawn)
     return shape, lay_out(at_rest([drawn]), shape, KNOT)

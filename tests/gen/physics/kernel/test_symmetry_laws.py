@@ -113,7 +113,6 @@ def mirrored_spall(spall):
         angle=math.pi - spall.angle if spall.site == "outer" else -spall.angle,
         ball=-spall.ball % 9,
         table=tuple(drops[::-1] for drops in spall.table),
-        strikes=tuple(tuple(hit._replace(offset=-hit.offset) for hit in row) for row in spall.strikes),
     )
 
 
