@@ -14,7 +14,7 @@ reference_choice  records tested against a reference, without those that belong 
 colour            distance of the colour of a record from healthy recordings of its rig
 predictions       predicted classes of records and of whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
-detection         detection of faults against their width, and against false alarms
+detection         detection of faults by their width, and against false alarms
 severities        fault widths that a test contains and its training does not
 tracks            splits by specimen, rig, bearing type, speed, severity and fault shape, and their checks
 fitting           fits of one classifier to several selections of records

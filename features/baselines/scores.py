@@ -16,7 +16,7 @@ import numpy as np
 from scipy.stats import rankdata
 
 from features.baselines.calibration import SMALLEST
-from features.baselines.detection import INTERVAL, Detection, Roc, detection, roc
+from features.baselines.detection import INTERVAL, Roc, WidthBin, detection, roc
 from features.baselines.predictions import Predictions
 from features.baselines.records import FloatArray, IntArray, Records
 from features.faults import HEALTHY
@@ -73,7 +73,7 @@ class Scores(Shown):
     reliability
         Records by their largest probability, in bins of equal width.
     detection, roc
-        Detection of faults of any class against their width, and against false alarms, by record; None where it is not known.
+        Detection of faults of any class by their width, and against false alarms, by record; empty, or None, where it is not known.
     coverage, answered_accuracy
         Share of the records that are answered, and the accuracy of these; None without any.
     faulty_among_healthy
@@ -101,7 +101,7 @@ class Scores(Shown):
     auc: float | None = None
     ece: float | None = None
     reliability: tuple[Bin, ...] = ()
-    detection: Detection | None = None
+    detection: tuple[WidthBin, ...] = ()
     roc: Roc | None = None
     coverage: float = 1.0
     answered_accuracy: float | None = None

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from features.baselines import CurvePoint, Scores
-from features.baselines.detection import Detection, Roc
+from features.baselines.detection import Roc, WidthBin
 from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 
 PANEL = (2.6, 2.4)  # inches, of a figure that stands beside others
@@ -17,17 +17,14 @@ DASHED = (0, (4, 3))
 
 
 @rc_context(STYLE)
-def draw_detection(detection: Detection, false_alarms: float | None) -> Figure:
-    """Share of detected faults against their width: observed in bins, and fitted with its band; and the share of false alarms."""
+def draw_detection(bins: Sequence[WidthBin], false_alarms: float | None) -> Figure:
+    """Share of detected faults by their width, with intervals; and the share of false alarms."""
     figure, axes = _panel()
-    observed = detection.bins
-    areas = _areas([one.records for one in observed])
-    axes.scatter([1e3 * one.width for one in observed], [one.detected for one in observed], areas, INK, linewidth=0)
-    if detection.fit is not None:
-        widths = np.geomspace(detection.smallest, detection.largest, 100)
-        low, middle, high = detection.fit.band(widths)
-        axes.fill_between(1e3 * widths, low, high, color=BLUE, alpha=0.2, linewidth=0)
-        axes.plot(1e3 * widths, middle, color=BLUE, linewidth=1.2)
+    width = [1e3 * one.width for one in bins]
+    axes.vlines(width, [one.low for one in bins], [one.high for one in bins], color=BLUE, linewidth=1.2)
+    axes.scatter(
+        width, [one.detected for one in bins], _areas([one.records for one in bins]), INK, linewidth=0, zorder=3
+    )
     if false_alarms is not None:
         axes.axhline(false_alarms, color=VERMILION, linestyle=DASHED, linewidth=0.9)
         axes.annotate(
@@ -35,7 +32,7 @@ def draw_detection(detection: Detection, false_alarms: float | None) -> Figure:
             color=INK, fontsize=8, ha="right", va="bottom",
         )  # fmt: skip
     axes.set_xscale("log")
-    ticks = 1e3 * np.geomspace(detection.smallest, detection.largest, 4)
+    ticks = np.geomspace(min(width), max(width), 4)
     axes.set_xticks(ticks, [f"{tick:.2g}" for tick in ticks])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set(xlabel="width of the fault [mm]", ylabel="share detected", ylim=(-0.03, 1.05))

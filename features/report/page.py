@@ -12,7 +12,6 @@ import numpy as np
 import xarray as xr
 
 from features.baselines import Results, Scores, interval_text, percent_text, severity_warning
-from features.baselines.detection import Detection
 from features.baselines.estimators import UNTRAINED
 from features.baselines.results_file import write_results
 from features.baselines.tracks import NOVELTY
@@ -167,17 +166,15 @@ def _scores(results: Results) -> dict[str, Any]:
 
 
 def _panels(scores: Scores) -> list[Panel]:
-    """Detection against width and against false alarms, and reliability, as far as they are known."""
+    """Detection by width and against false alarms, and reliability, as far as they are known."""
     panels = []
-    if scores.detection is not None:
-        drawn = draw_detection(scores.detection, scores.false_alarms)
-        panels.append(
-            Panel(
-                "Share of detected faults against their width",
-                picture(drawn, "svg"),
-                _detection_caption(scores.detection),
-            )
+    if scores.detection:
+        caption = (
+            "Share of the faulty records that are predicted to be faulty, whatever the class, by width. The lines are the 95 % "
+            "intervals, for which a specimen counts once, however many records it has."
         )
+        drawn = draw_detection(scores.detection, scores.false_alarms)
+        panels.append(Panel("Share of detected faults by their width", picture(drawn, "svg"), caption))
     if scores.roc is not None:
         caption = (
             f"Share of the faulty records that are detected against that of false alarms, for all thresholds. The area "
@@ -192,22 +189,6 @@ def _panels(scores: Scores) -> list[Panel]:
         f"right; below it, they are too high. The mean distance, the calibration error, is {scores.ece:.3f}."
     )
     return [*panels, Panel("Accuracy against largest probability", picture(draw_reliability(scores), "svg"), caption)]
-
-
-def _detection_caption(detection: Detection) -> str:
-    """Caption of detection against width, with the widths a90 and a90/95 where they are known."""
-    shown = (
-        "Share of the faulty records that are predicted to be faulty, whatever the class, against width. Dots are observed "
-        "shares in bins"
-    )
-    fit = detection.fit
-    if fit is None:
-        return f"{shown}. There is no curve, because detected and missed faults do not overlap in width."
-    shown = f"{shown}; the curve is fitted, with its 90 % band."
-    if fit.a90 is None:
-        return f"{shown} It does not rise through 90 % within the tested widths."
-    sure = "at none of the tested widths" if fit.a90_95 is None else f"at {1e3 * fit.a90_95:.2g} mm (a90/95)"
-    return f"{shown} 90 % are detected at {1e3 * fit.a90:.2g} mm (a90), and with 95 % confidence {sure}."
 
 
 def _bars(importance: Mapping[str, float]) -> list[tuple[str, float]]:

@@ -15,7 +15,7 @@ from features.baselines import ESTIMATORS, Model, benchmark
 from features.baselines.detection import detection
 from features.report import examples
 from features.report.curves import draw_detection, draw_reliability, draw_roc
-from features.report.page import QUANTITIES, _detection_caption, _findings, _of_faults, write_report
+from features.report.page import QUANTITIES, _findings, _of_faults, write_report
 from features.report.pictures import (
     DrawnRecord,
     draw_record,
@@ -359,24 +359,17 @@ def test_the_reliability_diagram_has_a_point_for_each_bin(results):
     np.testing.assert_allclose(drawn, [(one.probability, one.accuracy) for one in found.reliability])
 
 
-def test_detection_is_drawn_with_its_bins_fit_and_false_alarms_and_told_with_its_widths():
+def test_detection_is_drawn_with_its_bins_intervals_and_false_alarms():
     width = np.repeat(np.geomspace(0.2e-3, 2e-3, 20), 5)
     specimen = np.arange(100)
-    detected = specimen % 5 < np.repeat(np.arange(20), 5) / 2
-    found = detection(detected, width, specimen)
+    found = detection(specimen % 5 < np.repeat(np.arange(20), 5) / 2, width, specimen)
     (panel,) = draw_detection(found, 0.2).axes
-    shares, band = panel.collections
-    np.testing.assert_allclose(shares.get_offsets(), [(1e3 * one.width, one.detected) for one in found.bins])
-    curve, alarms = panel.lines
-    np.testing.assert_allclose(curve.get_ydata(), found.fit.band(curve.get_xdata() / 1e3)[1])
-    assert band.get_paths()[0].get_extents().x0 == pytest.approx(0.2)
+    intervals, shares = panel.collections
+    np.testing.assert_allclose(shares.get_offsets(), [(1e3 * one.width, one.detected) for one in found])
+    ends = np.array(intervals.get_segments())
+    np.testing.assert_allclose(ends[..., 1], [(one.low, one.high) for one in found])
+    (alarms,) = panel.lines
     assert list(alarms.get_ydata()) == [0.2, 0.2]
-    told = _detection_caption(found)
-    assert f"90 % are detected at {1e3 * found.fit.a90:.2g} mm (a90)" in told
-    assert f"95 % confidence at {1e3 * found.fit.a90_95:.2g} mm (a90/95)" in told
-    flat = replace(found, fit=replace(found.fit, a90=None, a90_95=None))
-    assert "does not rise through 90 %" in _detection_caption(flat)
-    assert "There is no curve" in _detection_caption(replace(found, fit=None))
 
 
 def test_the_curve_of_false_alarms_has_the_points_of_the_results(results):
