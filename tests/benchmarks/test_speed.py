@@ -1,6 +1,6 @@
 """The table of the benchmark of shaft speeds, on a made-up corpus."""
 
-from tests.features.test_recording_speeds import SPEEDS, TRUTH, WINDOWS, write_machines
+from tests.features.table.test_recording_speeds import SPEEDS, TRUTH, WINDOWS, write_machines
 
 from benchmarks.speed import recordings, report
 

@@ -4,7 +4,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from tests.features.test_recording_speeds import write_machines
+from tests.features.table.test_recording_speeds import write_machines
 
 from benchmarks.speed import recordings
 from benchmarks.verdicts import ERRORS, RIGHT, SEEDS, WITHOUT_FAULT, answer, conditions, rows, without_fault

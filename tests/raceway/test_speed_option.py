@@ -4,7 +4,7 @@ import json
 from types import SimpleNamespace
 
 import pytest
-from tests.features.test_recording_speeds import write_machines
+from tests.features.table.test_recording_speeds import write_machines
 
 from features.table.band import DEFAULT_BAND
 from features.table.files import read_table

@@ -4,7 +4,7 @@ import os
 import tracemalloc
 
 import numpy as np
-from tests.features.test_table import part_dataset
+from tests.features.table.test_corpora import part_dataset
 
 from features import feature_table
 from gen.corpus import SIGNAL, new_corpus

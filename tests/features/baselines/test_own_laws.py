@@ -9,7 +9,7 @@ from sklearn.naive_bayes import GaussianNB
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import FunctionTransformer
 from sklearn.svm import SVC
-from tests.features.test_waveforms_laws import psd
+from tests.features.table.test_waveforms_laws import psd
 
 from features import feature_table, open_waveforms
 from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker, read_results
