@@ -108,19 +108,19 @@ def _made(
     client: Client,
 ) -> Generator[tuple[int, Outcome]]:
     """Stand-in for the making of parts by tasks that wait."""
-    from gen.support.cluster import run_tasks
+    from gen.support.workers import run
 
     task = partial(_linked, model, row, task_s, directory.resolve(), tally.recipe)
-    yield from run_tasks(client, task, range(tally.recipe.n_parts), meanwhile=tally.show)
+    yield from run(task, range(tally.recipe.n_parts), scheduler=client, meanwhile=tally.show)
 
 
 def _linked(
     model: Path, row: PartRow, task_s: float, directory: Path, _recipe: object, part: int
-) -> tuple[int, Outcome]:
+) -> Iterator[tuple[int, Outcome]]:
     """Wait, and link the model under the name of a part; the recipe is sent as for a real task."""
     time.sleep(task_s)
     (directory / "parts" / part_name(part)).hardlink_to(model)
-    return part, Outcome(row._replace(name=part_name(part)), kept=False, failures=())
+    yield part, Outcome(row._replace(name=part_name(part)), kept=False, failures=())
 
 
 @contextmanager

@@ -4,7 +4,7 @@ Trees and Fourier transforms run without the interpreter lock, so the fits share
 its own seed and predicts in one thread, so its result does not depend on the number of workers.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -70,12 +70,11 @@ def fits(
 
 def _fit(
     features: "DataFrame", labels: IntArray, estimator: str | Maker, seed: int, numbered: tuple[int, Split]
-) -> tuple[int, Fit]:
+) -> Iterator[tuple[int, Fit]]:
     number, (train, test) = numbered
     # a classifier of the user may write into its rows, so it gets a copy
     rows = features if len(train) == len(labels) and isinstance(estimator, str) else features.take(train)
     fitted = make_estimator(estimator, seed).fit(rows, labels[train])
     del rows
-    if not len(test):
-        return number, Fit(fitted, np.zeros((0, len(fitted.classes_))))
-    return number, Fit(fitted, class_probabilities(fitted, features.take(test)))
+    none = np.zeros((0, len(fitted.classes_)))
+    yield number, Fit(fitted, class_probabilities(fitted, features.take(test)) if len(test) else none)

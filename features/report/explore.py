@@ -222,7 +222,7 @@ def _steps(level_db: FloatArray) -> np.ndarray:
     return np.clip(np.round(level_db / STEP_DB), 0, 255).astype(np.uint8)
 
 
-def _reduced_block(block: tuple[int, xr.Dataset], band: Band, sound: bool) -> tuple[int, int, list[str]]:
+def _reduced_block(block: tuple[int, xr.Dataset], band: Band, sound: bool) -> Iterator[tuple[int, int, list[str]]]:
     """Number of the block, its number of records, its arrays as a text, and its sound as another one."""
     number, records = block
     records = records.load()
@@ -231,7 +231,7 @@ def _reduced_block(block: tuple[int, xr.Dataset], band: Band, sound: bool) -> tu
     contents = [b"".join(one[name].tobytes() for name in FIELDS for one in arrays)]
     if sound:
         contents.append(b"".join(_sound(one).tobytes() for one in shown))
-    return number, len(shown), [_packed(content) for content in contents]
+    yield number, len(shown), [_packed(content) for content in contents]
 
 
 def _sound(shown: DrawnRecord) -> np.ndarray:

@@ -9,7 +9,7 @@ task is one block of records, so the features do not depend on the number of wor
 all blocks before that of the features estimates them, since the records of a recording may lie in several blocks.
 """
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -174,6 +174,6 @@ def _run(
             report(1)
 
 
-def _numbered(compute: Callable[[Item], Result], task: tuple[int, Item]) -> tuple[int, Result]:
+def _numbered(compute: Callable[[Item], Result], task: tuple[int, Item]) -> Iterator[tuple[int, Result]]:
     number, item = task
-    return number, compute(item)
+    yield number, compute(item)

@@ -44,7 +44,7 @@ from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.progress import Progress
 from gen.support.shown import Shown
-from gen.support.workers import stream, threads_of
+from gen.support.workers import run, threads_of
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -309,7 +309,7 @@ def _made(tally: Tally, folder: Path, workers: int, client: "Client | None") -> 
             threads: list[int] = list(cast("Any", client).nthreads().values())
             crew, count = Crew(1, 1 / max(threads, default=1)), max(sum(threads), 1)
         task = partial(_unit, recipe, folder.resolve(), crew, sources_sha256())
-        yield from stream(task, units(recipe, parts, count), scheduler=cluster, report=tally.note, meanwhile=tally.show)
+        yield from run(task, units(recipe, parts, count), scheduler=cluster, report=tally.note, meanwhile=tally.show)
 
 
 def _unit(

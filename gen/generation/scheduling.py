@@ -23,7 +23,7 @@ from gen.scenarios import settings_of
 from gen.simulation.batches import Integration, Waiting, integrate_together
 from gen.simulation.simulate import open_integrations
 from gen.simulation.timeline import timeline
-from gen.support.workers import stream
+from gen.support.workers import run
 
 WINDOW_BYTES = 64e6  # of a process: signals, scenarios and kernel inputs of the records under way
 _RECORD_BYTES = 16_000  # of a record besides its signal
@@ -109,7 +109,7 @@ def made_parts(
     """
     making = _Making(recipe, parts, finish, WINDOW_BYTES * crew.share)
     threads = range(crew.threads)
-    yield from stream(making.work, threads, workers=len(threads), report=report, meanwhile=meanwhile)
+    yield from run(making.work, threads, workers=len(threads), report=report, meanwhile=meanwhile)
 
 
 class _Making(Generic[Result]):

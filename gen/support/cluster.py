@@ -1,7 +1,6 @@
-"""Independent tasks on dask, their results in the order in which they finish, and a sentence when the cluster is lost.
+"""Independent tasks on dask: on processes of this machine or on a cluster, and a sentence when the cluster is lost.
 
-Two tasks per thread of the workers are submitted at a time, so that memory does not grow with their number. A task may run twice: dask
-repeats the tasks of a lost worker.
+A task may run twice: dask repeats the tasks of a lost worker.
 """
 
 import asyncio
@@ -9,27 +8,20 @@ import math
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext
 from functools import lru_cache, partial
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
-from itertools import islice
-from queue import Empty, SimpleQueue
-from typing import Any, TypeVar
+from typing import Any
 from uuid import uuid4
 
-from distributed import Client, Future, KilledWorker, LocalCluster, get_worker
-from distributed import TimeoutError as DaskTimeoutError
-from distributed.comm.core import CommClosedError, connect
+from distributed import Client, KilledWorker, LocalCluster, get_worker
+from distributed.comm.core import connect
 from distributed.protocol.pickle import dumps, loads
 from distributed.security import Security
 
 from gen.support.errors import ClusterError
 
-Item = TypeVar("Item")
-Result = TypeVar("Result")
-
-POLL_S = 2.0
 CONNECT_S = 3.0  # a scheduler that is near answers within milliseconds
 COUNT_AGAIN_S = 10.0  # the workers of a batch system start one by one
 PATIENCE_S = 60.0
@@ -100,112 +92,69 @@ def _check_workers(client: Client) -> None:
             )
 
 
-def listen(client: Client, handler: Callable[..., None]) -> str:
-    """Call ``handler`` with every message published from now on, in a thread of the client; returns the topic to publish to."""
-    topic = f"raceway-{uuid4().hex}"
-    client.subscribe_topic(topic, lambda event: handler(*event[1]))
-    return topic
+@contextmanager
+def dask_pool(
+    task: Callable[..., Iterable[Any]], cluster: Client | str | tuple[int, int], report: Callable[..., None] | None
+) -> Iterator[tuple[Callable[[Any], Any], Callable[[], int]]]:
+    """What begins a task with an item and returns a future of its results, and the number of tasks that run at a time.
 
-
-def publisher(topic: str) -> Callable[..., None]:
-    """Function for a task that sends a message to the client that listens to a topic; its threads may call it too."""
-    worker = get_worker()
-    return lambda *message: worker.log_event(topic, message)
-
-
-def run_tasks(
-    client: Client, task: Callable[[Item], Result], items: Iterable[Item], meanwhile: Callable[[], None] = lambda: None
-) -> Iterator[Result]:
-    """Results of ``task`` on every item, in the order in which the tasks finish.
-
-    ``meanwhile`` is called every ``POLL_S`` seconds in which no task finishes. The cost of a task in this process does not depend on the
-    number of tasks or workers: finished tasks report themselves, and their results are fetched together.
+    ``cluster`` is a client, the address of a scheduler, or a number of processes on this machine and of the threads of each.
 
     Raises
     ------
     ClusterError
-        If the scheduler is gone, no worker is left, or several workers died on the same task.
+        If the scheduler cannot be used or is gone, no worker is left, or several workers died on the same task.
     """
-    waiting = iter(items)
-    call = partial(_call, dumps(task))
-    width, counted_at = 0, -math.inf
-    finished: SimpleQueue[Future] = SimpleQueue()
-    running: set[Future] = set()
-    alone_since: float | None = None
-    while True:
-        if time.monotonic() - counted_at > COUNT_AGAIN_S:
-            width, counted_at = 2 * max(sum(_threads(client).values()), 1), time.monotonic()
-        if new := list(islice(waiting, max(0, width - len(running)))):
-            submitted: Any = client.map(call, new, pure=False)
-            running.update(submitted)
-            _report_to(finished, submitted)
-        if not running:
-            return
-        batch: list[Future] = []
+    if isinstance(cluster, tuple):
+        opened = local_client(*cluster)
+    else:
+        opened = client_of(cluster) if isinstance(cluster, str) else nullcontext(cluster)
+    with opened as client:
+        topic = None if report is None else f"raceway-{uuid4().hex}"
+        if topic is not None:
+            client.subscribe_topic(topic, lambda event: report(*event[1]))  # pyright: ignore[reportOptionalCall]
         try:
-            batch = _next_batch(finished)
-            failed = [future for future in batch if future.status == "error"]
-            results = _results(client, [future for future in batch if future not in failed])
-        except (TimeoutError, DaskTimeoutError):
-            _report_to(finished, batch)
-            alone_since = _alone_since(client, alone_since)
-            meanwhile()
-            continue
-        alone_since = None
-        running.difference_update(batch)
-        yield from results
-        for future in failed:
-            _raise_error(future)
+            yield partial(client.submit, _call, dumps(task), topic, pure=False), partial(next, _sizes(client))
+        except CancelledError:
+            raise _lost(client) from None
+        except KilledWorker:
+            raise ClusterError(
+                "several workers of the cluster died on the same task; use fewer workers, or fewer records per part."
+            ) from None
 
 
-def _call(packed: bytes, item: Any) -> Any:
-    return _unpack(packed)(item)
+def _call(packed: bytes, topic: str | None, item: Any) -> list[Any]:
+    """Results of a task on a worker; what it reports is sent to the clients that listen to the topic."""
+    task = _unpack(packed)
+    if topic is None:
+        return list(task(item))
+    worker = get_worker()
+    return list(task(lambda *numbers: worker.log_event(topic, numbers), item))
 
 
 @lru_cache(maxsize=4)
-def _unpack(packed: bytes) -> Callable[[Any], Any]:
+def _unpack(packed: bytes) -> Callable[..., Iterable[Any]]:
     """Task from its pickled form: to pickle and unpickle a recipe for every item takes 0.6 ms."""
     return loads(packed)
 
 
-def _report_to(finished: "SimpleQueue[Future]", futures: Iterable[Future]) -> None:
-    """Put each future into the queue as soon as it has a result or an error, or is cancelled."""
-    for future in futures:
-        future.add_done_callback(finished.put)
-
-
-def _next_batch(finished: "SimpleQueue[Future]") -> list[Future]:
-    """All tasks that have finished; TimeoutError if none finishes within ``POLL_S``."""
-    try:
-        batch = [finished.get(timeout=POLL_S)]
-    except Empty:
-        raise TimeoutError from None
-    with suppress(Empty):
-        while True:
-            batch.append(finished.get_nowait())
-    return batch
-
-
-def _results(client: Client, batch: list[Future]) -> list[Any]:
-    """Results of finished tasks; TimeoutError if they do not arrive within ``POLL_S``.
-
-    A result can be lost with its worker, and another worker then computes it again.
-    """
-    gather: Any = partial(client.gather, batch, asynchronous=True)
-    try:
-        results: Any = client.sync(gather, callback_timeout=POLL_S)
-    except (CancelledError, CommClosedError) as error:
-        raise _lost(client) from error
-    return results
-
-
-def _raise_error(future: Future) -> None:
-    try:
-        raise future.exception(timeout=POLL_S)  # pyright: ignore[reportGeneralTypeIssues]
-    except KilledWorker:
-        raise ClusterError(
-            "several workers of the cluster died on the same task; use fewer workers, or fewer records per part."
-        ) from None
+def _sizes(client: Client) -> Iterator[int]:
+    """Number of threads of the workers, counted again now and then; ClusterError if the cluster is lost."""
+    threads, counted_at, had_workers_at = 0, -math.inf, time.monotonic()
+    while True:
+        if client.status != "running":
+            raise _lost(client)
+        now = time.monotonic()
+        if now - counted_at > COUNT_AGAIN_S:
+            threads, counted_at = sum(_threads(client).values()), now
+            if threads:
+                had_workers_at = now
+            elif now - had_workers_at > PATIENCE_S:
+                raise ClusterError(
+                    f"{_name(client)}: has had no worker for {PATIENCE_S:g} s; start workers and run the same command again; "
+                    "finished parts are kept."
+                )
+        yield max(threads, 1)
 
 
 def _threads(client: Client) -> dict[str, int]:
@@ -214,21 +163,6 @@ def _threads(client: Client) -> dict[str, int]:
     except (CancelledError, OSError, ValueError, RuntimeError) as error:
         raise _lost(client) from error
     return threads
-
-
-def _alone_since(client: Client, before: float | None) -> float | None:
-    """Time since which the cluster has had no worker [s]; None if it has one."""
-    if client.status != "running":
-        raise _lost(client)
-    if _threads(client):
-        return None
-    since = time.monotonic() if before is None else before
-    if time.monotonic() - since > PATIENCE_S:
-        raise ClusterError(
-            f"{_name(client)}: has had no worker for {PATIENCE_S:g} s; start workers and run the same command again; "
-            "finished parts are kept."
-        )
-    return since
 
 
 def _lost(client: Client) -> ClusterError:

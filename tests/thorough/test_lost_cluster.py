@@ -6,8 +6,9 @@ import time
 import pytest
 from distributed import Client
 
-from gen.support import cluster
+from gen.support import cluster, workers
 from gen.support.errors import ClusterError
+from gen.support.workers import run
 from tests.gen.support.test_cluster_laws import threaded
 
 __all__ = ["threaded"]
@@ -15,7 +16,7 @@ __all__ = ["threaded"]
 
 def _slow(number):
     time.sleep(0.2)
-    return number
+    yield number
 
 
 @pytest.mark.parametrize(
@@ -27,10 +28,11 @@ def _slow(number):
     ids=["all workers", "the scheduler"],
 )
 def test_a_lost_cluster_ends_the_work_with_a_sentence(threaded, monkeypatch, lose, sentence):
-    monkeypatch.setattr(cluster, "POLL_S", 0.2)
+    monkeypatch.setattr(workers, "POLL_S", 0.2)
+    monkeypatch.setattr(cluster, "COUNT_AGAIN_S", 0.2)
     monkeypatch.setattr(cluster, "PATIENCE_S", 1.0)
     with Client(threaded, set_as_default=False) as client:
-        tasks = cluster.run_tasks(client, _slow, range(10_000))
+        tasks = run(_slow, range(10_000), scheduler=client)
         assert next(tasks) < 10_000
         loser = threading.Timer(0.5, lose, [threaded])
         loser.start()
@@ -40,9 +42,9 @@ def test_a_lost_cluster_ends_the_work_with_a_sentence(threaded, monkeypatch, los
 
 
 def test_a_cluster_that_gets_workers_again_completes_the_work(threaded, monkeypatch):
-    monkeypatch.setattr(cluster, "POLL_S", 0.1)
+    monkeypatch.setattr(workers, "POLL_S", 0.1)
     with Client(threaded, set_as_default=False) as client:
-        tasks = cluster.run_tasks(client, _slow, range(40))
+        tasks = run(_slow, range(40), scheduler=client)
         found = [next(tasks)]
         threaded.scale(0)
         while client.nthreads():

@@ -138,7 +138,7 @@ def test_progress_moves_within_a_part_and_ends_once_at_the_whole(write_recipe, t
         return write_part(*given)
 
     monkeypatch.setattr("gen.generation.parts.write_part", slowly)
-    monkeypatch.setattr("gen.support.cluster.POLL_S", 0.05)
+    monkeypatch.setattr("gen.support.workers.POLL_S", 0.05)
     if where == "this process":
         generate(recipe, tmp_path / "c", progress=lambda *counts: done.append(counts))
     else:

@@ -1,7 +1,6 @@
 """Laws of clusters: workers with threads write the same bytes, and every item is worked on once."""
 
 import time
-from functools import partial
 
 import dask
 import pytest
@@ -10,6 +9,7 @@ from distributed import Client, LocalCluster
 from gen import generate
 from gen.corpus import read_manifest, validate_corpus
 from gen.support import cluster
+from gen.support.workers import run
 
 
 @pytest.fixture
@@ -30,14 +30,19 @@ def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, t
     assert validate_corpus(made.path) == []
 
 
-def told(topic, item):
-    cluster.publisher(topic)(item)
+def negated(item):
+    yield -item
+
+
+def told(report, item):
+    report(item)
+    return ()
 
 
 def test_every_item_is_worked_on_once(threaded):
     with Client(threaded, set_as_default=False) as client:
-        assert sorted(cluster.run_tasks(client, abs, range(-50, 0))) == list(range(1, 51))
-        assert list(cluster.run_tasks(client, abs, [])) == []
+        assert sorted(run(negated, range(-50, 0), scheduler=client)) == list(range(1, 51))
+        assert list(run(negated, [], scheduler=client)) == []
 
 
 def test_few_tasks_are_submitted_ahead_of_their_results(threaded):
@@ -51,7 +56,7 @@ def test_few_tasks_are_submitted_ahead_of_their_results(threaded):
             yield item
 
     with Client(threaded, set_as_default=False) as client:
-        for done, _ in enumerate(cluster.run_tasks(client, abs, items())):
+        for done, _ in enumerate(run(negated, items(), scheduler=client)):
             assert taken - done <= 2 * 8 + 1
 
 
@@ -69,7 +74,7 @@ def test_workers_that_come_later_are_given_tasks(threaded, monkeypatch):
     with Client(threaded, set_as_default=False) as client:
         while len(client.nthreads()) != 1:
             time.sleep(0.05)
-        tasks = cluster.run_tasks(client, abs, items())
+        tasks = run(negated, items(), scheduler=client)
         next(tasks)
         assert taken == 8
         threaded.scale(2)
@@ -77,33 +82,20 @@ def test_workers_that_come_later_are_given_tasks(threaded, monkeypatch):
         assert 8 < max(taken - done for done, _ in enumerate(tasks, start=2)) <= 16
 
 
-def _inverse(number):
-    time.sleep(0.2 * (number != 1))
-    return 1 / number
-
-
-def test_results_that_arrive_together_with_an_error_come_before_it(threaded):
-    found = []
-    with Client(threaded, set_as_default=False) as client:
-        tasks = cluster.run_tasks(client, _inverse, [1, 2, 0, 4, 8])
-        found.append(next(tasks))
-        time.sleep(1)  # until all others have finished
-        with pytest.raises(ZeroDivisionError):
-            found.extend(tasks)
-    assert sorted(found) == [0.125, 0.25, 0.5, 1]
-
-
 def test_messages_of_tasks_reach_the_client(threaded):
     found = []
     with Client(threaded, set_as_default=False) as client:
-        topic = cluster.listen(client, lambda *message: found.append(message))
-        list(cluster.run_tasks(client, partial(told, topic), [4, 7]))
+        assert list(run(told, [4, 7], scheduler=client, report=lambda *message: found.append(message))) == []
         stop = time.monotonic() + 10
         while len(found) < 2 and time.monotonic() < stop:
             time.sleep(0.01)
     assert sorted(found) == [(4,), (7,)]
 
 
+def inverse(item):
+    yield 1 / item
+
+
 def test_an_error_of_a_task_comes_through(threaded):
     with Client(threaded, set_as_default=False) as client, pytest.raises(ZeroDivisionError):
-        list(cluster.run_tasks(client, (1).__truediv__, [1, 0]))
+        list(run(inverse, [1, 0], scheduler=client))

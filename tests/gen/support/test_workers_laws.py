@@ -5,11 +5,11 @@ import threading
 
 import pytest
 
-from gen.support.workers import MOST_THREADS, run, stream, threads_of
+from gen.support.workers import MOST_THREADS, run, threads_of
 
 
 def halved(item):
-    return item / 2
+    yield item / 2
 
 
 def counted(report, item):
@@ -27,7 +27,7 @@ def test_every_item_has_one_result_for_any_number_of_threads(workers):
 @pytest.mark.parametrize("workers", [1, 3])
 def test_a_task_reports_and_gives_several_results(workers):
     heard = []
-    results = list(stream(counted, range(4), workers=workers, report=lambda *numbers: heard.append(numbers)))
+    results = list(run(counted, range(4), workers=workers, report=lambda *numbers: heard.append(numbers)))
     assert sorted(results) == sorted(heard) == [(item, step) for item in range(4) for step in range(3)]
 
 
