@@ -1,20 +1,15 @@
 """A recipe as YAML text."""
 
-import json
-import re
-from collections.abc import Mapping
+import io
 from pathlib import Path
 from typing import Any
+
+from ruamel.yaml import YAML
 
 from gen.corpus import write_text_durably
 from gen.recipe.model import Recipe
 from gen.recipe.section import plain
 from gen.support.errors import RecipeError
-
-_LONGEST = 100  # characters of a list or mapping on one line
-_WORDS = ("null", "true", "false", "yes", "no", "on", "off", "y", "n")  # the last six are booleans in YAML 1.1
-_WORD = re.compile(r"[a-z][a-z0-9_]*")
-_EXPRESSION = re.compile(r"[a-z]+\([\w.,()= +-]*\)( \* \w+)?|[\d.e+-]+ \* \w+")  # needs no quotes outside of braces
 
 
 def write_recipe(recipe: Recipe, path: Path | str) -> None:
@@ -36,36 +31,18 @@ def write_recipe(recipe: Recipe, path: Path | str) -> None:
 
 def recipe_text(recipe: Recipe) -> str:
     """YAML text of a recipe: the keys that were given, one section below the other."""
-    return "".join(_lines(plain(recipe), ""))
+    yaml = YAML(typ="safe", pure=True)
+    yaml.default_flow_style, yaml.width = None, 100  # sections without others on one line
+    yaml.representer.sort_base_mapping_type_on_output = False
+    text = io.StringIO()
+    yaml.dump(_without_points(plain(recipe)), text)
+    return text.getvalue()
 
 
-def _lines(section: Mapping[str, Any], indent: str) -> list[str]:
-    lines = []
-    for key, value in section.items():
-        whole = _flow(value)
-        if isinstance(value, dict) and value and len(indent + key + whole) > _LONGEST:
-            lines += [f"{indent}{_name(key)}:\n", *_lines(value, indent + "  ")]
-        elif isinstance(value, list) and len(value) > 1 and isinstance(value[0], dict):
-            lines += [f"{indent}{_name(key)}:\n", *(f"{indent}  - {_flow(item)}\n" for item in value)]
-        else:
-            bare = isinstance(value, str) and _EXPRESSION.fullmatch(value)
-            lines.append(f"{indent}{_name(key)}: {value if bare else whole}\n")
-    return lines
-
-
-def _flow(value: Any) -> str:
-    """Value on one line, as YAML 1.2; text has double quotes unless it is a word that cannot be mistaken."""
+def _without_points(value: Any) -> Any:
+    """Value with whole numbers in place of floats such as 3.0."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{_name(key)}: {_flow(item)}" for key, item in value.items()) + "}"
+        return {key: _without_points(item) for key, item in value.items()}
     if isinstance(value, list):
-        return "[" + ", ".join(map(_flow, value)) + "]"
-    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
-        return str(int(value))
-    return _name(value) if isinstance(value, str) else json.dumps(value)
-
-
-def _name(text: str) -> str:
-    if _WORD.fullmatch(text) and text not in _WORDS:
-        return text
-    shown = json.dumps(text, ensure_ascii=False)
-    return "".join(letter if letter.isprintable() else f"\\U{ord(letter):08x}" for letter in shown)
+        return [_without_points(item) for item in value]
+    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 1e15 else value

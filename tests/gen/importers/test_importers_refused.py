@@ -28,7 +28,7 @@ REFUSED = (
     (COMMON, "mapping.yaml: files: is missing; give it."),
     (COMMON + "files: []", "files: is empty; give at least one."),
     ("files: [", "mapping.yaml: line 1: is not valid YAML ("),
-    ("unit: g\nunit: g\nfiles: [{path: a}]", "line 2: is not valid YAML (the key unit occurs twice)"),
+    ("unit: g\nunit: g\nfiles: [{path: a}]", 'line 2: is not valid YAML (while constructing a mapping found duplicate key "unit"'),
     ("- 1\n- 2", "mapping.yaml: a mapping file has the key files, a list of sections"),
     ("bearing: '6205'\nunit: g\nfiles: [{path: a.npy, sample_rate_hz: 9, shaft_rpm: 9, specimen: A}]",
      "files[0].fault: is missing; give it there, or at the top for all files."),
