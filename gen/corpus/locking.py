@@ -1,32 +1,39 @@
 """A lock on the folder of a corpus or of results: one call at a time writes into it."""
 
+import os
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+
+from filelock import lock_descriptor
 
 from gen.support.errors import CorpusError
-from gen.support.locking import hold_lock
 
 
 @contextmanager
 def lock(directory: Path) -> Iterator[None]:
-    """Lock a folder against other calls that write into it.
+    """Lock a folder against other calls that write into it; the system releases the lock when the process ends, however it ends.
+
+    Where the file system has no locks, none is held.
 
     Raises
     ------
     CorpusError
         If another call holds the lock, or the folder cannot be opened.
     """
-
-    def refuse() -> NoReturn:
-        raise CorpusError(
-            f"{directory}: another raceway command is writing into it; wait until it ends, or choose another folder."
-        )
-
-    with ExitStack() as stack:
+    try:
+        handle = os.open(f"{directory}/.", os.O_RDONLY)
+    except OSError as error:
+        raise CorpusError(f"{directory}: cannot be opened ({error.strerror}); give a folder.") from None
+    try:
         try:
-            stack.enter_context(hold_lock(f"{directory}/.", refuse))
-        except OSError as error:
-            raise CorpusError(f"{directory}: cannot be opened ({error.strerror}); give a folder.") from None
+            free = lock_descriptor(handle, blocking=False)
+        except OSError:
+            free = True
+        if not free:
+            raise CorpusError(
+                f"{directory}: another raceway command is writing into it; wait until it ends, or choose another folder."
+            )
         yield
+    finally:
+        os.close(handle)

@@ -5,7 +5,6 @@ module     responsibility
 ========== ==================================================================
 errors     one exception class per stage; each carries one sentence
 garbage    cheaper making of many objects
-locking    locks of files and folders between processes
 sources    hash of source files
 kernels    compiled kernels on disk, made again if they are damaged or of other sources
 progress   progress of a long call

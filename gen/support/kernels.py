@@ -13,10 +13,10 @@ from hashlib import sha256
 from typing import Any
 
 import numba
+from filelock import FileLock
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from gen.support.garbage import keep_garbage
-from gen.support.locking import hold_lock
 
 _HASH_BYTES = 32
 
@@ -97,7 +97,7 @@ class KernelCache(FunctionCache):
     def _lock(self, name: str) -> Iterator[None]:
         with ExitStack() as held:
             with suppress(OSError):
-                held.enter_context(hold_lock(f"{self.cache_path}/{name}.lock"))
+                held.enter_context(FileLock(f"{self.cache_path}/{name}.lock"))
             yield
 
 

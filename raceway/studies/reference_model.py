@@ -13,18 +13,18 @@ under this name; else it is made again. A lock keeps two processes from making i
 
 import hashlib
 import os
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from filelock import FileLock, Timeout
+from platformdirs import user_cache_path
+
 from features.table.durations import DURATION
 from gen.corpus import write_durably
 from gen.support.errors import CorpusError
-from gen.support.locking import hold_lock
 from gen.support.sources import hash_sources
 from raceway.console.options import USUAL, Team
 from raceway.console.progress import notice, notice_compilation, progress
@@ -295,13 +295,7 @@ def recipe_name(recipe: Path | str) -> str:
 def cache_folder() -> Path:
     """Folder for files that can be made again: ``RACEWAY_CACHE``, or raceway in the cache folder of the user."""
     chosen = os.environ.get(CACHE_VARIABLE)
-    if chosen:
-        return Path(chosen)
-    common = os.environ.get("XDG_CACHE_HOME")
-    if common and Path(common).is_absolute():  # a relative path is to be ignored
-        return Path(common) / "raceway"
-    usual = Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")
-    return usual / "raceway"
+    return Path(chosen) if chosen else user_cache_path("raceway")
 
 
 @contextmanager
@@ -310,8 +304,12 @@ def _lock(path: Path) -> Iterator[None]:
     with ExitStack() as held:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            waiting = partial(notice, "waiting for another process that trains this model.")
-            held.enter_context(hold_lock(path.with_suffix(".lock"), waiting))
+            lock = FileLock(path.with_suffix(".lock"))
+            try:
+                held.enter_context(lock.acquire(blocking=False))
+            except Timeout:
+                notice("waiting for another process that trains this model.")
+                held.enter_context(lock)
         except OSError as error:
             message = (
                 f"{path.parent}: this cache folder cannot be written ({error.strerror}); set {CACHE_VARIABLE} to another folder, or write "

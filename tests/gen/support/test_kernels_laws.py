@@ -1,22 +1,17 @@
 """Laws of kernels on disk: compiled once by several processes, and again if a file is damaged or of other sources."""
 
 import errno
-import fcntl
 import os
 import subprocess
 import sys
-import threading
 
 import pytest
 from numba import float32, float64, njit
 from numba.core import event
 
 from gen.support.kernels import keep_on_disk
-from gen.support.locking import hold_lock
 
 ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
-HOLD = "import sys, time; from gen.support.locking import hold_lock\n"
-HOLD += "with hold_lock(sys.argv[1]): print('held', flush=True); time.sleep(60)"
 # loads a small function, and says when it compiles it
 LOAD = """
 import sys, time, numba
@@ -49,24 +44,6 @@ def twice(tmp_path, monkeypatch):
     monkeypatch.delitem(sys.modules, "kernel_of_a_test", raising=False)
     monkeypatch.setattr("numba.core.config.CACHE_DIR", str(tmp_path / "cache"))
     return lambda sources="sources": keep_on_disk(njit(__import__("kernel_of_a_test").twice), sources)
-
-
-def test_the_lock_of_a_killed_process_is_free(tmp_path):
-    path = tmp_path / "kernel.lock"
-    process = python(HOLD, path)
-    assert process.stdout.readline() == "held\n"
-    with path.open() as file, pytest.raises(BlockingIOError):
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    process.kill()
-    process.communicate()
-    taken = threading.Event()
-
-    def take():
-        with hold_lock(path):
-            taken.set()
-
-    threading.Thread(target=take, daemon=True).start()
-    assert taken.wait(20)
 
 
 def test_of_two_processes_one_compiles_and_the_other_waits_and_loads(tmp_path, twice):
