@@ -5,11 +5,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.schema import SPLITS, class_names
-from gen.corpus.where import Column, nearest, records_where
+from gen.corpus.where import nearest, records_where
 from gen.support.errors import CorpusError
 
 
@@ -84,11 +85,16 @@ def _is_chosen(corpus: xr.Dataset, where: str | None, split: str | None) -> NDAr
     if split is not None:
         chosen &= corpus["split"].values == SPLITS.index(split)
     if where is not None:
-        columns = {name: corpus[name] for name in per_record(corpus)}
-        chosen &= records_where(
-            where, list(columns), lambda name: Column(columns[name].values, class_names(columns[name].attrs))
-        )
+        chosen &= records_where(where, per_record(corpus), lambda name: _column(corpus[name]))
     return chosen
+
+
+def _column(variable: xr.DataArray) -> pd.Series:
+    """Values of a per-record variable; those of a class variable by their names."""
+    classes = class_names(variable.attrs)
+    if not classes:
+        return pd.Series(variable.values)
+    return pd.Series(pd.Categorical(pd.Series(variable.values).map(classes), categories=[*classes.values()]))
 
 
 def _extents(corpora: Sequence[xr.Dataset], where: str | None) -> str:
