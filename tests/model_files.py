@@ -1,6 +1,5 @@
 """Small feature tables to train models on, and the members of model files."""
 
-import io
 import json
 import zipfile
 from collections.abc import Sequence
@@ -60,10 +59,6 @@ class Archive:
     def places(self, key: str) -> list[dict]:
         """Every JSON object under a key, outermost first."""
         return [value[key] for value in self.values() if isinstance(value, dict) and isinstance(value.get(key), dict)]
-
-    def array(self, key: str) -> np.ndarray:
-        """Copy of the first array under a key."""
-        return np.load(io.BytesIO(self.members[self.places(key)[0]["file"]]))
 
     def field(self, name: str) -> dict:
         return self.schema["content"][name]

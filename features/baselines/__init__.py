@@ -23,7 +23,6 @@ importance        permutation importance of features
 curves            score against the number of training specimens
 cross_calibration calibration on rigs or specimens outside the training
 model_file        the only module that reads and writes archives of skops
-plain             an ensemble as arrays, which predict without scikit-learn
 classifying       predictions of a fitted model for feature tables and waveforms
 models            training, evaluation, saving, loading
 unlabelled        answers for recordings whose class is not known

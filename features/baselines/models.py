@@ -246,7 +246,7 @@ class Model(Shown):
             raise NotFittedError("the model is not fitted; call fit first.")
 
     def save(self, path: Path | str) -> None:
-        """Write a model file, whole or not at all; equal models give equal bytes.
+        """Write a model file, whole or not at all.
 
         Raises
         ------

@@ -9,13 +9,17 @@ the signal tells nothing. Evidence is measured in the signal alone, whatever the
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
+from pandas import DataFrame, Index
 
 from features.baselines.calibration import HEALTHY_SHARE
-from features.baselines.plain import PlainModel
+from features.baselines.classifying import estimator_probabilities, predict
+from features.baselines.models import Model
 from features.baselines.predictions import DAMAGED, UNSURE, Predictions, impulsiveness_of, predictions
+from features.baselines.references import with_energies
 from features.diagnosis.evidence import Line, find_evidence
 from features.diagnosis.levels import levels_of
 from features.diagnosis.quality import ENOUGH, Quality, quality_of
@@ -37,17 +41,13 @@ from features.diagnosis.wording import (
 from features.faults import HEALTHY
 from features.signal.rows import FloatArray, mean_row
 from features.table.band import Band
+from features.table.channels import joined_channels
 from features.table.definitions import GROUPS
 from features.table.durations import suited
 from features.table.indicators import Orders, feature_names, indicators
 from features.table.recordings import recording_table, windows_of
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from features.baselines.models import Model
 
 WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
 
@@ -66,7 +66,7 @@ class Judged(NamedTuple):
 
 
 def diagnose_recording(
-    recording: Recorded, given: Given, model: "Model | PlainModel", *, healthy: Sequence[Recorded] = ()
+    recording: Recorded, given: Given, model: Model, *, healthy: Sequence[Recorded] = ()
 ) -> Diagnosis:
     """Diagnose one recording.
 
@@ -78,7 +78,7 @@ def diagnose_recording(
         The bearings it may be of, and the lowest and highest shaft rate. One bearing and one speed are believed unless
         the lines clearly tell another speed within 8 %.
     model
-        A trained model; a plain one cannot compare with ``healthy``.
+        A trained model.
     healthy
         Recordings of the same machine with a healthy bearing, with the same channels. Several tell how much it varies.
 
@@ -164,7 +164,7 @@ def _reference(healthy: Recorded, recording: Recorded, used: Recorded, given: Gi
     return reference
 
 
-def _useless(given: Given, model: "Model | PlainModel", quality: Quality) -> Diagnosis:
+def _useless(given: Given, model: Model, quality: Quality) -> Diagnosis:
     name, orders = next(iter(given.bearings.items()))
     return Diagnosis(
         verdict=UNSURE,
@@ -180,7 +180,7 @@ def _useless(given: Given, model: "Model | PlainModel", quality: Quality) -> Dia
     )
 
 
-def _judge(recording: Recorded, pair: Pair, model: "Model | PlainModel", references: Sequence[Recorded]) -> Judged:
+def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Judged:
     """Prediction and evidence at one pair of bearing and speed."""
     spectra = [
         spectrum
@@ -198,18 +198,10 @@ def _judge(recording: Recorded, pair: Pair, model: "Model | PlainModel", referen
     return Judged(pair, verdict, why, probabilities, whole.threshold, len(predicted.probabilities), lines, spectra)
 
 
-def _predict(
-    recording: Recorded, pair: Pair, model: "Model | PlainModel", references: Sequence[Recorded]
-) -> Predictions:
-    """Predictions of windows and recording; without a reference they need no xarray, and with a plain model no scikit-learn."""
+def _predict(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Predictions:
+    """Predictions of windows and recording."""
     model = suited(model, [_duration(one) for one in (recording, *references)])
     if references:
-        import xarray as xr
-
-        from features.baselines.classifying import predict
-
-        if isinstance(model, PlainModel):
-            raise TypeError(f"{model.name}: a plain model compares with no healthy recording; give the whole model.")
         healthy = [_table(one, recording.signals, pair, model, HEALTHY) for one in references]
         numbered = [one.assign(recording=one["recording"] + number) for number, one in enumerate(healthy)]
         known = xr.concat(numbered, "record", combine_attrs="override")
@@ -219,30 +211,17 @@ def _predict(
         for signal in recording.signals.values()
     ]
     means = [mean_row(some)[None] for some in rows]
+    columns = Index(model.features)
     each, whole = (
-        np.stack([_probabilities(model, some, recording.name) for some in values]) for values in (rows, means)
+        np.stack([estimator_probabilities(model, DataFrame(some, columns=columns), recording.name) for some in values])
+        for values in (rows, means)
     )
     alone = np.zeros(each.shape[1], dtype=np.intp)
     impulsiveness = impulsiveness_of(means, model.features)
     return predictions(each, model.classes, alone, model.calibration, of_recordings=whole, impulsiveness=impulsiveness)
 
 
-def _probabilities(model: "Model | PlainModel", rows: FloatArray, where: str) -> FloatArray:
-    if isinstance(model, PlainModel):
-        return model.probabilities(rows)
-    from pandas import DataFrame, Index
-
-    from features.baselines.classifying import estimator_probabilities
-
-    return estimator_probabilities(model, DataFrame(rows, columns=Index(model.features)), where)
-
-
-def _table(
-    recording: Recorded, channels: Iterable[str], pair: Pair, model: "Model | PlainModel", fault: str
-) -> "xr.Dataset":
-    from features.baselines.references import with_energies
-    from features.table.channels import joined_channels
-
+def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Model, fault: str) -> xr.Dataset:
     fs, code, groups, band = (
         recording.fs,
         UNKNOWN_CODE if fault == UNKNOWN else FAULTS.index(fault),
@@ -257,7 +236,7 @@ def _table(
     return joined_channels(tables).assign_attrs(title=recording.name)
 
 
-def _rows(windows: FloatArray, fs: float, pair: Pair, model: "Model | PlainModel") -> FloatArray:
+def _rows(windows: FloatArray, fs: float, pair: Pair, model: Model) -> FloatArray:
     """Features of windows, shape (window, time), that the model takes, shape (window, feature)."""
     each = Orders(*(np.full(len(windows), float(order)) for order in pair.orders))
     rates = np.full(len(windows), pair.rate)

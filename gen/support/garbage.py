@@ -9,7 +9,7 @@ _THRESHOLD = gc.get_threshold()
 
 @contextmanager
 def keep_garbage() -> Iterator[None]:
-    """Look for unused objects more seldom while kernels compile.
+    """Look for unused objects more seldom while kernels compile, or while libraries and a model are loaded.
 
     That makes hundreds of thousands of objects that stay in use. To look through these again and again takes a fifth of the time.
     """

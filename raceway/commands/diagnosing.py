@@ -120,8 +120,11 @@ def diagnose(
     for sentence in doubts:
         notice(f"warning: {sentence}")
     given = _given(known, speeds)
-    loaded, source = _model(model, compares=bool(healthy))
-    from features.diagnosis import diagnose_recording
+    from gen.support.garbage import keep_garbage
+
+    with keep_garbage():
+        loaded, source = _model(model)
+        from features.diagnosis import diagnose_recording
 
     found = []
     for path, recorded, used, of_file in chain((first,), readings):
@@ -211,12 +214,12 @@ def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -
     return Given(nominal, ANY_RATE if speeds is None else (rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])))
 
 
-def _model(path: Path | None, *, compares: bool) -> tuple[Any, Path]:
+def _model(path: Path | None) -> tuple[Any, Path]:
     """Model and its file, or the reference model."""
     if path is None:
-        from raceway.studies.reference_model import load_plain_reference_model, load_reference_model
+        from raceway.studies.reference_model import load_reference_model
 
-        return load_reference_model() if compares else load_plain_reference_model()
+        return load_reference_model()
     from features.baselines.models import Model
 
     return Model.load(path), path

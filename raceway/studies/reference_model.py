@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from features.baselines import Model, Scores
-    from features.baselines.plain import PlainModel
     from gen.recipe import Recipe
 
 REFERENCE = "domain_randomised"
@@ -175,21 +174,6 @@ def load_reference_model() -> tuple["Model", Path]:
     # of this installation, whatever lies in the working folder
     model, path, _ = kept_model(shipped_recipes()[REFERENCE])
     return model, path
-
-
-def load_plain_reference_model() -> tuple["PlainModel", Path]:
-    """Reference model without what compares with healthy recordings, and the file of the whole one, beside which it is kept."""
-    from features.baselines.plain import PlainModel
-    from gen.recipe import shipped_recipes
-
-    path = kept_path(shipped_recipes()[REFERENCE])
-    plain = path.with_suffix(".npz")
-    kept = PlainModel.read(plain) if is_kept(plain) else None
-    if kept is None:
-        kept = PlainModel.of(load_reference_model()[0])
-        kept.save(plain)
-        _seal(plain)
-    return kept, path
 
 
 def reference_model() -> "Model":

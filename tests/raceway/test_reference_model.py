@@ -108,18 +108,6 @@ def test_a_model_of_another_name_is_not_believed(trainings):
     assert (model.name, len(trainings)) == ("logistic_regression", 3)
 
 
-def test_its_arrays_are_kept_beside_it_and_made_again_if_they_are_damaged(trainings):
-    first, path = reference_model.load_plain_reference_model()
-    again, _ = reference_model.load_plain_reference_model()
-    assert (first.classes, first.features) == (again.classes, again.features)
-    path.unlink()
-    assert reference_model.load_plain_reference_model()[0].calibration == first.calibration
-    assert len(trainings) == 1
-    path.with_suffix(".npz").write_bytes(b"x")
-    reference_model.load_plain_reference_model()
-    assert len(trainings) == 2
-
-
 def test_two_that_need_it_at_once_train_it_once(trainings):
     threads = [
         threading.Thread(target=reference_model.keep_model, args=("quickstart", "logistic_regression"))
