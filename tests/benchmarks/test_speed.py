@@ -1,8 +1,7 @@
 """The table of the benchmark of shaft speeds, on a made-up corpus."""
 
-from tests.features.table.test_recording_speeds import SPEEDS, TRUTH, WINDOWS, write_machines
-
 from benchmarks.speed import recordings, report
+from tests.features.table.test_recording_speeds import SPEEDS, TRUTH, WINDOWS, write_machines
 
 
 def test_the_table_has_a_row_per_class_and_known_speeds(tmp_path):

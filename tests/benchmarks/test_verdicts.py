@@ -4,7 +4,6 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from tests.features.table.test_recording_speeds import write_machines
 
 from benchmarks.speed import recordings
 from benchmarks.verdicts import ERRORS, RIGHT, SEEDS, WITHOUT_FAULT, answer, conditions, rows, without_fault
@@ -13,6 +12,7 @@ from features.diagnosis.evidence import find_evidence
 from features.diagnosis.search import find_pairs, mean_spectra
 from features.diagnosis.spectrum import band_spectra
 from features.diagnosis.verdict import judge
+from tests.features.table.test_recording_speeds import write_machines
 
 
 def test_every_recording_is_diagnosed_at_right_wrong_and_unknown_speeds_and_bearings(tmp_path):

@@ -4,12 +4,12 @@ import json
 from types import SimpleNamespace
 
 import pytest
-from tests.features.table.test_recording_speeds import write_machines
 
 from features.table.band import DEFAULT_BAND
 from features.table.files import read_table
 from features.table.recording_speeds import ESTIMATE, SPEEDS
 from raceway.console.options import speed_option
+from tests.features.table.test_recording_speeds import write_machines
 
 WARNING = "warning: inner.csv: labelled 1500 rpm, but its BPFI lines fit"
 

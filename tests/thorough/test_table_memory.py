@@ -4,10 +4,10 @@ import os
 import tracemalloc
 
 import numpy as np
-from tests.features.table.test_corpora import part_dataset
 
 from features import feature_table
 from gen.corpus import SIGNAL, new_corpus
+from tests.features.table.test_corpora import part_dataset
 
 
 def test_memory_beside_the_table_does_not_grow_with_the_parts(tmp_path):

@@ -9,7 +9,6 @@ from sklearn.naive_bayes import GaussianNB
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import FunctionTransformer
 from sklearn.svm import SVC
-from tests.features.table.test_waveforms_laws import psd
 
 from features import feature_table, open_waveforms
 from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker, read_results
@@ -19,6 +18,7 @@ from features.baselines.results_file import write_results
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 from tests.features.baselines.test_baselines_laws import make_table, records_of
+from tests.features.table.test_waveforms_laws import psd
 from tests.tone_corpora import write_corpus
 
 CODES = np.array([0, 1, 2, 4] * 3)
