@@ -8,7 +8,7 @@ labels      variables written beside each record
 undetected  records drawn, simulated and measured; faults that cannot be seen drawn again
 step_checks some records integrated again at half their step
 scheduling  records of several parts made together, so that batches are full
-pace        seconds that some records take on this machine
+forecast    time that a corpus takes, from its steps and the rate of this machine
 parts       parts labelled and written
 compilation kernels of a recipe compiled before its first record
 corpus      a corpus, part by part, with dask

@@ -1,6 +1,6 @@
 """Kernels of a recipe compiled before its first record, several at once where cores are free.
 
-A kernel takes about 10 s to compile, once per machine. Numba compiles one at a time in a process, so several take as many processes. A
+A kernel takes 10 to 20 s to compile, once per machine. Numba compiles one at a time in a process, so several take as many processes. A
 kernel that no record of the sample needs is compiled when the first record needs it.
 """
 
@@ -13,15 +13,19 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from gen.measurement.measure import compile_mixing
 from gen.measurement.sensor_faults import compile_rattle
+from gen.physics.inputs import CONSTANT, ROUND, Waviness
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.layout import Shape
 from gen.recipe import Recipe
-from gen.scenarios import Scenario, draw_scenarios, settings_of
+from gen.scenarios import Scenario, draw_scenarios
+from gen.simulation.damage import is_wavy, untabulated_spalls
+from gen.simulation.inputs import bare_inputs
 from gen.simulation.kernels import is_compiled, load_kernel
-from gen.simulation.outline import outlined_inputs
-from gen.simulation.timeline import timeline
+from gen.simulation.motion import is_scheduled
 from gen.support.garbage import keep_garbage
 from gen.support.workers import cores
 
@@ -29,6 +33,8 @@ SAMPLE = 48
 """Number of records from the first on, and of others spread over the corpus, whose kernels are compiled."""
 MOST_AT_ONCE = 8  # processes; each takes 0.4 GB
 POLL_S = 0.02
+_WAVY = Waviness(np.zeros((2, 1), complex), ROUND.balls)
+_VARYING = np.ones((1, 2))
 
 # the thread ends this process with the one that started it, even if that was killed: then its end of the pipe closes
 _COMPILE_ONE = """
@@ -40,13 +46,17 @@ load_kernel(Shape(*((None,) * count for count in json.loads(sys.argv[1]))))
 """
 
 
-def compile_kernels(recipe: Recipe, report: Callable[[str], None] = lambda _: None) -> None:
-    """Compile the kernels of a recipe into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
+def missing_kernels(recipe: Recipe) -> list[Shape]:
+    """Shapes of the kernels of a recipe that are not compiled on this machine."""
+    return [shape for shape in needed_shapes(recipe) if not is_compiled(shape)]
+
+
+def compile_kernels(recipe: Recipe, missing: list[Shape], report: Callable[[str], None] = lambda _: None) -> None:
+    """Compile the missing kernels into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
     with keep_garbage():
         compile_mixing(draw_scenarios(recipe, 0, 1)[0])
         if recipe.sensor_faults.loose_mount is not None:
             compile_rattle()
-        missing = [shape for shape in needed_shapes(recipe) if not is_compiled(shape)]
     at_once = min(cores(), MOST_AT_ONCE)
     sentences = (
         f"compiling kernel {number} of {len(missing)} ({shape_in_words(shape)}) for this machine"
@@ -74,8 +84,17 @@ def needed_shapes(recipe: Recipe) -> list[Shape]:
     if recipe.truth.twins:
         scenarios = [one for scenario in scenarios for one in (scenario, scenario.without_fault())]
     # a record of which no machine is possible is left out when its part is made
-    outlines, _ = outlined_inputs(scenarios, timeline(settings_of(recipe)))
-    return list(dict.fromkeys(input_shape(given) for given in outlines if given is not None))
+    inputs, _ = bare_inputs(scenarios)
+    shaped = [
+        given._replace(
+            spalls=untabulated_spalls(scenario),
+            waviness=_WAVY if is_wavy(scenario) else ROUND,
+            schedule=_VARYING if is_scheduled(scenario) else CONSTANT,
+        )
+        for given, scenario in zip(inputs, scenarios, strict=True)
+        if given is not None
+    ]
+    return list(dict.fromkeys(map(input_shape, shaped)))
 
 
 def _sample(recipe: Recipe) -> Iterator[Scenario]:

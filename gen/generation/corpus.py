@@ -7,6 +7,7 @@ of a single file ``NAME.nc`` lie in the folder ``NAME.nc.parts`` until all are t
 
 import platform
 import threading
+import time
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
@@ -36,7 +37,8 @@ from gen.corpus import (
     write_manifest,
     writing,
 )
-from gen.generation.compilation import compile_kernels
+from gen.generation.compilation import compile_kernels, missing_kernels
+from gen.generation.forecast import expected_work, forecast_in_words, leave_rate, seconds_of
 from gen.generation.parts import Outcome, made_by, make_parts, units
 from gen.generation.scheduling import Crew
 from gen.generation.sources import sources_sha256
@@ -109,7 +111,7 @@ def generate(
         Called in this thread with the number of records done and of all records. The last record of a part counts when the part is
         written, every other record when it is final.
     notice : callable, optional
-        Called with a sentence when a kernel is about to be compiled.
+        Called with a sentence that says how long it takes, and one when a kernel is about to be compiled.
 
     Raises
     ------
@@ -166,15 +168,20 @@ def _all_parts(
     tally: "Tally", folder: Path, workers: int, client: "Client | None", notice: Callable[[str], None]
 ) -> list[Outcome]:
     """Make the parts of a tally that are missing; outcomes of all of them in their order."""
-    recipe = tally.recipe
+    recipe, work, at_once = tally.recipe, 0.0, min(workers, len(tally.parts))
     if client is None and not all((folder / "parts" / part_name(part)).exists() for part in tally.parts):
-        compile_kernels(recipe, notice)
+        missing, work = missing_kernels(recipe), expected_work(recipe)
+        notice(forecast_in_words(len(missing), recipe.n_records * at_once / seconds_of(work)))
+        compile_kernels(recipe, missing, notice)
     outcomes: dict[int, Outcome] = {}
+    start = time.monotonic()
     with closing(_made(tally, folder, workers, client)) as made:
         for part, outcome in made:
             outcomes[part] = outcome
             tally.note(part, len(recipe.records_of_part(part)))
             tally.show()
+    if work and not any(outcome.kept for outcome in outcomes.values()):
+        leave_rate(work, at_once * (time.monotonic() - start))
     return [outcomes[number] for number in sorted(outcomes)]
 
 

@@ -15,6 +15,5 @@ kernels  the kernels of this machine by their shapes
 batches  records grouped by kernel and step, and integrated in lanes
 steps    the step: chosen before the run, checked after it
 simulate scenarios integrated
-outline  kernel shape and steps of a record, without its kernel input
 ======== ====================================================================
 """

@@ -95,8 +95,8 @@ def _show_keys(prefix: str, as_json: bool) -> None:
 def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> None:
     """Show counts, size and time of a corpus; write nothing.
 
-    Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. The time is measured on a sample
-    of the records, once per machine, if the kernels of RECIPE are compiled.
+    Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. The time follows from the steps of
+    some records and the rate of the last longer run on this machine, or a typical one; it is right within a factor of two.
 
       raceway plan quickstart
       raceway plan my_recipe.yaml --records 100 --json
@@ -112,14 +112,20 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
     if as_json:
         show.as_json(planned)
     else:
-        _show_plan(planned, recipe)
+        _show_plan(planned)
 
 
-def _show_plan(planned: "Plan", recipe: str) -> None:
+def _show_plan(planned: "Plan") -> None:
+    from gen.generation.forecast import KERNEL_S, START_S, forecast_in_words
+
     steps = list(planned.steps_per_sample)
-    about = "" if planned.drawn == planned.records else f" (scaled up from {planned.drawn:,} drawn records)"
-    without = f", without {planned.left_out:,} that cannot be simulated{about}" if planned.left_out else ""
+    about, about_checked = (
+        "" if count == planned.records else f" (scaled up from {count:,} {done} records)"
+        for count, done in ((planned.drawn, "drawn"), (planned.checked, "checked"))
+    )
+    without = f", without {planned.left_out:,} that cannot be simulated{about_checked}" if planned.left_out else ""
     seconds = planned.estimated_seconds
+    time = forecast_in_words(planned.uncompiled, planned.records / (seconds - START_S))
     show.text(planned.title, "")
     show.facts(
         {
@@ -134,9 +140,7 @@ def _show_plan(planned: "Plan", recipe: str) -> None:
             "size": f"about {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",
             "kernels": f"{planned.kernels}; each is compiled once per machine",
-            "time": f"not known yet; raceway doctor --speed {shlex.quote(recipe)} compiles the kernels and measures the speed"
-            if seconds is None
-            else f"about {show.duration(seconds)} with one worker, from a sample measured on this machine",
+            "time": f"{time} with one worker: about {show.duration(KERNEL_S * planned.uncompiled + seconds)}",
         }
     )
     if planned.first_left_out is not None:

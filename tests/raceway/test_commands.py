@@ -1,6 +1,7 @@
 """Output of each command, as text and as JSON."""
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -153,10 +154,12 @@ def test_a_plan_counts_what_generate_makes(run, told, tiny_recipe, tiny_corpus):
     assert "healthy 12, inner 12, outer 12, ball 12" in run("plan", tiny_recipe).stdout
 
 
-def test_a_plan_without_a_measured_time_names_the_command_that_measures_it(run, tiny_recipe, monkeypatch):
-    monkeypatch.setattr("gen.generation.plan.measured_pace", lambda *_: None)
-    shown = run("plan", tiny_recipe).stdout
-    assert f"not known yet; raceway doctor --speed {tiny_recipe} compiles the kernels and measures the speed" in shown
+def test_a_plan_tells_the_time_of_kernels_and_of_records(run, tiny_recipe, monkeypatch):
+    monkeypatch.setattr("gen.generation.plan.is_compiled", lambda _: False)
+    assert re.search(
+        r"about 20 s for one kernel, then about [\d,.]+ records/s with one worker: about",
+        run("plan", tiny_recipe).stdout,
+    )
 
 
 def test_a_plan_writes_nothing(run, tiny_recipe, tmp_path, monkeypatch):

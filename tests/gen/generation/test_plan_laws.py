@@ -7,11 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.generation.corpus import generate
-from gen.generation.pace import Pace
-from gen.generation.plan import BYTES_PER_FILE, MOST_DRAWN, START_S, plan, some_ranges
+from gen.generation.forecast import START_S
+from gen.generation.plan import BYTES_PER_FILE, MOST_CHECKED, MOST_DRAWN, plan, some_ranges
 from gen.generation.plan import _bytes as plan_bytes
-from gen.physics.kernel.compiling import LANES
-from gen.physics.kernel.integrate import integrate
 from gen.recipe import read_recipe
 
 
@@ -35,28 +33,12 @@ def test_a_large_corpus_is_counted_from_a_part_of_it(write_recipe, tmp_path):
 
 
 @pytest.mark.parametrize(("key", "factor"), [("corpus.rigs", 3), ("recording.duration_s", 1)])
-def test_more_records_take_more_time_and_room(write_recipe, tmp_path, monkeypatch, key, factor):
-    monkeypatch.setattr("gen.generation.plan.measured_pace", lambda *_: Pace(lane_step=1e-8, record=1e-4))
+def test_more_records_take_more_time_and_room(write_recipe, tmp_path, key, factor):
     small = plan(write_recipe(tmp_path / "small.yaml"))
     large = plan(write_recipe(tmp_path / "large.yaml", {key: 9 if factor == 3 else 1.0}))
     assert large.records == factor * small.records
     assert large.bytes > 1.3 * small.bytes
     assert large.estimated_seconds - START_S > 1.3 * (small.estimated_seconds - START_S)
-
-
-def test_the_time_of_a_plan_counts_every_lane_that_generation_integrates(write_recipe, tmp_path, monkeypatch):
-    """One second per step of a lane: the lanes of all batches, filled across parts, and those of the check at half the step."""
-    counted = []
-
-    def count(shape, lanes, dt, n_steps, taps, n_settle, n_out):
-        counted.append(n_steps * (n_settle + n_out) * LANES)
-        return integrate(shape, lanes, dt, n_steps, taps, n_settle, n_out)
-
-    path = write_recipe(tmp_path / "r.yaml", {"storage.records_per_part": 20})
-    monkeypatch.setattr("gen.simulation.batches.integrate", count)
-    generate(path, tmp_path / "corpus")
-    monkeypatch.setattr("gen.generation.plan.measured_pace", lambda *_: Pace(lane_step=1.0, record=0.0))
-    assert plan(path).estimated_seconds - START_S == pytest.approx(sum(counted), rel=1e-6)
 
 
 def test_what_a_plan_refuses_generate_refuses_with_the_same_sentence(write_recipe, tmp_path):
@@ -75,12 +57,12 @@ def test_a_plan_follows_seed_and_number_of_records(write_recipe, tmp_path):
     assert plan(path, seed=8).seed == read_recipe(path, seed=8).seed == 8
 
 
-def test_the_time_of_a_plan_contains_the_time_to_draw_every_record(write_recipe, tmp_path, monkeypatch):
-    monkeypatch.setattr("gen.generation.plan.measured_pace", lambda *_: Pace(lane_step=0.0, record=0.0))
-    small = plan(write_recipe(tmp_path / "small.yaml")).estimated_seconds
-    large = plan(write_recipe(tmp_path / "large.yaml", {"corpus.rigs": 2500})).estimated_seconds
-    assert small > START_S
-    assert large - START_S > 20 * (small - START_S)
+def test_a_plan_checks_some_of_its_records_and_says_so(write_recipe, tmp_path):
+    planned = plan(write_recipe(tmp_path / "r.yaml", {"corpus.rigs": 300, "operation.load_n": "grid(20000, 500)"}))
+    assert (planned.records, planned.drawn) == (2400, 2400)
+    assert planned.checked <= MOST_CHECKED
+    assert planned.left_out + sum(planned.steps_per_sample.values()) == pytest.approx(2400, abs=2)
+    assert planned.left_out > 0
 
 
 @pytest.mark.parametrize("per_part", [1, 5, 24])
