@@ -10,6 +10,7 @@ physics     pure: bearing, Hertz contact, spalls, machine, kernel
 corpus      the netCDF format: write, index, open, validate
 exporting   corpora copied, joined, in the forms of other programs
 importers   real recordings into the same format
+drawing     what a recipe is made of: distributions, sections, draws
 recipe      YAML to a frozen model
 scenarios   rigs, specimens and records, fully drawn
 simulation  scenarios to accelerations

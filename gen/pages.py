@@ -9,8 +9,8 @@ import textwrap
 from pathlib import Path
 
 from gen.corpus import format_page
+from gen.drawing.distributions import KINDS
 from gen.physics.catalogue import catalogue_page
-from gen.recipe.distributions import KINDS
 from gen.recipe.finding import recipe_purpose, shipped_recipes
 from gen.recipe.keys import Key, recipe_keys
 from gen.support.limits import limits_page

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft
 
+from gen.drawing.draws import Drawn
 from gen.scenarios import ConditionSignal
-from gen.scenarios.sensing import Drawn
 
 FloatArray = NDArray[np.float64]
 

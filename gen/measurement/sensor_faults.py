@@ -19,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
+from gen.drawing.draws import Drawn
 from gen.measurement.rattle import rattling
 from gen.measurement.rig import base_transmissibility
 from gen.scenarios import Mode, Purpose, Scenario
-from gen.scenarios.sensing import Drawn
 from gen.support.units import decibel_to_ratio
 
 FloatArray = NDArray[np.floating]

@@ -3,9 +3,6 @@
 ================== ========================================================
 module             responsibility
 ================== ========================================================
-expressions        distributions as text: loguniform(0.1, 2)
-distributions      distributions of drawn values
-section            base of all sections: bounds, unknown keys, meanings
 machine            bearing, machine, lubricant, specimen
 faults             spalls, worn races, broken cages, several at once
 operation          speed and load with their profiles, slip, temperature

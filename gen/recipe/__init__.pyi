@@ -10,7 +10,6 @@ from .reading import (
     recipe_hash as recipe_hash,
     recipe_schema as recipe_schema,
 )
-from .section import Section as Section, plain as plain
 from .sensing import (
     MAX_OVERSAMPLING as MAX_OVERSAMPLING,
     Modes as Modes,
@@ -23,6 +22,5 @@ from .shares import (
     LEAST_AXIAL_LOAD as LEAST_AXIAL_LOAD,
     STATIC_RATING as STATIC_RATING,
     operations as operations,
-    quantities as quantities,
 )
 from .text import recipe_text as recipe_text, write_recipe as write_recipe

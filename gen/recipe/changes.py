@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any, get_type_hints
 
 from pydantic import ConfigDict, Field, create_model, model_serializer
 
+from gen.drawing.section import Section
 from gen.recipe.operation import OperationSection
-from gen.recipe.section import Section
 from gen.recipe.sensing import SnrLevel
 
 

@@ -9,10 +9,10 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from gen.recipe.distributions import Choice, Grid, LogUniform, Normal, Uniform
-from gen.recipe.expressions import called
+from gen.drawing.distributions import Choice, Grid, LogUniform, Normal, Uniform
+from gen.drawing.expressions import called
+from gen.drawing.section import Section, plain
 from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Healthy, RaceFault
-from gen.recipe.section import Section, plain
 from gen.support.errors import RecipeError
 from gen.support.sentences import sentences
 

@@ -6,8 +6,8 @@ from typing import Any, get_args
 
 from pydantic import ConfigDict
 
+from gen.drawing.section import Section
 from gen.recipe.faults import Fault
-from gen.recipe.section import Section
 
 _OF_KIND = {
     kind: model for model in get_args(get_args(Fault)[0]) for kind in get_args(model.model_fields["kind"].annotation)

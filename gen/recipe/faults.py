@@ -4,10 +4,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, StrictInt, model_validator
 
+from gen.drawing.distributions import Distribution, Number, within
+from gen.drawing.section import Section, Weight
 from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
 from gen.recipe.changes import LevelChanges, OperationChanges
-from gen.recipe.distributions import Distribution, Number, within
-from gen.recipe.section import Section, Weight
 
 MAX_SPALLS = 16
 Trace = Annotated[tuple[Annotated[Number, Field(ge=0, le=5000)], ...], Field(min_length=3, max_length=2000)]

@@ -1,7 +1,7 @@
 """Gear mesh in the background of a machine."""
 
-from gen.recipe.distributions import Distribution, within
-from gen.recipe.section import Probability, Section
+from gen.drawing.distributions import Distribution, within
+from gen.drawing.section import Probability, Section
 
 
 class GearMesh(Section):

@@ -11,10 +11,10 @@ from typing import Annotated, Any, NamedTuple, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from gen.drawing.distributions import DISTRIBUTIONS, interval
+from gen.drawing.section import Section
 from gen.recipe.changes import Changes
-from gen.recipe.distributions import DISTRIBUTIONS, interval
 from gen.recipe.model import Recipe
-from gen.recipe.section import Section
 from gen.support.errors import RecipeError
 from gen.support.units import UNITS, unit_suffix
 

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, StrictInt, field_validator, model_validator
 
+from gen.drawing.distributions import Distribution, Number, within
+from gen.drawing.section import Name, Probability, Section
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.physics.extent import MAX_BALLS
-from gen.recipe.distributions import Distribution, Number, within
-from gen.recipe.section import Name, Probability, Section
 from gen.support.units import to_si
 
 _KNOWN = tuple(

@@ -4,8 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictInt
 
-from gen.recipe.distributions import Distribution, within
-from gen.recipe.section import Probability, Section, Weight
+from gen.drawing.distributions import Distribution, within
+from gen.drawing.section import Probability, Section, Weight
 
 MachineKind = Literal["unbalance", "bent_shaft", "misalignment", "looseness", "rub", "belt"]
 

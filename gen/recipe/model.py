@@ -6,9 +6,9 @@ from typing import Any, Self
 
 from pydantic import ValidationError, model_validator
 
+from gen.drawing.section import plain
 from gen.recipe.checks import check_recipe
 from gen.recipe.faults import fault_class
-from gen.recipe.section import plain
 from gen.recipe.sections import Sections
 from gen.support.errors import RecipeError
 from gen.support.sentences import sentences

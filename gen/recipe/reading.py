@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from gen.corpus import RECIPE_TEXT
+from gen.drawing.section import plain
 from gen.recipe.finding import find_recipe
 from gen.recipe.model import Recipe
-from gen.recipe.section import plain
 from gen.support.errors import RecipeError
 from gen.support.yaml_files import parse_yaml, read_yaml
 

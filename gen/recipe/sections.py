@@ -10,7 +10,8 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, model_validator
 
 from gen.corpus import Codec
-from gen.recipe.distributions import Number
+from gen.drawing.distributions import Number
+from gen.drawing.section import Count, Name, Section
 from gen.recipe.fault_entries import FaultList, fault_entries
 from gen.recipe.faults import Fault
 from gen.recipe.machine import (
@@ -25,7 +26,6 @@ from gen.recipe.machine import (
 from gen.recipe.machine_conditions import MachineConditionsSection
 from gen.recipe.operation import OperationSection
 from gen.recipe.publication import PublicationSection
-from gen.recipe.section import Count, Name, Section
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
 from gen.recipe.sensor_faults import SensorFaultsSection
 

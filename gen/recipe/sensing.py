@@ -4,9 +4,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, StrictInt
 
-from gen.recipe.distributions import Distribution, Number, within
+from gen.drawing.distributions import Distribution, Number, within
+from gen.drawing.section import Name, Probability, Section, Weight
 from gen.recipe.gear import GearMesh
-from gen.recipe.section import Name, Probability, Section, Weight
 
 MAX_OVERSAMPLING = 96
 

@@ -4,8 +4,8 @@ A fault that lasts as long as an installation belongs to the rig; a fault that c
 those of the stored signal, after ``level``: a cable and an amplifier know nothing of the vibration of the machine.
 """
 
-from gen.recipe.distributions import Distribution, within
-from gen.recipe.section import Probability, Section
+from gen.drawing.distributions import Distribution, within
+from gen.drawing.section import Probability, Section
 
 
 class LooseMount(Section):

@@ -9,10 +9,10 @@ import difflib
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from gen.recipe.distributions import DISTRIBUTIONS, Support, interval, is_within
+from gen.drawing.distributions import Support, interval, is_within
+from gen.drawing.section import Section, quantities
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.operation import OperationSection
-from gen.recipe.section import Section
 from gen.recipe.sections import Sections
 from gen.support.units import UNITS, unit_suffix
 
@@ -35,11 +35,6 @@ class _Scope(NamedTuple):
     section: Section
     above: Mapping[str, Support | None]
     """Range of every quantity of the levels above, in the unit of its key; None if it is not known before it is drawn."""
-
-
-def quantities(section: Section) -> dict[str, Any]:
-    """Distribution of every quantity of a section, by key."""
-    return {key: value for key, value in vars(section).items() if type(value) in DISTRIBUTIONS}
 
 
 def share_problem(recipe: Sections) -> str | None:

@@ -7,8 +7,8 @@ from typing import Any
 from ruamel.yaml import YAML
 
 from gen.corpus import write_text_durably
+from gen.drawing.section import plain
 from gen.recipe.model import Recipe
-from gen.recipe.section import plain
 from gen.support.errors import RecipeError
 
 

@@ -6,7 +6,6 @@ module        responsibility
 sensing       dataclasses of channels, transfer paths, background and sensor faults
 model         dataclasses of rig, specimen and record; random streams
 points        quasi-random points
-draws         draw values from the distributions of a recipe section
 bearings      draw the bearing of a rig, its deviations as built, and the bearing at the other end of the shaft
 classes       choose the fault class of each specimen
 faults        draw the damage of a specimen

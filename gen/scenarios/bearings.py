@@ -10,14 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from gen.drawing.distributions import weighted_index
+from gen.drawing.draws import Drawn, Draws, Known, known_of
 from gen.physics.bearing import Bearing, free_contact_angle
 from gen.recipe import FREE_ANGLE, CatalogueBearing, Recipe, fault_class
-from gen.recipe.distributions import weighted_index
 from gen.recipe.machine import named_bearing
-from gen.scenarios.draws import Draws, Known, known_of, known_of_rig
 from gen.scenarios.faults import draw_damage
 from gen.scenarios.model import OTHER_STREAMS, OtherBearing, Purpose, Rig, Specimen, stream
-from gen.scenarios.sensing import Drawn
 from gen.support.errors import RecipeError
 from gen.support.units import decibel_to_ratio
 
@@ -104,3 +103,9 @@ def draw_other_bearing(recipe: Recipe, rig: Rig, specimen: Specimen, fault: str)
         other = replace(other, fault=fault, entry=entry)
         other = draw_damage(of_fault, recipe.faults[entry], other, {**known, **known_of(recipe.specimen, properties)})
     return OtherBearing(drawing, other, mount["load"], decibel_to_ratio(-mount["attenuation"]))
+
+
+def known_of_rig(recipe: Recipe, rig: Rig) -> dict[str, float]:
+    """Quantities of a rig that those of its specimens and records can be a share of [SI]."""
+    dimensions = {"pitch_diameter_mm": rig.bearing.pitch_diameter, "ball_diameter_mm": rig.bearing.ball_diameter}
+    return {**known_of(recipe.machine, rig.machine), **dimensions}

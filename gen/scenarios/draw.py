@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus import SPLITS
+from gen.drawing.distributions import weighted_index
+from gen.drawing.draws import Draws, Known, known_of
 from gen.recipe import (
     Fault,
     Modes,
@@ -22,10 +24,8 @@ from gen.recipe import (
     Recipe,
     operations,
 )
-from gen.recipe.distributions import weighted_index
-from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_bearing
+from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_bearing, known_of_rig
 from gen.scenarios.classes import fault_of_each_specimen, other_fault_of_each_specimen, possible_entries
-from gen.scenarios.draws import Draws, Known, known_of, known_of_rig
 from gen.scenarios.faults import draw_damage
 from gen.scenarios.model import Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Operating, operating_of

@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
+from gen.drawing.draws import Draws, Known
 from gen.physics.bearing import Bearing, ball_spacing
 from gen.recipe import BALL_SPACING, Fault
 from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Healthy, RaceFault
-from gen.scenarios.draws import Draws, Known
 from gen.scenarios.model import Spall, Specimen, Wear
 from gen.support.errors import RecipeError
 from gen.support.units import to_si

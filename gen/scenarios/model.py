@@ -11,10 +11,11 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from gen.drawing.draws import Drawn
 from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
 from gen.recipe import MAX_OVERSAMPLING
-from gen.scenarios.sensing import Background, Drawn, Path, Pickup, RecordSensorFaults, RigSensorFaults
+from gen.scenarios.sensing import Background, Path, Pickup, RecordSensorFaults, RigSensorFaults
 from gen.support.shown import Shown
 
 Number = Annotated[int, Field(ge=0, lt=2**31)]

@@ -9,8 +9,9 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from gen.recipe import Recipe, Section, quantities
-from gen.scenarios.draws import Combination, Draws, Known, in_si
+from gen.drawing.draws import Combination, Draws, Known, in_si
+from gen.drawing.section import Section, quantities
+from gen.recipe import Recipe
 from gen.scenarios.model import Conditions
 
 Level = Literal["rig", "specimen", "record"]

@@ -9,11 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.drawing.draws import Combination, Draws, Known, known_of
 from gen.physics.axial import least_axial_load
 from gen.physics.profile import Profile
 from gen.physics.rating import static_rating
 from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, Recipe, fault_class
-from gen.scenarios.draws import Combination, Draws, Known, known_of
 from gen.scenarios.model import Operation, OtherBearing, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import CommonNumbers, Level, Operating, common_numbers, draw_conditions
 from gen.scenarios.points import points_of

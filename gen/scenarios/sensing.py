@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-Drawn = dict[str, float]
-"""Values drawn from one recipe section, by the key without its unit."""
+from gen.drawing.draws import Drawn
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gen.recipe import Recipe, Section
-from gen.recipe.distributions import weighted_index
-from gen.scenarios.draws import Draws
+from gen.drawing.distributions import weighted_index
+from gen.drawing.draws import Drawn, Draws
+from gen.drawing.section import Section
+from gen.recipe import Recipe
 from gen.scenarios.model import Purpose, stream
-from gen.scenarios.sensing import ConditionSignal, Drawn, Gear, RecordSensorFaults, RigSensorFaults
+from gen.scenarios.sensing import ConditionSignal, Gear, RecordSensorFaults, RigSensorFaults
 from gen.support.units import decibel_to_ratio, to_si
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from ruamel.yaml import YAML
 
+from gen.drawing.section import plain
 from gen.recipe import Recipe
-from gen.recipe.section import plain
 
 RecipeWith = Callable[..., Recipe]
 

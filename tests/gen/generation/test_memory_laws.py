@@ -8,7 +8,7 @@ import xarray as xr
 
 import gen
 from gen.corpus import SIGNAL
-from gen.recipe import plain
+from gen.drawing.section import plain
 from gen.support.errors import CorpusError, RecipeError, SimulationError
 
 # the kernel of the small recipes

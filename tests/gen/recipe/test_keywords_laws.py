@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gen
-from gen.recipe import Recipe, plain, read_recipe, recipe_hash, recipe_text, shipped_recipes
+from gen.drawing.section import plain
+from gen.recipe import Recipe, read_recipe, recipe_hash, recipe_text, shipped_recipes
 from gen.recipe.keywords import _places
 from gen.support.errors import RecipeError
 

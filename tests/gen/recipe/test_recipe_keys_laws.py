@@ -5,8 +5,8 @@ import re
 
 import pytest
 
+from gen.drawing.distributions import DISTRIBUTIONS
 from gen.recipe import find_recipe, shipped_recipes
-from gen.recipe.distributions import DISTRIBUTIONS
 from gen.recipe.keys import recipe_keys
 from gen.recipe.reading import recipe_schema
 from gen.support.errors import RecipeError

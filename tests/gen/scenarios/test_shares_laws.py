@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen import uniform
+from gen.drawing.distributions import DISTRIBUTIONS
 from gen.physics.bearing import ball_spacing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import static_rating
-from gen.recipe.distributions import DISTRIBUTIONS
 from gen.recipe.machine import MachineSection
 from gen.recipe.operation import OperationSection
 from gen.recipe.shares import quantities

@@ -2,7 +2,7 @@
 
 Values are drawn with the inverse distribution function. So random and quasi-random points are treated alike, and every distribution takes
 one number: to change the distribution of one key does not move the values of the others. ``uniform(0.4, 1) * load_n`` is a share of
-another quantity: :mod:`gen.recipe.shares` says which quantities can be named, and :mod:`gen.scenarios.draws` multiplies when all are drawn.
+another quantity: :mod:`gen.recipe.shares` says which quantities can be named, and :mod:`gen.drawing.draws` multiplies when all are drawn.
 """
 
 import functools
@@ -22,7 +22,7 @@ from pydantic import (
     model_validator,
 )
 
-from gen.recipe.expressions import expression_of, read_expression
+from gen.drawing.expressions import expression_of, read_expression
 
 Number = Annotated[float, Field(strict=True)]
 Support = tuple[float, float]

@@ -81,7 +81,7 @@ def called(model: Any, values: Sequence[Any], named: Mapping[str, Any]) -> Any:
 def expression_of(distribution: Any) -> str:
     """Text of a distribution, which is read as the same distribution.
 
-    >>> from gen.recipe.distributions import Choice, Uniform
+    >>> from gen.drawing.distributions import Choice, Uniform
     >>> Choice(kind="choice", values=(1, 2), weights=(3, 1)), Uniform(kind="uniform", low=0.5, high=1, share_of="load_n")
     (choice(1, 2, weights=(3, 1)), uniform(0.5, 1) * load_n)
     """

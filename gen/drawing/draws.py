@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.recipe import Recipe, Section, quantities
-from gen.recipe.distributions import Grid, interval, is_within
-from gen.scenarios.model import Rig
-from gen.scenarios.sensing import Drawn
+from gen.drawing.distributions import Grid, interval, is_within
+from gen.drawing.section import Section, quantities
 from gen.support.errors import RecipeError
 from gen.support.units import split_unit
 
+Drawn = dict[str, float]
+"""Values drawn from one recipe section, by the key without its unit."""
 Derived = Callable[[Callable[[str], float]], float]
 """Value of a derived quantity, from a function that gives the values of the section by key [SI]."""
 Known = Mapping[str, float | Derived]
@@ -120,9 +120,3 @@ def _check_share(section: Section, key: str, value: float, share: str) -> None:
 def known_of(section: Section, drawn: Drawn) -> dict[str, float]:
     """Drawn values of a section by the keys of the recipe [SI]."""
     return {key: drawn[_unit_of(key)[0]] for key in quantities(section)}
-
-
-def known_of_rig(recipe: Recipe, rig: Rig) -> dict[str, float]:
-    """Quantities of a rig that those of its specimens and records can be a share of [SI]."""
-    dimensions = {"pitch_diameter_mm": rig.bearing.pitch_diameter, "ball_diameter_mm": rig.bearing.ball_diameter}
-    return {**known_of(recipe.machine, rig.machine), **dimensions}

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import kstest, loguniform, truncnorm, uniform
 
-from gen.recipe.distributions import Choice, Constant, Grid, LogUniform, Normal, Uniform, weighted_index
+from gen.drawing.distributions import Choice, Constant, Grid, LogUniform, Normal, Uniform, weighted_index
 
 law = settings(deadline=None, max_examples=50)
 quantiles = st.floats(0, 1, exclude_max=True)

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, StrictInt, StringConstraints, ValidationInfo, field_validator
 
-from gen.recipe.distributions import Number, check_bounds, is_distribution
+from gen.drawing.distributions import Number, check_bounds, is_distribution
 
 Weight = Annotated[Number, Field(ge=0)]
 Count = Annotated[StrictInt, Field(ge=1)]
@@ -37,6 +37,11 @@ class Section(BaseModel):
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
         given = self.model_fields_set - {"kind"}
         return ((key, value) for key, value in super().__repr_args__() if key in given)
+
+
+def quantities(section: Section) -> dict[str, Any]:
+    """Distribution of every quantity of a section, by key."""
+    return {key: value for key, value in vars(section).items() if is_distribution(value)}
 
 
 def plain(value: Any) -> Any:
