@@ -103,11 +103,6 @@ def has_whole_bytes(path: Path) -> bool:
     return stored_checksum(path) == _both_hashes(path)[1]
 
 
-def forget_hashes() -> None:
-    """Forget all kept hashes."""
-    _hashes.clear()
-
-
 def plain_file(directory: Path, name: str) -> Path:
     """Path of a file of a corpus: a plain file inside the folder.
 

@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 
 from gen.generation.step_checks import CHECKED_SHARE
-from gen.physics.kernel.layout import Shape
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, draw_scenarios, first_records, settings_of
 from gen.simulation.batches import Group, filled_lanes, group_of
@@ -77,11 +76,7 @@ def work_of(recipe: Recipe, groups: Sequence[Group]) -> float:
 
 
 def _cost(group: Group) -> float:
-    return group.steps * _elements(group.shape)
-
-
-def _elements(shape: Shape) -> float:
-    return len(shape.balls) * (ROLLER if shape.roller else 1.0)
+    return group.steps * len(group.shape.balls) * (ROLLER if group.shape.roller else 1.0)
 
 
 def seconds_of(work: float) -> float:

@@ -44,11 +44,3 @@ def mean_share(profile: Profile | None, duration: float) -> float:
     if profile is None:
         return 1.0
     return float(share_at(profile, (np.arange(4096) + 0.5) * (duration / 4096)).mean())
-
-
-def integrated_share(profile: Profile | None, times: FloatArray) -> FloatArray:
-    """Integral of the share from the first of evenly spaced ``times`` to each of them, of the shape of ``times`` [s]."""
-    if profile is None:
-        return times - times[0]
-    step = times[1] - times[0]
-    return np.concatenate([[0.0], np.cumsum(share_at(profile, times[:-1] + step / 2))]) * step

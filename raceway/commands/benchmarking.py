@@ -11,14 +11,13 @@ from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.models import ESTIMATORS, warn_of_durations, warn_of_seen, warn_of_severities
 from raceway.console import show
 from raceway.console.options import (
+    A_CORPUS,
     A_MODEL,
-    A_PATH,
     REFERENCE_MODEL,
     Analysis,
     Team,
     analysis_options,
     corpus_argument,
-    corpus_path,
     json_option,
     pages_option,
     speed_option,
@@ -45,20 +44,15 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
     return names
 
 
-def _corpus_paths(context: click.Context, option: click.Parameter, paths: tuple[Path, ...]) -> tuple[Path | None, ...]:
-    return tuple(corpus_path(context, option, path) for path in paths)
-
-
 @click.command()
 @corpus_argument
 @pages_option("OUTDIR", "Folder for report.html and results.json.")
 @click.option(
     "--test",
     "tests",
-    type=A_PATH,
+    type=A_CORPUS,
     multiple=True,
     metavar="DIR2",
-    callback=_corpus_paths,
     help="Another corpus to test on, such as real recordings. Repeatable.",
 )
 @click.option(

@@ -7,20 +7,16 @@ import click
 
 from raceway.commands.feature_tables import notice_of_unknown
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_path, json_option, pages_option
+from raceway.console.options import A_CORPUS, json_option, pages_option
 from raceway.console.progress import progress
 
 if TYPE_CHECKING:
     from features.realism import Comparison
 
 
-def _folders(context: click.Context, parameter: click.Parameter, paths: tuple[Path, ...]) -> tuple[Path | None, ...]:
-    return tuple(corpus_path(context, parameter, path) for path in paths)
-
-
 @click.command()
-@click.argument("synthetic", metavar="SYN", type=A_PATH, callback=corpus_path)
-@click.argument("real", metavar="REAL...", type=A_PATH, nargs=-1, required=True, callback=_folders)
+@click.argument("synthetic", metavar="SYN", type=A_CORPUS)
+@click.argument("real", metavar="REAL...", type=A_CORPUS, nargs=-1, required=True)
 @pages_option("OUTDIR", "Folder for report.html and comparison.json.")
 @click.option(
     "--top",

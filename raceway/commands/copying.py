@@ -7,17 +7,13 @@ from typing import TYPE_CHECKING
 import click
 
 from raceway.console import show
-from raceway.console.options import A_PATH, choice_options, corpus_path, json_option, target_option
+from raceway.console.options import A_CORPUS, choice_options, json_option, target_option
 from raceway.console.progress import notice, progress
 
 if TYPE_CHECKING:
     from gen.corpus import Codec
 
 FORMS = ("parquet", "zarr", "csv", "huggingface")
-
-
-def _corpora(context: click.Context, parameter: click.Parameter, paths: tuple[Path, ...]) -> list[Path]:
-    return [folder for path in paths if (folder := corpus_path(context, parameter, path)) is not None]
 
 
 def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[str, ...]) -> dict[str, str]:
@@ -29,7 +25,7 @@ def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[s
 
 
 @click.command()
-@click.argument("sources", metavar="SOURCE...", nargs=-1, required=True, type=A_PATH, callback=_corpora)
+@click.argument("sources", metavar="SOURCE...", nargs=-1, required=True, type=A_CORPUS)
 @target_option("The copy: a new name, or an empty folder.")
 @choice_options
 @click.option(
@@ -49,7 +45,7 @@ def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[s
 @click.option("--to", type=click.Choice(FORMS), help="Form of a folder for another program.")
 @json_option
 def copy(
-    sources: list[Path],
+    sources: tuple[Path, ...],
     output: Path,
     where: str | None,
     split: str | None,

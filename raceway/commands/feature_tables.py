@@ -7,14 +7,13 @@ import click
 
 from raceway.console import show
 from raceway.console.options import (
-    A_PATH,
+    A_CORPUS,
     USUAL,
     USUAL_ANALYSIS,
     Analysis,
     Team,
     band_option,
     channels_option,
-    corpus_path,
     file_option,
     json_option,
     speed_option,
@@ -33,7 +32,7 @@ PRINTED = 10  # features of a ranking
 
 
 @click.command()
-@click.argument("corpus", metavar="DIR", type=A_PATH, callback=corpus_path, required=False)
+@click.argument("corpus", metavar="DIR", type=A_CORPUS, required=False)
 @file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"), kind="feature table", required=False)
 @file_option(
     "PICTURE",

@@ -97,7 +97,7 @@ def train(
 
     folder = Path(source)
     from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
-    corpus = corpus_path(None, None, folder) if from_folder else None
+    corpus = corpus_path(folder) if from_folder else None
     team = Team(workers, scheduler)
     if corpus is None:
         if scheduler is not None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import click
 from click.shell_completion import CompletionItem
@@ -21,12 +21,20 @@ class _Model(click.Path):
         return None if value == REFERENCE_MODEL else super().convert(value, param, ctx)
 
 
+class _Corpus(click.Path):
+    """Folder or single file of a corpus."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        return corpus_path(cast("Path", super().convert(value, param, ctx)))
+
+
 A_MODEL = _Model(path_type=Path)
+A_CORPUS = _Corpus(path_type=Path)
 
 
-def corpus_path(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
+def corpus_path(path: Path) -> Path:
     """Folder or single file of a corpus; ``index.nc`` stands for its folder."""
-    return path.parent if path is not None and path.name == "index.nc" and path.is_file() else path
+    return path.parent if path.name == "index.nc" and path.is_file() else path
 
 
 def complete_recipes(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[CompletionItem]:
@@ -48,7 +56,7 @@ model_option: Decorator = click.option(
     "./reference.",
 )
 recipe_argument: Decorator = click.argument("recipe", shell_complete=complete_recipes)
-corpus_argument: Decorator = click.argument("corpus", metavar="DIR", type=A_PATH, callback=corpus_path)
+corpus_argument: Decorator = click.argument("corpus", metavar="DIR", type=A_CORPUS)
 record_option: Decorator = click.option(
     "--record", type=int, required=True, metavar="I", help="Number of the record, from 0."
 )
