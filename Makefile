@@ -48,7 +48,7 @@ generated: $(VENV)/installed
 
 # the feature table that ships with Raceway, from which the reference model is trained
 reference: $(VENV)/installed
-	$(BIN)/python -m raceway.studies.reference_model
+	$(BIN)/python -m raceway.kept_models
 
 # the site under out/docs; index.html opens it, without a server. The tutorials run, which takes three minutes
 docs: $(VENV)/installed

@@ -27,7 +27,7 @@ from features.table.indicators import Orders
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.support.units import rpm_to_hertz
-from raceway.studies.reference_model import load_reference_model
+from raceway.kept_models import load_reference_model
 
 BEARING = "ER-12K"  # of the machine of limerick
 GRAVITY = 9.80665  # m s-2

@@ -25,7 +25,7 @@ from gen import generate
 from gen.corpus import FAULTS
 from gen.importers import import_cwru, import_generic, import_mfpt
 from gen.recipe import read_recipe
-from raceway.studies.reference_model import LONG, lasting
+from raceway.kept_models import LONG, lasting
 from raceway.timing import machine
 
 RECIPE = "domain_randomised"

@@ -23,7 +23,7 @@ from features.faults import CLASSES, HEALTHY
 from features.table.indicators import Orders
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from raceway.studies.reference_model import load_reference_model
+from raceway.kept_models import load_reference_model
 
 RIGHT = "right speed and bearing"
 ERRORS = tuple(sign * percent / 100 for percent in range(4, 41, 4) for sign in (-1, 1))

@@ -2,16 +2,16 @@
 
 From Python, ``raceway.reference_model()`` is its model, and ``raceway.show_progress()`` shows the progress of a call.
 
-======== =====================================================================
-module   responsibility
-======== =====================================================================
-console  options, results, progress, errors
-studies  the reference model
-timing   speed of this machine, stage by stage
-pages    tables and picture of docs/features.md
-commands one function per command
-cli      the group of all commands, and the entry point
-======== =====================================================================
+=========== =======================================================================
+module      responsibility
+=========== =======================================================================
+console     options, results, progress, errors
+kept_models models trained on a recipe and kept per user; the reference model is one
+timing      speed of this machine, stage by stage
+pages       tables and picture of docs/features.md
+commands    one function per command
+cli         the group of all commands, and the entry point
+=========== =======================================================================
 """
 
 import lazy_loader

@@ -220,7 +220,7 @@ def _makers(names: tuple[str, ...]) -> "dict[str, str | Maker] | None":
 def _load(models: Sequence[Path | None]) -> "dict[str, Model]":
     """Trained models by the name that the user gave."""
     from features.baselines import Model
-    from raceway.studies.reference_model import reference_model
+    from raceway.kept_models import reference_model
 
     paths = dict.fromkeys(models)
     return {str(path or REFERENCE_MODEL): reference_model() if path is None else Model.load(path) for path in paths}

@@ -217,7 +217,7 @@ def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -
 def _model(path: Path | None) -> tuple[Any, Path]:
     """Model and its file, or the reference model."""
     if path is None:
-        from raceway.studies.reference_model import load_reference_model
+        from raceway.kept_models import load_reference_model
 
         return load_reference_model()
     from features.baselines.models import Model

@@ -93,7 +93,7 @@ def train(
     Next: raceway evaluate OTHER --model MODEL
     """
     from features.baselines import count_unknown
-    from raceway.studies.reference_model import kept_model, recipe_tables, train_and_score
+    from raceway.kept_models import kept_model, recipe_tables, train_and_score
 
     folder = Path(source)
     from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
@@ -178,7 +178,7 @@ def evaluate(
     from features.baselines import Model, count_unknown, unlabelled_answers
     from features.diagnosis import count_verdicts
     from gen import open_corpus
-    from raceway.studies.reference_model import load_reference_model
+    from raceway.kept_models import load_reference_model
 
     given = [name for name, value in reading.items() if value is not None]
     if reference is None and given:

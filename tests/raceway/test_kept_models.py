@@ -17,9 +17,9 @@ from features.baselines.records import DEFAULT_GROUPS
 from features.baselines.references import with_energies
 from gen import generate
 from gen.recipe import read_recipe, shipped_recipes
+from raceway import kept_models
 from raceway.cli import cli
 from raceway.commands.models import warn_of_durations
-from raceway.studies import reference_model
 from tests.model_files import make_table
 
 
@@ -29,7 +29,7 @@ def trainings(tiny_corpus, tmp_path, monkeypatch):
     table, made = feature_table(tiny_corpus), []
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr("features.baselines.estimators.TREES", 2)
-    monkeypatch.setattr(reference_model, "recipe_tables", lambda recipe, _: made.append(recipe) or [table])
+    monkeypatch.setattr(kept_models, "recipe_tables", lambda recipe, _: made.append(recipe) or [table])
     return made
 
 
@@ -41,7 +41,7 @@ def call(*arguments):
 def test_the_name_tells_the_recipe_as_shipped_and_the_versions(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "domain_randomised").write_text("not the shipped recipe", encoding="utf-8")
-    name = reference_model.kept_path(shipped_recipes()["domain_randomised"]).name
+    name = kept_models.kept_path(shipped_recipes()["domain_randomised"]).name
     assert re.fullmatch(r"domain_randomised-[0-9a-f]{16}-ensemble-raceway-.*-scikit-learn-.*\.skops", name)
     assert f"raceway-{version('raceway')}" in name
     assert name.endswith(f"scikit-learn-{version('scikit-learn')}.skops")
@@ -49,22 +49,22 @@ def test_the_name_tells_the_recipe_as_shipped_and_the_versions(tmp_path, monkeyp
 
 def test_another_recipe_other_sources_or_another_library_make_another_model(tiny_recipe, tmp_path, monkeypatch):
     (tmp_path / "tiny.yaml").write_text(tiny_recipe.read_text() + "\n# changed\n")
-    names = {reference_model.kept_path(tiny_recipe).name, reference_model.kept_path(tmp_path / "tiny.yaml").name}
+    names = {kept_models.kept_path(tiny_recipe).name, kept_models.kept_path(tmp_path / "tiny.yaml").name}
     for place, changed in (
         ("features.baselines.sources.score_sources", lambda: "other"),
         ("gen.generation.sources.sources_sha256", lambda: "other"),
-        ("raceway.studies.reference_model.hash_sources", lambda *_: "other"),
-        ("raceway.studies.reference_model.version", lambda name: "0.0" if name == "scipy" else version(name)),
+        ("raceway.kept_models.hash_sources", lambda *_: "other"),
+        ("raceway.kept_models.version", lambda name: "0.0" if name == "scipy" else version(name)),
     ):
         with monkeypatch.context() as patch:
             patch.setattr(place, changed)
-            names.add(reference_model.kept_path(tiny_recipe).name)
+            names.add(kept_models.kept_path(tiny_recipe).name)
     assert len(names) == 6
 
 
 def test_the_reference_model_is_made_once_and_loaded_afterwards(trainings, tmp_path):
-    first, path = reference_model.load_reference_model()
-    second, again = reference_model.load_reference_model()
+    first, path = kept_models.load_reference_model()
+    second, again = kept_models.load_reference_model()
     assert len(trainings) == 1
     assert path == again
     assert path.parent == tmp_path / "cache"
@@ -87,10 +87,10 @@ def renamed(content):
     "damage", [lambda content: content[: len(content) // 2], lambda _: b"", lambda _: b"x" * 100, renamed]
 )
 def test_a_damaged_file_is_made_again_with_a_notice(damage, trainings, capfd):
-    _, path = reference_model.load_reference_model()
+    _, path = kept_models.load_reference_model()
     path.write_bytes(damage(path.read_bytes()))
     capfd.readouterr()
-    reference_model.load_reference_model()
+    kept_models.load_reference_model()
     assert len(trainings) == 2
     assert "It is made again." in capfd.readouterr().err
     path.write_bytes(damage(path.read_bytes()))
@@ -100,25 +100,24 @@ def test_a_damaged_file_is_made_again_with_a_notice(damage, trainings, capfd):
 
 
 def test_a_model_of_another_name_is_not_believed(trainings):
-    path, _ = reference_model.keep_model("quickstart", "logistic_regression")
-    other, _ = reference_model.keep_model("quickstart", "majority")
+    path, _ = kept_models.keep_model("quickstart", "logistic_regression")
+    other, _ = kept_models.keep_model("quickstart", "majority")
     path.write_bytes(other.read_bytes())
     path.with_name(f"{path.name}.sha256").write_bytes(other.with_name(f"{other.name}.sha256").read_bytes())
-    model, _, _ = reference_model.kept_model("quickstart", "logistic_regression")
+    model, _, _ = kept_models.kept_model("quickstart", "logistic_regression")
     assert (model.name, len(trainings)) == ("logistic_regression", 3)
 
 
 def test_two_that_need_it_at_once_train_it_once(trainings):
     threads = [
-        threading.Thread(target=reference_model.keep_model, args=("quickstart", "logistic_regression"))
-        for _ in range(3)
+        threading.Thread(target=kept_models.keep_model, args=("quickstart", "logistic_regression")) for _ in range(3)
     ]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
     assert len(trainings) == 1
-    Model.load(reference_model.kept_path("quickstart", "logistic_regression"))
+    Model.load(kept_models.kept_path("quickstart", "logistic_regression"))
 
 
 @pytest.mark.usefixtures("trainings")
@@ -126,7 +125,7 @@ def test_train_on_a_recipe_keeps_the_model_or_writes_it(tiny_recipe, tmp_path):
     kept = call("train", tiny_recipe, "--estimator", "logistic_regression", "--json")
     assert kept.exit_code == 0, kept.output
     facts = json.loads(kept.stdout)
-    assert facts["model"] == str(reference_model.kept_path(tiny_recipe, "logistic_regression"))
+    assert facts["model"] == str(kept_models.kept_path(tiny_recipe, "logistic_regression"))
     assert facts["test"]["records"] == 12
     written = call("train", tiny_recipe, "--estimator", "logistic_regression", "-o", tmp_path / "model.skops")
     assert written.exit_code == 0, written.output
@@ -140,7 +139,7 @@ def test_evaluate_takes_the_reference_model_by_name_and_by_default(tiny_corpus, 
     assert trainings == []  # a wrong path is told first
     default, named = (call("evaluate", tiny_corpus, "--json", *more) for more in ((), ("--model", "reference")))
     assert (default.exit_code, named.exit_code, len(trainings)) == (0, 0, 1)
-    path = reference_model.kept_path(shipped_recipes()["domain_randomised"])
+    path = kept_models.kept_path(shipped_recipes()["domain_randomised"])
     assert json.loads(default.stdout) == json.loads(named.stdout)
     assert json.loads(named.stdout)["model"] == str(path)
     file = call("evaluate", tiny_corpus, "--model", "./reference")
@@ -148,7 +147,7 @@ def test_evaluate_takes_the_reference_model_by_name_and_by_default(tiny_corpus, 
 
 
 def test_benchmark_scores_trained_models_as_evaluate_does(tiny_corpus, trainings, tmp_path):
-    path, _ = reference_model.keep_model("quickstart", "logistic_regression")
+    path, _ = kept_models.keep_model("quickstart", "logistic_regression")
     models = ("--model", "reference", "--model", path)
     line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--estimator", "majority")
     done = call(*line, *models, "--json")
@@ -187,11 +186,11 @@ def test_a_name_that_is_neither_folder_nor_recipe_is_refused():
 def test_the_cache_follows_the_conventions_of_the_system(tmp_path, monkeypatch):
     monkeypatch.delenv("RACEWAY_CACHE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
-    assert reference_model.cache_folder() == tmp_path / "xdg" / "raceway"
+    assert kept_models.cache_folder() == tmp_path / "xdg" / "raceway"
     monkeypatch.delenv("XDG_CACHE_HOME")
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr("sys.platform", "linux")
-    assert reference_model.cache_folder() == tmp_path / ".cache" / "raceway"
+    assert kept_models.cache_folder() == tmp_path / ".cache" / "raceway"
 
 
 @pytest.mark.usefixtures("trainings")
@@ -207,10 +206,10 @@ def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(tmp_path, monkeyp
 def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_path):
     """Other processors may round the signals otherwise by a count or two of the converter."""
     tables, labels = (
-        reference_model.recipe_tables("domain_randomised"),
+        kept_models.recipe_tables("domain_randomised"),
         ["fault", "rig", "specimen", "split", "duration"],
     )
-    for table, recipe in zip(tables, reference_model.both_lengths(read_recipe("domain_randomised")), strict=True):
+    for table, recipe in zip(tables, kept_models.both_lengths(read_recipe("domain_randomised")), strict=True):
         seconds = recipe.recording.duration_s
         fresh = feature_table(generate(recipe, tmp_path / f"{seconds}", records=4).path)
         names = fresh["feature"].values[np.isin(fresh["group"].values, with_energies(DEFAULT_GROUPS))]
@@ -222,23 +221,23 @@ def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_p
 
 
 def test_another_recipe_is_not_trained_on_the_shipped_table(tmp_path, monkeypatch):
-    monkeypatch.setattr(reference_model, "make_table", lambda *_: "made")
+    monkeypatch.setattr(kept_models, "make_table", lambda *_: "made")
     text = shipped_recipes()["domain_randomised"].read_text(encoding="utf-8")
     (tmp_path / "same.yaml").write_text(f"# another comment\n{text}", encoding="utf-8")
     (tmp_path / "other.yaml").write_text(text.replace("seed: 20260", "seed: 20261"), encoding="utf-8")
-    assert [table.sizes["record"] > 2900 for table in reference_model.recipe_tables(tmp_path / "same.yaml")] == [
+    assert [table.sizes["record"] > 2900 for table in kept_models.recipe_tables(tmp_path / "same.yaml")] == [
         True,
         True,
     ]
-    assert reference_model.recipe_tables(tmp_path / "other.yaml") == ["made"]
+    assert kept_models.recipe_tables(tmp_path / "other.yaml") == ["made"]
 
 
 def test_a_second_table_trains_the_model_for_shorter_records():
     """Its scores are on the test split of the first table."""
     one, other = (make_table(records=48, seed=seed).assign(split=("record", np.arange(48) % 3)) for seed in (0, 1))
     tables = [one.assign(duration=("record", np.full(48, 2.0))), other.assign(duration=("record", np.full(48, 0.5)))]
-    model, scores = reference_model.train_and_score(tables, "logistic_regression")
-    alone, of_first = reference_model.train_and_score(tables[:1], "logistic_regression")
+    model, scores = kept_models.train_and_score(tables, "logistic_regression")
+    alone, of_first = kept_models.train_and_score(tables[:1], "logistic_regression")
     assert (model.durations, model.shorter.durations, alone.shorter) == ((2.0, 2.0), (0.5, 0.5), None)
     assert scores == of_first
     np.testing.assert_array_equal(model.predict_proba(tables[1]), model.shorter.predict_proba(tables[1]))
