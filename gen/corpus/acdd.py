@@ -74,7 +74,7 @@ def license_address(name: str) -> str:
     >>> license_address("CC-BY-4.0"), license_address("MIT OR Apache-2.0")
     ('https://spdx.org/licenses/CC-BY-4.0.html', 'MIT OR Apache-2.0')
     """
-    own = name.startswith("LicenseRef-") or " " in name
+    own = name.startswith(("LicenseRef-", "(")) or " " in name
     return name if own else f"https://spdx.org/licenses/{name.removesuffix('+')}.html"
 
 

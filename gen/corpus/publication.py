@@ -10,6 +10,7 @@ from datetime import UTC, date, datetime
 from os import environ
 from typing import Annotated, Any, Self
 
+from packaging.licenses import InvalidLicenseExpression, canonicalize_license_expression
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
 from gen.support.errors import CorpusError
@@ -19,11 +20,6 @@ EPOCH = "SOURCE_DATE_EPOCH"
 
 _ORCID = re.compile(r"(?:https?://orcid\.org/)?(\d{4}-\d{4}-\d{4}-\d{3}[\dX])")
 _DOI = re.compile(r"(?:https?://(?:dx\.)?doi\.org/|doi:)?(10\.\d{4,9}/[!-~]{1,200})", re.IGNORECASE)
-_SPDX_NAME = r"[A-Za-z0-9][A-Za-z0-9.-]{0,99}\+?"
-_SPDX = re.compile(rf"{_SPDX_NAME}(?: (?:AND|OR|WITH) {_SPDX_NAME}){{0,9}}")
-_WITHOUT_VERSION = re.compile(
-    r"CC-BY(?:-[A-Z]{2})*|CC0|[AL]?GPL|BSD|Apache|MPL|EUPL|ODbL|ODC-By|PDDL|CDLA", re.IGNORECASE
-)
 _EMAIL = re.compile(r"[^@\s<>,;]{1,64}@[^@\s<>,;]{1,200}\.[^@\s<>,;.]{2,63}")
 
 
@@ -61,17 +57,13 @@ def check_doi(text: str) -> str:
 
 
 def _check_license(text: str) -> str:
-    if _SPDX.fullmatch(text) is None:
+    try:
+        return canonicalize_license_expression(text)
+    except InvalidLicenseExpression:
         raise ValueError(
-            f"{text!r} is not an SPDX identifier; give one of spdx.org/licenses, such as CC-BY-4.0 or CC0-1.0, "
+            f"{text!r} is not an SPDX identifier; give one of spdx.org/licenses with its version, such as CC-BY-4.0 or CC0-1.0, "
             f"several joined by AND or OR, or LicenseRef-NAME for a licence of your own."
-        )
-    for name in text.split():
-        if _WITHOUT_VERSION.fullmatch(name):
-            raise ValueError(
-                f"{name!r} lacks its version; give it as on spdx.org/licenses, such as CC-BY-4.0 or CC0-1.0."
-            )
-    return text
+        ) from None
 
 
 def _check_email(text: str) -> str:

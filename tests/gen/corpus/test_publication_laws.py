@@ -192,7 +192,9 @@ def test_a_wrong_fact_is_refused_with_one_sentence(write_recipe, tmp_path, key):
 
 @pytest.mark.parametrize("text", ["CC-BY", "cc-by-nc-sa", "MIT OR GPL", "Apache"])
 def test_a_licence_without_its_version_is_refused(text):
-    with pytest.raises(CorpusError, match=r"lacks its version; give it as on spdx\.org/licenses"):
+    with pytest.raises(
+        CorpusError, match=r"is not an SPDX identifier; give one of spdx\.org/licenses with its version"
+    ):
         read_publication({"license": text})
 
 
