@@ -12,8 +12,8 @@ from typing import Any
 import xarray as xr
 
 from gen.corpus.acdd import content_id, license_address, publication_attributes
+from gen.corpus.card.citation import bibtex
 from gen.corpus.card.page import card_folder
-from gen.corpus.card.terms import bibtex
 from gen.corpus.files import sha256, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest

@@ -1,6 +1,4 @@
-"""Markdown of a data card: text of strangers made harmless, and tables."""
-
-from collections.abc import Iterable, Sequence
+"""Text of strangers without Markdown."""
 
 
 def plain_text(text: object) -> str:
@@ -27,27 +25,3 @@ def code_text(text: object) -> str:
 
 
 _HARMLESS = str.maketrans({"|": "/", "<": "(", ">": ")", "`": "'", "\\": "/"})
-
-
-def table(header: Sequence[str], rows: Iterable[Sequence[object]], *, right: int = 0) -> list[str]:
-    """Lines of a table whose last ``right`` columns are aligned right; an empty line comes first.
-
-    >>> table(("fault", "records"), [("inner", 3)], right=1)
-    ['', '| fault | records |', '|---|---:|', '| inner | 3 |']
-    """
-    rules = ["---"] * (len(header) - right) + ["---:"] * right
-    lines = [_row(header), f"|{'|'.join(rules)}|", *map(_row, rows)]
-    return ["", *lines]
-
-
-def _row(cells: Sequence[object]) -> str:
-    return f"| {' | '.join(map(str, cells))} |"
-
-
-def enumeration(words: Sequence[str]) -> str:
-    """Words joined for a sentence.
-
-    >>> enumeration(["a"]), enumeration(["a", "b", "c"])
-    ('a', 'a, b and c')
-    """
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

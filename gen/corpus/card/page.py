@@ -1,17 +1,26 @@
 """The whole data card: a page in Markdown on the records of a corpus, their faults, labels and terms of use."""
 
+import functools
+import shlex
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from gen.corpus.card import additions, labels, origin
-from gen.corpus.card.contents import contents
-from gen.corpus.card.markdown import plain_text
-from gen.corpus.card.opening import opening
-from gen.corpus.card.ranges import ranges
-from gen.corpus.card.terms import citation, terms
+import xarray as xr
+
+from gen.corpus.card import additions
+from gen.corpus.card.citation import bibtex, citation
+from gen.corpus.card.facts import card_facts, needs_plugin
+from gen.corpus.card.markdown import code_text, plain_text
 from gen.corpus.files import CARD_SUFFIX, corpus_around, place_of, write_text_durably
 from gen.corpus.index import open_corpus
-from gen.corpus.manifest import RECIPE_NAME, corpus_files, read_manifest, recipe_text
+from gen.corpus.manifest import RECIPE_NAME, Manifest, corpus_files, read_manifest, recipe_text
+from gen.corpus.schema import FAULTS, listed_flags
 from gen.support.errors import CorpusError
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
+MOST_SENTENCES = 100  # of a list; the manifest has all
 
 
 def card_folder(path: Path) -> Path:
@@ -42,27 +51,64 @@ def data_card(path: Path | str) -> str:
     path = Path(path)
     manifest = read_manifest(path)
     added = additions.read_additions(card_folder(path), manifest)
+    first = corpus_files(path, "size")[0]
     with open_corpus(path, check="size") as corpus:
-        title = plain_text(corpus.attrs.get("title", "Untitled corpus"))
-        lines = [
-            f"# {title}",
-            "",
-            *origin.origin(corpus, manifest),
-            "",
-            *contents(corpus, manifest.signals),
-            *terms(manifest.publication),
-            *additions.pictures(added.pictures),
-            *opening(path, corpus_files(path, "size")[0]),
-            *ranges(corpus),
-            *labels.findings(corpus),
-            *additions.scores(added.scores),
-            *citation(title, manifest, manifest.publication),
-            *origin.rebuilding(corpus, manifest),
-            *origin.left_out(manifest),
-            *labels.meanings(corpus),
-            "",
-        ]
-    return "\n".join(lines)
+        return card_text(corpus, manifest, added, path, first)
+
+
+def card_text(corpus: xr.Dataset, manifest: Manifest, added: additions.CardAdditions, path: Path, first: Path) -> str:
+    """Page of an opened corpus that lies at ``path``, whose ``first`` file has signals."""
+    title = str(corpus.attrs.get("title", "Untitled corpus"))
+    publication, single = manifest.publication, path.is_file()
+    terms = (
+        ("licence", publication.license),
+        *(("creator", ", https://orcid.org/".join(filter(None, (it.name, it.orcid)))) for it in publication.creators),
+        ("institution", publication.institution),
+        ("contact", publication.contact),
+        ("DOI", f"https://doi.org/{publication.doi}" if publication.doi else None),
+        *(("reference", reference) for reference in publication.references),
+        ("date", publication.date),
+    )
+    return _template().render(
+        **card_facts(corpus, manifest),
+        title=title,
+        publication=publication,
+        terms=[row for row in terms if row[1]],
+        added=added,
+        whole=path.name if single else None,
+        file=path.name if single else first.relative_to(path).as_posix(),
+        zstd=needs_plugin(first),
+        faulty=listed_flags({code: name for code, name in enumerate(FAULTS) if code > 0}),
+        citation=citation(title, manifest),
+        bibtex=bibtex(title, manifest),
+        most=MOST_SENTENCES,
+    )
+
+
+@functools.cache
+def _template() -> "Template":
+    """Template of the page, in which every text is without Markdown."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined  # takes 50 ms
+
+    environment = Environment(
+        loader=PackageLoader("gen.corpus.card", ""),
+        autoescape=False,  # noqa: S701 - Markdown, of which plain_text leaves nothing
+        # what a filter of the template has made harmless is marked as safe there
+        finalize=lambda value: (
+            plain_text(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
+        ),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters |= {
+        "cells": lambda cells: " | ".join(plain_text(cell) for cell in cells),
+        "code": code_text,
+        "shell": lambda words: " ".join(shlex.quote(code_text(word)) for word in words),
+        "file_name": lambda name: "".join(letter for letter in name if letter.isalnum() or letter in "-_."),
+    }
+    return environment.get_template("card.md.jinja")
 
 
 def write_card(path: Path | str) -> None:

@@ -12,9 +12,8 @@ from hypothesis import strategies as st
 
 from gen.corpus import FAULTS, Publication, data_card, open_corpus, publish, read_manifest, read_publication
 from gen.corpus.card.additions import CardAdditions, CardPicture, write_additions
-from gen.corpus.card.origin import rebuilding
-from gen.corpus.card.ranges import ranges
-from gen.corpus.card.terms import citation
+from gen.corpus.card.citation import bibtex
+from gen.corpus.card.facts import ranges, rebuilding
 from gen.corpus.manifest import Manifest, Overrides
 from gen.support.errors import CorpusError
 from tests.tone_corpora import write_corpus
@@ -57,17 +56,19 @@ def test_the_tables_count_the_records_of_the_corpus(corpus):
 
 def range_rows(opened):
     """Cells of the table of ranges by variable and column."""
-    header, _, *rows = ([cell.strip() for cell in line.split("|")[1:-1]] for line in ranges(opened) if line[:1] == "|")
-    return {row[0].strip("`"): dict(zip(header, row, strict=True)) for row in rows}
+    found = ranges(opened)
+    return {name: dict(zip(["unit", *found["classes"]], row, strict=True)) for name, row in found["vary"].items()}
 
 
 def test_every_variable_is_listed_with_its_range_by_class_or_its_one_value(corpus):
     with open_corpus(corpus) as opened:
-        rows, last = range_rows(opened), ranges(opened)[-1]
+        rows = range_rows(opened)
         load = opened["load"].values[opened["fault"].values == FAULTS.index("outer")]
     assert rows["load"]["outer"] == f"{load.min():.4g} / {np.median(load):.4g} / {load.max():.4g}"
     assert (rows["load"]["unit"], rows["depth"]["outer"]) == ("N", "2e-05")
-    assert "`sample_rate` 4000 Hz" in last
+    card = data_card(corpus)
+    assert f"| `depth` | m | {' | '.join(cell for name, cell in rows['depth'].items() if name != 'unit')} |" in card
+    assert "`sample_rate` 4000 Hz" in card
 
 
 def test_values_that_are_not_finite_have_no_part_in_a_range(corpus):
@@ -156,8 +157,7 @@ def test_no_title_or_name_breaks_the_bibtex_entry(title, name):
     name = "".join(letter for letter in name if letter.isprintable()).strip() or "N"
     publication = Publication(creators=(read_publication({"creators": [{"name": name}]}).creators[0],))
     manifest = Manifest.model_validate({"raceway_format": 3, "records": 0})
-    lines = citation(title.replace("`", "'").replace("\\", "/"), manifest, publication)
-    entry = "\n".join(lines[lines.index("```bibtex") + 1 : -1])
+    entry = bibtex(title, manifest.model_copy(update={"publication": publication}))
     depth = 0
     for mark in re.findall(r"\\.|[{}]", entry):
         depth += {"{": 1, "}": -1}.get(mark, 0)
@@ -165,30 +165,27 @@ def test_no_title_or_name_breaks_the_bibtex_entry(title, name):
     assert depth == 0
 
 
-def commands(corpus, **facts):
-    manifest = Manifest.model_validate({"raceway_format": 3, "records": 0, **facts})
-    (block,) = blocks("\n".join(rebuilding(corpus, manifest)), "sh")
-    return [shlex.split(line) for line in block.splitlines()]
+def command(corpus, **facts):
+    return rebuilding(corpus, Manifest.model_validate({"raceway_format": 3, "records": 0, **facts}))
 
 
 def test_the_command_repeats_seed_and_number_of_records(corpus):
     generated = {"recipe": "small", "recipe_sha256": "0", "overrides": Overrides(seed=7, records=40)}
     with open_corpus(corpus) as opened:
-        assert commands(opened, **generated) == [
-            ["raceway", "generate", "recipe.yaml", "--seed", "7", "--records", "40", "-o", "../again"]
-        ]
-        assert commands(opened, importer="cwru", recordings=3) == [
-            ["raceway", "import", "cwru", "SRC", "--window", "0.25", "-o", "../again"]
-        ]
+        assert command(opened, **generated) == shlex.split(
+            "raceway generate recipe.yaml --seed 7 --records 40 -o ../again"
+        )
+        assert command(opened, importer="cwru", recordings=3) == shlex.split(
+            "raceway import cwru SRC --window 0.25 -o ../again"
+        )
 
 
 def test_a_corpus_that_no_command_makes_has_its_history_instead(corpus):
     with open_corpus(corpus) as opened:
-        lines = rebuilding(
-            opened.assign_attrs(history="cut by hand"), Manifest(raceway_format=3, records=0, recipe="small")
-        )
-    assert "History of the corpus: cut by hand." in lines
-    assert not any("```" in line for line in lines)
+        assert command(opened, recipe="small") == []
+    card = data_card(corpus)
+    assert "\n## How to make it again\n\nHistory of the corpus: not known.\n" in card
+    assert blocks(card, "sh") == []
 
 
 def test_pictures_and_scores_of_other_parts_are_left_out(corpus, tmp_path):

@@ -1,47 +1,11 @@
-"""Licence and creators of a corpus, and how to cite it, for its data card."""
+"""How to cite a corpus: a sentence, and an entry for BibTeX."""
 
 import re
+from collections.abc import Sequence
 
-from gen.corpus.card.markdown import enumeration, plain_text, table
+from gen.corpus.card.markdown import plain_text
 from gen.corpus.manifest import Manifest
 from gen.corpus.publication import Creator, Publication
-
-
-def terms(publication: Publication) -> list[str]:
-    """Section with licence, creators, institution, contact, DOI, references and date."""
-    facts = (
-        ("licence", publication.license),
-        *(("creator", _creator(person.name, person.orcid)) for person in publication.creators),
-        ("institution", publication.institution),
-        ("contact", publication.contact),
-        ("DOI", f"https://doi.org/{publication.doi}" if publication.doi else None),
-        *(("reference", reference) for reference in publication.references),
-        ("date", publication.date),
-    )
-    rows = [(name, plain_text(value)) for name, value in facts if value]
-    lines = ["", "## Licence and creators"]
-    if publication.license is None:
-        lines += ["", "No licence is stated: ask the owner before you publish a copy."]
-    return lines + (table(("fact", "value"), rows) if rows else [])
-
-
-def _creator(name: str, orcid: str | None) -> str:
-    return f"{name}, https://orcid.org/{orcid}" if orcid else name
-
-
-def citation(title: str, manifest: Manifest, publication: Publication) -> list[str]:
-    """Section with the citation as a sentence and for BibTeX; ``title`` is plain text."""
-    note = _note(manifest)
-    return [
-        "",
-        "## How to cite it",
-        "",
-        _sentence(title, note, publication),
-        "",
-        "```bibtex",
-        bibtex(title, manifest),
-        "```",
-    ]
 
 
 def _note(manifest: Manifest) -> str:
@@ -50,16 +14,27 @@ def _note(manifest: Manifest) -> str:
     return f"Bearing vibration corpus of {manifest.records} records, {verb} with {tool}"
 
 
-def _sentence(title: str, note: str, publication: Publication) -> str:
+def citation(title: str, manifest: Manifest) -> str:
+    """Citation as a sentence."""
+    publication, title = manifest.publication, plain_text(title)
     names = [plain_text(person.name) for person in publication.creators]
     year = f" ({publication.date[:4]})" if publication.date else ""
     parts = [
-        f"{enumeration(names)}{year}: {title}" if names else f"{title}{year}",
-        note,
+        f"{_enumeration(names)}{year}: {title}" if names else f"{title}{year}",
+        _note(manifest),
         plain_text(publication.institution or ""),
         f"https://doi.org/{plain_text(publication.doi)}" if publication.doi else "",
     ]
     return ". ".join(part for part in parts if part) + "."
+
+
+def _enumeration(words: Sequence[str]) -> str:
+    """Words joined for a sentence.
+
+    >>> _enumeration(["a"]), _enumeration(["a", "b", "c"])
+    ('a', 'a, b and c')
+    """
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def bibtex(title: str, manifest: Manifest) -> str:
