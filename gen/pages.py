@@ -10,6 +10,7 @@ from pathlib import Path
 
 from gen.corpus import format_page
 from gen.drawing.distributions import KINDS
+from gen.mechanisms.measuring_chain import LABELS
 from gen.physics.catalogue import catalogue_page
 from gen.recipe.finding import recipe_purpose, shipped_recipes
 from gen.recipe.keys import Key, recipe_keys
@@ -160,7 +161,7 @@ def _row(key: Key) -> str:
 
 PAGES = {
     "recipes/README.md": readme,
-    "docs/format.md": format_page,
+    "docs/format.md": lambda: format_page(LABELS),
     "docs/catalogue.md": catalogue_page,
     "docs/limits.md": limits_page,
 }

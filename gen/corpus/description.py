@@ -92,9 +92,12 @@ that of the bearing at the other end of the shaft:
 """
 
 
-def format_page() -> str:
-    """Markdown page about the format; its tables are the schemas of all corpora, of simulated ones, and of those with two bearings."""
-    tables = _table(SCHEMA), _table(SIMULATED), _table(OTHER_BEARING)
+def format_page(simulated: tuple[Variable, ...]) -> str:
+    """Markdown page about the format, with tables of the variables of all corpora, of simulated ones, and of those with two bearings.
+
+    ``simulated`` are the labels of mechanisms, beside those of every simulated corpus.
+    """
+    tables = _table(SCHEMA), _table(SIMULATED + simulated), _table(OTHER_BEARING)
     return "".join(text + table for text, table in zip((_FORMAT, _SIMULATED, _OTHER_BEARING), tables, strict=True))
 
 

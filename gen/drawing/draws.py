@@ -58,6 +58,10 @@ class Draws:
         """Next number in [0, 1)."""
         return float(self._point.pop()) if self._point else float(self._rng.random())
 
+    def spawn(self, count: int) -> "list[Draws]":
+        """Draws of the parts of the item, each from a stream of its own."""
+        return [Draws(rng, np.empty(0), self.combination.number, self.item) for rng in self._rng.spawn(count)]
+
     def value(self, distribution: Any) -> float:
         """Next value of a distribution, in the unit of the recipe key; of a share, the share."""
         return self.combination.value(distribution, self.u())

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from gen.measurement.measure import compile_mixing
-from gen.measurement.sensor_faults import compile_rattle
+from gen.mechanisms.measuring_chain import faults_of
 from gen.physics.inputs import CONSTANT, ROUND, Waviness
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.layout import Shape
@@ -55,8 +55,8 @@ def compile_kernels(recipe: Recipe, missing: list[Shape], report: Callable[[str]
     """Compile the missing kernels into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
     with keep_garbage():
         compile_mixing(draw_scenarios(recipe, 0, 1)[0])
-        if recipe.sensor_faults.loose_mount is not None:
-            compile_rattle()
+        for fault in faults_of(recipe.sensor_faults):
+            fault.compile()
     at_once = min(cores(), MOST_AT_ONCE)
     sentences = (
         f"compiling kernel {number} of {len(missing)} ({shape_in_words(shape)}) for this machine"

@@ -1,6 +1,5 @@
 """Variables stored with each record: operating conditions, labels and the truth of the simulation, copied from where they are known."""
 
-from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -12,7 +11,7 @@ from gen.corpus import DRAWS, FAULTS, OTHER_BEARING, SIMULATED, SPLITS, identity
 from gen.corpus.schema import UNKNOWN_CODE
 from gen.corpus.simulated import MACHINE_CONDITIONS
 from gen.measurement.measure import Measured
-from gen.measurement.sensor_faults import SensorFlags
+from gen.mechanisms.measuring_chain import LABELS
 from gen.physics.bearing import FaultOrders, orders
 from gen.scenarios import Scenario, common_settings, scenario_texts
 from gen.simulation.simulate import Response
@@ -29,7 +28,7 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
         else:
             rows.append({**_drawn(scenario), **truth._asdict()})
     columns: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
-    columns |= sensor_flag_columns(measured.sensor_flags)
+    columns |= {label.name: [found.get(label.name, 0) for found in measured.chain_labels] for label in LABELS}
     columns |= {
         "clipped": measured.clipped,
         "snr": measured.snr,
@@ -51,7 +50,7 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
         settings.sample_rate,
         settings.channels,
         columns,
-        extra=SIMULATED + OTHER_BEARING if two_bearings else SIMULATED,
+        extra=SIMULATED + LABELS + (OTHER_BEARING if two_bearings else ()),
         counts_per_unit=measured.counts_per_unit,
         attributes={
             "title": f"Records of recipe {settings.recipe}",
@@ -78,11 +77,6 @@ def _of_other(scenario: Scenario, truth: Truth | None) -> dict[str, Any]:
         "other_width": np.nan if truth is None else truth.width,
         "other_gain": np.nan if other is None else other.gain,
     }
-
-
-def sensor_flag_columns(flags: Sequence[SensorFlags]) -> dict[str, list[Any]]:
-    """Variables of the corpus that say which sensor faults were found in each record, one list of shape (record,) each."""
-    return {name: [getattr(of_record, name) for of_record in flags] for name in SensorFlags._fields}
 
 
 def _drawn(scenario: Scenario) -> dict[str, Any]:

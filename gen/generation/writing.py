@@ -29,6 +29,7 @@ from gen.corpus.schema import NAMED, records_in_memory, schema_problems
 from gen.generation.corpus import facts_of
 from gen.generation.parts import part_attributes
 from gen.measurement.measure import LARGEST_COUNT
+from gen.mechanisms.measuring_chain import LABELS
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
 from gen.scenarios import Settings, read_scenario
 from gen.support.errors import CorpusError
@@ -135,7 +136,9 @@ def _stored(
 ) -> xr.Dataset:
     """The records in the layout of the corpus (undecoded)."""
     known = {
-        variable.name: variable for variable in SCHEMA + SIMULATED + OTHER_BEARING if variable.name in rows.variables
+        variable.name: variable
+        for variable in SCHEMA + SIMULATED + LABELS + OTHER_BEARING
+        if variable.name in rows.variables
     }
     derived = {SIGNAL, "channel", "elapsed_time", *(f"{name}_name" for name in NAMED)}
     further = {}
@@ -162,6 +165,6 @@ def _stored(
         attributes={"title": "Vibration records"}
         | {key: rows.attrs[key] for key in ("title", "history", "source") if key in rows.attrs},
     )
-    for problem in schema_problems(stored, SIMULATED + OTHER_BEARING):
+    for problem in schema_problems(stored, SIMULATED + LABELS + OTHER_BEARING):
         raise CorpusError(problem)
     return stored

@@ -10,8 +10,6 @@ mixing            bearing and background of a record put together, compiled
 background        noise, lines and impulses of the machine in one record
 levels            gains of bearing and background
 judging           whether the fault of a record can be seen in it
-rattle            a sensor that lifts off its mount and strikes the machine, compiled
-sensor_faults     faults of the measuring chain, from the mount to the data transfer
 measure           path, modulation, background, level and converter, record by record
 other_bearing     whether the fault of the bearing at the other end of the shaft can be seen
 ================= ======================================================================

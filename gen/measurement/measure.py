@@ -29,7 +29,7 @@ from gen.measurement.levels import (
 from gen.measurement.machine_condition import condition_bursts, condition_lines
 from gen.measurement.mixing import Products, mix
 from gen.measurement.rig import RigFilters, rig_filters
-from gen.measurement.sensor_faults import SensorFlags, disturb
+from gen.mechanisms.measuring_chain import disturb
 from gen.scenarios import Gains, Purpose, Scenario, common_settings
 from gen.simulation.shaft import scenario_angles
 from gen.simulation.simulate import Twins
@@ -64,8 +64,8 @@ class Measured:
     """1 if the fault can be seen in the record, 0 if not or if there is none, ``UNJUDGED`` if it was not judged, shape (record,)."""
     scenarios: list[Scenario]
     """The scenarios as measured: with the level that was taken if several were tried, and with the gains of records in groups."""
-    sensor_flags: list[SensorFlags]
-    """Sensor faults in each record, shape (record,)."""
+    chain_labels: list[dict[str, float]]
+    """Of the faults of the measuring chain that are in each record, by name."""
     gains: list[Gains]
     """Of each record."""
     other_fault_snr: FloatArray
@@ -104,7 +104,7 @@ def measure(
         None if settings.full_scale is None else 1 / float(np.float32(settings.full_scale / LARGEST_COUNT))
     )
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
-    clipped, taken, flags = np.zeros(shape[0], np.int32), list(scenarios), [SensorFlags()] * shape[0]
+    clipped, taken, labels = np.zeros(shape[0], np.int32), list(scenarios), [dict[str, float]()] * shape[0]
     snr, fault_snr, fault_share = np.full((3, shape[0]), np.nan)
     detectable, gains = np.empty(shape[0], np.int8), [Gains(1.0, 1.0)] * shape[0]
     # rms of an error that is uniform within half a count
@@ -125,7 +125,7 @@ def measure(
             if pair >= 0 and scenario.record.snr is not None and part.is_finite:
                 level = level._replace(scenario=_with_level_of(level, level.scenario))
                 levels.setdefault(pair, level)
-            mixed, flags[row] = disturb(_mix(part, level.gains), level.scenario, axis.fs)
+            mixed, labels[row] = _through_chain(_mix(part, level.gains), level.scenario, axis.fs)
             mixed += np.float32(scenario.rig.offset)
             if counts_per_unit is not None:
                 clipped[row] = _to_counts(mixed, counts_per_unit)
@@ -136,7 +136,7 @@ def measure(
                 snr[row] = bearing_over_background(part.products, level.gains, rounding)
     others = np.full(shape[0], np.nan), np.array([_unjudged(scenario) for scenario in scenarios], np.int8)
     return Measured(
-        signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken, flags, gains, *others
+        signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken, labels, gains, *others
     )
 
 
@@ -243,6 +243,14 @@ def _mix(part: Part, gains: Gains) -> Float32Array:
     mixed = np.float32(gains.bearing) * whole
     mixed += np.float32(gains.background) * part.background
     return mixed
+
+
+def _through_chain(signal: Any, scenario: Scenario, fs: float) -> tuple[Any, dict[str, float]]:
+    """Signal with the faults of the measuring chain of a scenario, and the values of their labels."""
+    of_rig, of_record = scenario.rig.sensor_faults, scenario.record.sensor_faults
+    if not (of_rig or of_record):
+        return signal, {}
+    return disturb(signal, of_rig, of_record, fs, scenario.rng(Purpose.SENSOR_NOISE))
 
 
 def _to_counts(signal: Float32Array, counts_per_unit: float) -> int:

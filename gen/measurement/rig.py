@@ -9,6 +9,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 
 from gen.physics.elementary import power
 from gen.physics.kernel.decimate import pass_band
+from gen.physics.resonance import base_excited
 from gen.scenarios import Background, Mode, Purpose, Rig, ShaftModulation, stream
 
 FloatArray = NDArray[np.floating]
@@ -203,15 +204,10 @@ def along(
 
 
 def base_transmissibility(modes: tuple[Mode, ...], frequency: FloatArray) -> NDArray[np.complex128]:
-    """Sum of the transmissibilities of base-excited resonances, times their gains, shape (frequency,) [1].
-
-    ``(1 + 2 i zeta r) / (1 - r^2 + 2 i zeta r)`` with ``r = f / f_mode``; S. S. Rao, Mechanical Vibrations, section 3.6.
-    """
+    """Sum of the transmissibilities of base-excited resonances, times their gains, shape (frequency,) [1]."""
     total = np.zeros(len(frequency), complex)
     for mode in modes:
-        ratio = frequency / mode.frequency
-        loss = 2j * mode.damping * ratio
-        total += mode.gain * (1 + loss) / (1 - ratio**2 + loss)
+        total += base_excited(frequency / mode.frequency, mode.damping, mode.gain)
     return total
 
 

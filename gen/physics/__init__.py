@@ -10,6 +10,7 @@ catalogue  bearings by designation, with ratings and sources
 hertz      load-deflection factor of point and line contacts
 rotor      machine constants, static equilibrium, bounds of its eigenfrequencies
 rating     static load rating and equivalent static load
+resonance  resonances that are excited at their base
 lubricant  oil film and temperature: clearance, stiffness, damping
 axial      squeeze of the balls by an axial load
 profile    change of speed and load over a record

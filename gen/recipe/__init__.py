@@ -10,7 +10,6 @@ publication        licence, creators and references of the corpus
 gear               gear mesh in the background
 machine_conditions machines that are not well
 sensing            sensors, path, background, level, converter
-sensor_faults      faults of mount, cable, amplifier and data transfer
 changes            keys of operation and level that one fault replaces
 fault_entries      keys that all entries of faults have in common
 sections           all sections of a recipe, and the counts that follow from them

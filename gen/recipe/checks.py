@@ -1,11 +1,11 @@
 """Refuse recipes that cannot be made as a whole: keys that contradict each other, weights that cannot be met."""
 
+from gen.mechanisms.measuring_chain import faults_of
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
 from gen.recipe.loads import load_problem
 from gen.recipe.machine import CatalogueBearing, designation_problem
 from gen.recipe.operation import OperationSection, Steps, Table
 from gen.recipe.sections import Sections
-from gen.recipe.sensor_faults import sensor_fault_problem
 from gen.recipe.shares import operations, share_problem
 from gen.support.limits import check_limit
 
@@ -119,7 +119,11 @@ def _corpus_problem(recipe: Sections) -> str | None:
 def _sensor_faults_problem(recipe: Sections) -> str | None:
     converter = recipe.recording.converter
     full_scale = None if converter.kind == "float32" else converter.full_scale_m_s2
-    return sensor_fault_problem(recipe.sensor_faults, full_scale, recipe.recording.duration_s)
+    for fault in faults_of(recipe.sensor_faults):
+        problem = fault.problem(full_scale, recipe.recording.duration_s)
+        if problem is not None:
+            return f"sensor_faults.{fault.place}.{problem}"
+    return None
 
 
 def _other_bearing_problem(recipe: Sections) -> str | None:

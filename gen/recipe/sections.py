@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, model
 from gen.corpus import Codec
 from gen.drawing.distributions import Number
 from gen.drawing.section import Count, Name, Section
+from gen.mechanisms.measuring_chain import SensorFaultsSection
 from gen.recipe.fault_entries import FaultList, fault_entries
 from gen.recipe.faults import Fault
 from gen.recipe.machine import (
@@ -27,7 +28,6 @@ from gen.recipe.machine_conditions import MachineConditionsSection
 from gen.recipe.operation import OperationSection
 from gen.recipe.publication import PublicationSection
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
-from gen.recipe.sensor_faults import SensorFaultsSection
 
 
 class Split(Section):

@@ -9,7 +9,7 @@ points        quasi-random points
 bearings      draw the bearing of a rig, its deviations as built, and the bearing at the other end of the shaft
 classes       choose the fault class of each specimen
 faults        draw the damage of a specimen
-sensor_faults draw the faults of the measuring chain, and the gear of a rig
+machinery     draw the gear and the condition of a machine
 operating     operating conditions: per rig, specimen or record, shares, changes
 records       records of a specimen, with rungs of severity
 draw          draw rigs and specimens, and with them all records
@@ -43,8 +43,6 @@ from gen.scenarios.sensing import (
     Mode,
     Path,
     Pickup,
-    RecordSensorFaults,
-    RigSensorFaults,
     ShaftModulation,
     Tone,
 )
@@ -62,9 +60,7 @@ __all__ = [
     "Path",
     "Pickup",
     "Purpose",
-    "RecordSensorFaults",
     "Rig",
-    "RigSensorFaults",
     "Scenario",
     "Settings",
     "ShaftModulation",

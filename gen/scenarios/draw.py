@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from gen.corpus import SPLITS
 from gen.drawing.distributions import weighted_index
 from gen.drawing.draws import Draws, Known, known_of
+from gen.mechanisms.measuring_chain import draw_for_rig
 from gen.recipe import (
     Fault,
     Modes,
@@ -27,12 +28,12 @@ from gen.recipe import (
 from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_bearing, known_of_rig
 from gen.scenarios.classes import fault_of_each_specimen, other_fault_of_each_specimen, possible_entries
 from gen.scenarios.faults import draw_damage
+from gen.scenarios.machinery import draw_gear, draw_machine_condition
 from gen.scenarios.model import Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Operating, operating_of
 from gen.scenarios.points import points_of
 from gen.scenarios.records import SpecimenSource, draw_record, record_points, source_of
 from gen.scenarios.sensing import Background, Mode, Path, Pickup, ShaftModulation, Tone
-from gen.scenarios.sensor_faults import draw_gear, draw_machine_condition, draw_rig_sensor_faults
 from gen.support.errors import RecipeError
 from gen.support.units import decibel_to_ratio, percent_to_share
 
@@ -128,7 +129,12 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
         background_rms=level.get("background", 1.0),
         lubricant=oil,
         footprint=recipe.contact.footprint == "hertz",
-        sensor_faults=draw_rig_sensor_faults(recipe, number),
+        sensor_faults=draw_for_rig(
+            recipe.sensor_faults,
+            stream(recipe.seed, number, 0, 0, Purpose.RIG_SENSOR_FAULTS),
+            number,
+            len(recipe.recording.channels),
+        ),
         high_pass=high_pass,
         offset=offset,
     )

@@ -12,10 +12,11 @@ import numpy as np
 from pydantic import Field
 
 from gen.drawing.draws import Drawn
+from gen.mechanisms.measuring_chain import SensorFaultDraws
 from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
 from gen.recipe import MAX_OVERSAMPLING
-from gen.scenarios.sensing import Background, Path, Pickup, RecordSensorFaults, RigSensorFaults
+from gen.scenarios.sensing import Background, Path, Pickup
 from gen.support.shown import Shown
 
 Number = Annotated[int, Field(ge=0, lt=2**31)]
@@ -146,7 +147,8 @@ class Rig:
     lubricant: Drawn | None = None
     footprint: bool = False
     """True for contacts of Hertzian width, False for point contacts."""
-    sensor_faults: RigSensorFaults | None = None
+    sensor_faults: SensorFaultDraws = field(default_factory=dict)
+    """Faults of the measuring chain that last as long as the rig."""
     high_pass: float = 0.0
     """Frequency below which the sensors measure less and less; 0 if they measure down to 0 Hz [Hz]."""
     offset: float = 0.0
@@ -249,7 +251,8 @@ class Operation:
     load_profile: Profile | None = None
     level_try: int = 0
     """Number of levels that were drawn before this one and at which the fault could not be seen."""
-    sensor_faults: RecordSensorFaults | None = None
+    sensor_faults: SensorFaultDraws = field(default_factory=dict)
+    """Faults of the measuring chain that come and go."""
     pair: int = -1
     """Number of the group of records that differ in the severity of their fault alone; -1 if the record is in no group."""
     rung: int = -1

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.drawing.draws import Combination, Draws, Known, known_of
+from gen.mechanisms.measuring_chain import draw_for_record
 from gen.physics.axial import least_axial_load
 from gen.physics.profile import Profile
 from gen.physics.rating import static_rating
@@ -17,7 +18,6 @@ from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, R
 from gen.scenarios.model import Operation, OtherBearing, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import CommonNumbers, Level, Operating, common_numbers, draw_conditions
 from gen.scenarios.points import points_of
-from gen.scenarios.sensor_faults import draw_record_sensor_faults
 from gen.scenarios.settings import settings_of
 from gen.support.units import percent_to_share
 
@@ -110,7 +110,8 @@ def draw_record(
     pair = group if rung >= 0 else -1
     narrowest = min((spall.width for one in source.rungs for spall in one.spalls), default=None)
     speed_profile, load_profile = profiles
-    sensor_faults = draw_record_sensor_faults(recipe, source.rig.number, specimen.number, first)
+    rng = stream(recipe.seed, source.rig.number, specimen.number, first, Purpose.RECORD_SENSOR_FAULTS)
+    sensor_faults = draw_for_record(recipe.sensor_faults, rng, first)
     operation = Operation(
         number,
         conditions,

@@ -91,34 +91,6 @@ class ConditionSignal:
 
 
 @dataclass(frozen=True)
-class RigSensorFaults:
-    """Faults of the measuring chain that last as long as a rig; None for a fault that it does not have."""
-
-    loose_mounts: tuple[Drawn | None, ...]
-    """Frequency [Hz], damping [1] and holding acceleration [m s-2] of the mount of each channel; None for a firm one."""
-    saturation: Drawn | None
-    """Limit [m s-2], knee [1] and recovery [s] of the amplifier."""
-    mains_hum: Drawn | None
-    """Frequency [Hz], rms [m s-2], count of odd multiples and level of the third [dB]."""
-
-
-@dataclass(frozen=True)
-class RecordSensorFaults:
-    """Faults of the measuring chain of one record; None for a fault that it does not have."""
-
-    drift: Drawn | None
-    """Rms [m s-2] and corner [Hz] of the wander, settling [m s-2] and its time constant [s]."""
-    dropped_samples: Drawn | None
-    """Count, length [s] and held share of the gaps."""
-    gain_steps: tuple[Drawn, ...]
-    """Place in the record [share of its length] and factor of the gain [1] of each step."""
-    emi_bursts: Drawn | None
-    """Rate [Hz], frequency [Hz], decay [s] and peak [m s-2]."""
-    mains_deviation: float
-    """Deviation of the mains from its nominal frequency [1]."""
-
-
-@dataclass(frozen=True)
 class Background:
     """Vibration of the machine without the bearing; levels are relative to the rms of its noise."""
 

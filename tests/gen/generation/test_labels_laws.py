@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from gen.corpus import FAULTS, SPLITS
-from gen.generation.labels import part_dataset, sensor_flag_columns
+from gen.generation.labels import part_dataset
 from gen.measurement.measure import measure
-from gen.measurement.sensor_faults import SensorFlags
+from gen.mechanisms.measuring_chain import LABELS
 from gen.recipe import corpus_identity
 from gen.scenarios import draw_scenarios, read_scenario, settings_of
 from gen.simulation.timeline import timeline
@@ -228,8 +228,6 @@ def test_a_gear_is_labelled_by_its_teeth(labels_with):
     assert labels_with({})["gear_mesh"].values.tolist() == [0] * 24
 
 
-def test_every_sensor_flag_becomes_a_variable_and_is_0_without_sensor_faults(labels_with):
-    found, names = labels_with({}), SensorFlags._fields
-    assert all((found[name].values == 0).all() for name in names)
-    columns = sensor_flag_columns([SensorFlags(), SensorFlags(*range(1, len(names) + 1))])
-    assert columns == {name: [0, value] for value, name in enumerate(names, start=1)}
+def test_every_label_of_the_measuring_chain_is_a_variable_and_0_without_faults(labels_with):
+    found = labels_with({})
+    assert all((found[label.name].values == 0).all() for label in LABELS)

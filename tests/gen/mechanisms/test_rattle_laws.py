@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
-from gen.measurement.rattle import rattling
+from gen.mechanisms.rattle import rattling
 
 law = settings(deadline=None, max_examples=50)
 FS = 12_000.0

@@ -1,0 +1,115 @@
+"""Faults of the measuring chain, from the mount of a sensor to the transfer of its samples.
+
+::
+
+    machine -> mount -> cable -> gain -> amplifier -> converter -> transfer
+               rattle   drift    steps   limit                     gaps
+                        hum
+                        bursts
+
+Drift, hum and bursts enter ahead of the amplifier: they use up its range, and it amplifies them. A gain that steps up drives the amplifier
+into its limit. Gaps come last; a converter acts on each sample by itself, so they may be made before it with the same result.
+Each fault has random streams of its own, so one that is added to a recipe or removed from it moves no value of another.
+"""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+from pydantic import Field, create_model
+
+from gen.corpus.schema import Variable
+from gen.drawing.draws import Draws
+from gen.drawing.section import Section
+from gen.mechanisms.drift import Drift
+from gen.mechanisms.dropped_samples import DroppedSamples
+from gen.mechanisms.emi_bursts import EmiBursts
+from gen.mechanisms.gain_steps import GainSteps
+from gen.mechanisms.loose_mount import LooseMount
+from gen.mechanisms.mains_hum import MainsHum
+from gen.mechanisms.saturation import Saturation
+from gen.mechanisms.sensor_fault import Faulty, FloatArray, SensorFault
+
+CHAIN: tuple[type[SensorFault], ...] = (LooseMount, Drift, MainsHum, EmiBursts, GainSteps, Saturation, DroppedSamples)
+"""All faults, in the order in which a signal meets them."""
+LABELS: tuple[Variable, ...] = tuple(label for fault in CHAIN for label in fault.labels)
+"""Variables of the corpus that tell which faults a record has, 0 for none."""
+
+SensorFaultDraws = dict[str, Faulty]
+"""Drawn values of each fault that a rig, or a record, has."""
+
+
+def _meaning(fault: type[SensorFault]) -> str:
+    return f"{str(fault.__doc__).rstrip('.')}; none if left out."
+
+
+if TYPE_CHECKING:
+    SensorFaultsSection = Section
+else:
+    SensorFaultsSection = create_model(
+        "SensorFaultsSection",
+        __base__=Section,
+        __doc__="Faults of the measuring chain, each with variables in the corpus; a fault that is left out does not occur.",
+        **{fault.place: (fault | None, Field(default=None, description=_meaning(fault))) for fault in CHAIN},
+    )
+
+
+def faults_of(section: Section) -> Iterator[SensorFault]:
+    """Faults that a recipe has."""
+    return (fault for place in type(section).model_fields if (fault := getattr(section, place)) is not None)
+
+
+def draw_for_rig(section: Section, rng: np.random.Generator, rig: int, channels: int) -> SensorFaultDraws:
+    """Faults that a rig has as long as it stands."""
+    streams = rng.spawn(len(CHAIN))
+    found = {
+        fault.place: fault.draw(Draws(streams[fault.rig_stream], np.empty(0), rig, f"rig {rig}"), channels)
+        for fault in faults_of(section)
+        if fault.rig_stream is not None
+    }
+    return {place: drawn for place, drawn in found.items() if drawn is not None}
+
+
+def draw_for_record(section: Section, rng: np.random.Generator, record: int) -> SensorFaultDraws:
+    """Faults that come and go, and what faults of rigs have anew in each record."""
+    streams, found = rng.spawn(len(CHAIN)), dict[str, Faulty | None]()
+    for fault in faults_of(section):
+        if fault.record_stream is not None:
+            draws = Draws(streams[fault.record_stream], np.empty(0), record, f"record {record}")
+            found[fault.place] = fault.draw(draws, 0) if fault.rig_stream is None else fault.draw_anew(draws)
+    return {place: drawn for place, drawn in found.items() if drawn is not None}
+
+
+def disturb(
+    signal: FloatArray, of_rig: SensorFaultDraws, of_record: SensorFaultDraws, fs: float, rng: np.random.Generator
+) -> tuple[FloatArray, dict[str, float]]:
+    """Signal with all faults of a rig and a record, and the values of the labels of those that are in it.
+
+    Parameters
+    ----------
+    signal : array, shape (channel, time)
+        Record at its final level, ahead of the converter [m s-2].
+    of_rig, of_record : dict
+        Drawn values of the faults.
+    fs : float
+        Sample rate [Hz].
+    rng : Generator
+        Source of random times and phases.
+
+    Returns
+    -------
+    array, shape (channel, time), of the type of ``signal``
+        The ``signal`` itself if there is no fault, or if the record diverged: then it is left out of the corpus.
+    """
+    if not np.isfinite(signal).all():
+        return signal, {}
+    given, streams, labels = signal, rng.spawn(len(CHAIN)), dict[str, float]()
+    for fault in CHAIN:
+        drawn = (of_record if fault.rig_stream is None else of_rig).get(fault.place)
+        if drawn is not None:
+            anew = of_record.get(fault.place)
+            if fault.rig_stream is not None and isinstance(drawn, dict) and isinstance(anew, dict):
+                drawn = drawn | anew
+            signal, found = fault.disturb(drawn, signal, fs, streams[fault.noise_stream])
+            labels |= found
+    return signal.astype(given.dtype, copy=False), labels

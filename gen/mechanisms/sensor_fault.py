@@ -1,0 +1,62 @@
+"""What a fault of the measuring chain is: a section of a recipe that draws itself, changes a signal, and labels what it did."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.corpus.schema import Variable
+from gen.drawing.draws import Drawn, Draws
+from gen.drawing.section import Probability, Section
+
+FloatArray = NDArray[np.floating]
+Found = Mapping[str, float]
+"""Values of the labels of a fault that is in a record, by name."""
+Faulty = Drawn | tuple[Drawn | None, ...]
+"""Drawn values of one fault, in SI units: of the whole fault, of each channel, or of each event."""
+
+
+class SensorFault(Section):
+    """A fault of mount, cable, amplifier or data transfer.
+
+    One that lasts as long as an installation is drawn for the rig, one that comes and goes for the record. The numbers of its random
+    streams are part of their seeds: they must not change, and a new fault takes the next free ones.
+    """
+
+    place: ClassVar[str]
+    """Key of ``sensor_faults`` in a recipe."""
+    labels: ClassVar[tuple[Variable, ...]]
+    """What the corpus says of it, 0 in a record without it."""
+    rig_stream: ClassVar[int | None] = None
+    """Number of the stream from which it is drawn for a rig; None for a fault of records."""
+    record_stream: ClassVar[int | None] = None
+    """The same for a record; a fault of rigs with one is drawn in part anew for each record."""
+    noise_stream: ClassVar[int]
+    """Number of the stream of its random times and phases in a record."""
+
+    probability: Probability
+
+    def draw(self, draws: Draws, channels: int) -> Faulty | None:  # noqa: ARG002 - of each channel, for some faults
+        """Drawn values of this fault; None if it does not occur."""
+        return draws.section(self) if draws.is_present(self) else None
+
+    def draw_anew(self, draws: Draws) -> Drawn:
+        """Values of a fault of rigs that are drawn for each record."""
+        raise NotImplementedError
+
+    def problem(self, full_scale: float | None, duration: float) -> str | None:  # noqa: ARG002 - for some faults
+        """Sentence about a key that can have no effect or no place in a record, from the key on; None if there is none.
+
+        ``full_scale`` is that of the converter, None without one [m s-2]; ``duration`` is that of a record [s].
+        """
+        return None
+
+    @staticmethod
+    def disturb(drawn: Any, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
+        """New signal with the fault, of the shape (channel, time) of ``signal`` [m s-2], and the values of its labels."""
+        raise NotImplementedError
+
+    @staticmethod
+    def compile() -> None:
+        """Compile what the fault needs, or fetch it from numba's cache on disk."""
