@@ -107,8 +107,8 @@ def real_tables(real: Path, folder: Path) -> dict[str, xr.Dataset]:
     if (real / "mfpt").is_dir():
         found["mfpt"] = import_mfpt(real / "mfpt", folder / "mfpt").path
     if (real / "uestc").is_dir():
-        for name, mapping in (("uestc", UESTC_LABELLED), ("uestc, true speeds", UESTC)):
-            found[name] = import_generic(mapping, folder / mapping.stem, folder=real / "uestc").path
+        for name, labels in (("uestc", UESTC_LABELLED), ("uestc, true speeds", UESTC)):
+            found[name] = import_generic(labels, folder / labels.stem, folder=real / "uestc").path
     return {name: feature_table(path, groups=GROUPS) for name, path in found.items()}
 
 

@@ -18,9 +18,9 @@ from features.realism.measures import MEASURES
 from gen import generate
 from gen.importers import import_cwru, import_generic, import_mfpt
 
-UESTC = Path(__file__).with_name("uestc.yaml")
-"""Mapping of the recordings, with speeds as measured on the first three harmonics of the line of the fault."""
-UESTC_LABELLED = UESTC.with_name("uestc_labelled.yaml")
+UESTC = Path(__file__).with_name("uestc.csv")
+"""Labels of the recordings, with speeds as measured on the first three harmonics of the line of the fault."""
+UESTC_LABELLED = UESTC.with_name("uestc_labelled.csv")
 """The same with speeds as labelled."""
 
 RACES = ("inner", "outer")

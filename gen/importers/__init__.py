@@ -5,16 +5,14 @@ module         responsibility
 ============== ==================================================================
 cwru           Case Western Reserve University set, drive end, 12 kHz
 mfpt           MFPT fault data set of Bechhoefer
-generic        recordings of the user, described by a mapping file
-mapping        the mapping file as a whole
-section        files of one path: their keys, and the facts of one of them
-mapping_keys   keys of files and channels: values, tables, readings
-mapping_values types of the values in a mapping file
-paths          patterns of paths with groups
-listing        files that a mapping names, and the recordings that they make up
+generic        recordings of the user, described by a table of labels
+label_tables   tables of labels, and the keys that all rows share
+labels         keys of one file of recordings
+label_values   types of the values of keys
+mapping        mapping files of earlier versions, for one more release
 assumptions    sentences on what labels and units rest on
 resampling     recordings brought to another sample rate
-bearing_text   a bearing on the command line
+bearing_text   a bearing given as a text or by its dimensions
 signals        one recording of the user, in m/s^2
 conversion     from the unit of a file to m/s^2
 matlab         one variable of a MATLAB file

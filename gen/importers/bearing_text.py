@@ -1,18 +1,36 @@
 """Bearing given as one text: a designation of the catalogue, or a geometry such as ``n_balls=8,pitch_diameter_mm=33.5,...``."""
 
 import difflib
+import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any, Self
 
-from pydantic import ValidationError
+from pydantic import Field, ValidationError, model_validator
 
-from gen.importers.mapping_values import Geometry, bearing_of
+from gen.importers.label_values import Keys, Millimetres, Name
 from gen.physics.bearing import Bearing, FaultOrders, orders
 from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.support.errors import CorpusError
 from gen.support.sentences import sentences
+from gen.support.units import to_si
 
 _EXAMPLE = "n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938"
+
+
+class Geometry(Keys):
+    """A bearing that is not in the catalogue."""
+
+    designation: Name = "own"
+    n_balls: Annotated[int, Field(ge=3, le=1000)]
+    pitch_diameter_mm: Annotated[Millimetres, Field(ge=1)]
+    ball_diameter_mm: Annotated[Millimetres, Field(ge=0.01)]
+    contact_angle_deg: Annotated[float, Field(ge=0, lt=90)] = 0.0
+
+    @model_validator(mode="after")
+    def _balls_fit(self) -> Self:
+        if self.ball_diameter_mm >= self.pitch_diameter_mm * math.sin(math.pi / self.n_balls):
+            raise ValueError(f"{self.n_balls} balls of {self.ball_diameter_mm:g} mm do not fit on the pitch circle.")
+        return self
 
 
 def bearing_orders(bearing: str | Mapping[str, Any]) -> FaultOrders:
@@ -27,7 +45,7 @@ def bearing_orders(bearing: str | Mapping[str, Any]) -> FaultOrders:
 
 
 def bearing_from_text(text: str) -> Bearing:
-    """Bearing with a designation of the catalogue, or with the keys of a mapping file, separated by commas.
+    """Bearing with a designation of the catalogue, or with the keys of a geometry, separated by commas.
 
     >>> bearing_from_text("n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938").n_balls
     8
@@ -60,8 +78,23 @@ def bearing_from_text(text: str) -> Bearing:
     return _of_geometry(values)
 
 
+def bearing_of_label(given: Any) -> Bearing:
+    """Bearing of a text or a dict of dimensions; ValueError if it is neither."""
+    try:
+        return _of_geometry(given) if isinstance(given, Mapping) else bearing_from_text(str(given))
+    except CorpusError as error:
+        raise ValueError(str(error)) from None
+
+
 def _of_geometry(values: Mapping[str, Any]) -> Bearing:
     try:
-        return bearing_of(Geometry.model_validate(values))
+        given = Geometry.model_validate(values)
     except ValidationError as error:
         raise CorpusError(f"bearing: {' '.join(sentences(error, Geometry))} Write it like {_EXAMPLE}.") from None
+    return Bearing(
+        given.designation,
+        given.n_balls,
+        to_si(given.pitch_diameter_mm, "mm"),
+        to_si(given.ball_diameter_mm, "mm"),
+        to_si(given.contact_angle_deg, "deg"),
+    )

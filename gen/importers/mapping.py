@@ -1,78 +1,68 @@
-"""Mapping files: YAML that describes a user's recordings file by file, read and checked as recipes are.
+"""Mapping files of earlier versions with a plain list of files: they are read for one more release.
 
-A key that describes a file can be given once at the top for all files, and again for a file that differs. A quantity that a recipe also
-has is spelt as in a recipe, with the unit at the end of the key.
+A path in it can have ``*`` and ``?`` in the names of folders and files. Groups, tables and readings are no longer read; a script in the
+repository turns such a file into a table of labels.
 """
 
-from functools import cached_property
+import re
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Any
 
-from pydantic import Field, ValidationError, model_validator
-
-from gen.importers.mapping_keys import FileKeys
-from gen.importers.mapping_values import Hertz, Name, Text
-from gen.importers.section import Section, sections_of
+from gen.importers.label_tables import Row, keys_of_yaml, labels_of
+from gen.importers.labels import Labels
+from gen.importers.recordings import name_of, some_files
 from gen.support.errors import CorpusError
-from gen.support.sentences import sentences
-from gen.support.yaml_files import read_yaml
+
+_GROUP = re.compile(r"\{[a-z][a-z0-9_]*\}")
+_AS_WRITTEN = ("title", "origin", "channel", "bearing", "channels")
 
 
-class MappingFile(FileKeys):
-    """A mapping file; the keys of a file that it has apply to all files."""
-
-    title: Text = "Own recordings"
-    origin: Text = "Origin and licence are not stated."
-    channel: Name = "sensor"
-    resample_hz: Hertz | None = None
-    files: Annotated[tuple[FileKeys, ...], Field(min_length=1)]
-
-    @cached_property
-    def sections(self) -> tuple[Section, ...]:
-        """The files with all their keys."""
-        return sections_of(self, self.files)
-
-    @property
-    def channel_names(self) -> tuple[str, ...]:
-        """Names of the channels of all recordings."""
-        return _channels(self, self.sections[0])
-
-    @model_validator(mode="after")
-    def _belongs_together(self) -> Self:
-        for section in self.sections:
-            if _channels(self, section) != self.channel_names:
-                raise ValueError(
-                    f"files[{section.position}]: has the channels {', '.join(_channels(self, section))}, and files[0] has "
-                    f"{', '.join(self.channel_names)}; give all files the same channels, or make a corpus of each."
-                )
-        return self
-
-
-def _channels(mapping: MappingFile, section: Section) -> tuple[str, ...]:
-    return tuple(sensor.name or mapping.channel for sensor in section.sensors())
-
-
-def read_mapping(path: Path) -> MappingFile:
-    """Read and check a mapping file.
+def read_mapping(path: Path, folder: Path, common: Mapping[str, Any]) -> list[tuple[str, Labels]]:
+    """Labels of the files that a mapping file lists; ``folder`` is that of the recordings.
 
     Raises
     ------
     CorpusError
-        If it is missing, is not YAML, or has wrong keys or values; one sentence for each of them.
+        If it lists no files, has wrong keys or values, or is in the language of earlier versions.
     """
-    if path.is_dir():
-        raise CorpusError(
-            f"{path}: is a folder; give the YAML file that describes the recordings, such as {path / 'mapping.yaml'}."
-        )
-    if not path.is_file():
-        raise CorpusError(f"{path}: no such file; give the YAML file that describes the recordings.")
-    data = read_yaml(path, CorpusError)
-    if not isinstance(data, dict) or not all(isinstance(key, str) for key in data):
-        raise CorpusError(
-            f"{path}: a mapping file has the key files, a list of sections with path, fault, specimen and further keys."
-        )
-    try:
-        return MappingFile.model_validate(data)
-    except ValidationError as error:
-        problems = sentences(error, MappingFile)
-        raise CorpusError("\n".join(f"{path}: {sentence}" for sentence in problems)) from None
+    shared = keys_of_yaml(path)
+    files = shared.pop("files", None)
+    if not isinstance(files, list) or not files or not all(isinstance(keys, dict) for keys in files):
+        raise CorpusError(f"{path}: has no list of files; give a table of labels, such as {path.with_suffix('.csv')}.")
+    for number, keys in enumerate([shared, *files]):
+        for key, value in keys.items():
+            if _is_of_the_language(str(key), value):
+                place = f"files[{number - 1}].{key}" if number else key
+                raise CorpusError(
+                    f"{path}: {place}: is in the language of mapping files, which is no longer read; in the repository of Raceway, "
+                    f"python tools/mapping_to_labels.py {path} turns it into a table of labels."
+                )
+    rows: list[Row] = []
+    for number, keys in enumerate(files):
+        place, pattern = f"{path}: files[{number}]", keys.get("path") or shared.get("path")
+        rows += [Row(place, ".", given) for given in _matches(keys, pattern, folder, len(rows), place)]
+    return labels_of(rows, shared, common, path)
+
+
+def _is_of_the_language(key: str, value: Any) -> bool:
+    if key in _AS_WRITTEN:
+        return False
+    return isinstance(value, dict) or (
+        isinstance(value, str) and bool(_GROUP.search(value) or (key == "path" and "**" in value))
+    )
+
+
+def _matches(keys: dict[str, Any], pattern: Any, folder: Path, already: int, place: str) -> Iterator[dict[str, Any]]:
+    """Keys of each file that a path with ``*`` or ``?`` names, or those of the one file."""
+    plain = (
+        not isinstance(pattern, str) or not set(pattern) & {"*", "?"} or ".." in pattern or Path(pattern).is_absolute()
+    )
+    files = (
+        []
+        if plain
+        else some_files(folder.glob(pattern), already, f"{place}.path: {pattern} and the paths before match")
+    )
+    yield from ({**keys, "path": name_of(file, folder)} for file in files)
+    if not files:
+        yield keys

@@ -30,14 +30,14 @@ def read_text(path: Path, column: int | str | None = None, delimiter: str | None
         :func:`~gen.importers.table.read_table`.
     """
     with guarded(path, "delimited text"):
-        encoding = _encoding(path)
+        encoding = encoding_of(path)
         with path.open(encoding=encoding, errors="replace") as text:
-            mark = delimiter or _mark([*islice(_lines(text), START)])
+            mark = delimiter or _mark([*islice(lines_of(text), START)])
         with path.open(encoding=encoding, errors="replace") as text:
-            return read_table(_split(_lines(text), mark), column, lambda number, _: f"line {number}")
+            return read_table(_split(lines_of(text), mark), column, lambda number, _: f"line {number}")
 
 
-def _encoding(path: Path) -> str:
+def encoding_of(path: Path) -> str:
     """Encoding of a text by its beginning: UTF-16 has a mark, and what is no UTF-8 is read as Latin-1."""
     with path.open("rb") as stream:
         start = stream.read(_BEGINNING)
@@ -50,7 +50,7 @@ def _encoding(path: Path) -> str:
     return "utf-8-sig"
 
 
-def _lines(text: IO[str]) -> Iterator[str]:
+def lines_of(text: IO[str]) -> Iterator[str]:
     """Lines of a text, none of which is longer than a row can be."""
     while line := text.readline(_LONGEST_LINE):
         if len(line) == _LONGEST_LINE or "\0" in line:

@@ -207,7 +207,7 @@ PRINTED_OTHERWISE = {
 _PAGE = """# Catalogue of bearings
 
 Generated from `gen/physics/catalogue.py`. A recipe takes ball bearings, and roller bearings of known length, by their
-designation; a mapping file of recordings takes any of these. Lengths are in mm, angles in degrees, the dynamic rating C
+designation; a table of labels takes any of these. Lengths are in mm, angles in degrees, the dynamic rating C
 and the static rating C0 in kN, fault frequencies in orders of the shaft for a fixed outer ring; a dash means unknown.
 *One source* marks a geometry that only one source gives.
 
@@ -227,7 +227,7 @@ by more than 0.2 % from the one that table [1] prints for a wide inner ring bear
 table is above or below the row. For 306K it prints the orders of 7 balls, 16 % below the 8 balls of the 6306, which the
 ratings of the same maker [2] confirm; for 208K and 308K its BPFO is 1.5 % lower, as with larger balls. Features search
 a line within 1.5 to 2 % of its nominal order: 1.5 % leave nothing for an error of the speed, and 16 % miss the line. A
-mapping file of recordings takes the geometry of your bearing instead of a designation, and a recipe takes it as an
+table of labels takes the geometry of your bearing instead of a designation, and a recipe takes it as an
 entry of its own.
 
 """

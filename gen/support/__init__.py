@@ -10,8 +10,8 @@ kernels    compiled kernels on disk, made again if they are damaged or of other 
 progress   progress of a long call
 shown      what an object shows in print and in a notebook
 limits     how much a file from elsewhere may ask for
-units      units of recipes and mapping files, turned into SI
-yaml_files recipes and mapping files, read within the limits
+units      units of recipes and labels, turned into SI
+yaml_files recipes and common keys of labels, read within the limits
 sentences  an error sentence for each wrong key or value of these files
 cluster    independent tasks on dask
 workers    independent tasks in this thread, threads, processes or a cluster

@@ -23,8 +23,8 @@ class Limit(NamedTuple):
 
 
 LIMITS: Mapping[str, Limit] = {
-    "yaml_bytes": Limit(1_000_000, "bytes", "size of a recipe or mapping file"),
-    "yaml_values": Limit(20_000, "values", "values of a recipe or mapping file, with aliases expanded"),
+    "yaml_bytes": Limit(1_000_000, "bytes", "size of a recipe, or of the common keys of labels"),
+    "yaml_values": Limit(20_000, "values", "values of a recipe, or of the common keys of labels, with aliases expanded"),
     # the classes and splits of all rigs are drawn before the first record: 10 million records take some 0.5 GB
     "records": Limit(10_000_000, "records", "records of a corpus"),
     # drawn again for every part: 10 million specimens took 4 s each time

@@ -1,4 +1,4 @@
-"""Error sentences for broken recipes and mapping files: the place, the value found, and what is allowed or what to do."""
+"""Error sentences for broken recipes and labels: the place, the value found, and what is allowed or what to do."""
 
 import difflib
 import functools
@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 _MOST_SENTENCES = 20
 _LONGEST_KEY = 60  # characters shown
-_FORMS = ("[key]", "[one]", "[table]", "[reading]", "[name]", "[geometry]")  # steps of a location that are no keys
+_FORMS = ("[key]",)  # steps of a location that are no keys
 
 
 def sentences(error: ValidationError, model: type[BaseModel]) -> list[str]:

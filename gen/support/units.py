@@ -1,4 +1,4 @@
-"""Units of recipes and mapping files, and the operations that turn them into SI.
+"""Units of recipes and labels, and the operations that turn them into SI.
 
 A key ends in its unit: ``width_mm`` is a width in millimetres. The last bit of a converted value reaches the stored signals, and
 ``x / 100`` differs from ``x * 1e-2`` in the last bit. So each conversion is one operation, and it must not be replaced by an equal one:

@@ -1,4 +1,4 @@
-"""Reader of recipes and mapping files in YAML 1.2, safe for files from strangers.
+"""Reader of recipes and common keys of labels in YAML 1.2, safe for files from strangers.
 
 The safe loader of ruamel.yaml builds null, booleans, numbers, text, lists and mappings; a date is text, and other tags are refused. An
 alias (``*name``) or a merge (``<<: *name``) counts with all the values that it repeats, so that nested aliases cannot grow beyond the

@@ -21,6 +21,14 @@ _window: Any = click.option(
 )
 
 
+def _keys(_context: click.Context, _option: click.Parameter, texts: tuple[str, ...]) -> dict[str, str]:
+    """Keys and their values, as they are written."""
+    for text in texts:
+        if not text.partition("=")[2]:
+            raise click.BadParameter(f"{text!r} is not KEY=VALUE, such as unit=g")
+    return dict(text.split("=", 1) for text in texts)
+
+
 @click.group("import")
 def import_() -> None:
     """Convert real recordings into the corpus format.
@@ -79,26 +87,31 @@ def mfpt(source: Path, output: Path, window: float, as_json: bool) -> None:
 @_output
 @_window
 @click.option("--folder", type=A_PATH, metavar="DIR", help="Folder of the recordings; by default that of SRC.")
+@click.option(
+    "--set", "settings", multiple=True, metavar="KEY=VALUE", callback=_keys, help="Key of all files; can be repeated."
+)
 @json_option
-def generic(source: Path, output: Path, window: float, folder: Path | None, as_json: bool) -> None:
-    """Your own recordings, described by a mapping file.
+def generic(
+    source: Path, output: Path, window: float, folder: Path | None, settings: dict[str, str], as_json: bool
+) -> None:
+    """Your own recordings, described by a table of labels.
 
-    SRC is a YAML file in the folder of the recordings (MATLAB, text, NumPy or WAV) that describes them:
+    SRC is a table saved as CSV in the folder of the recordings (MATLAB, text, Excel, NumPy or WAV), one row for each file:
 
-      title: Pump 7, drive side
-      bearing: "6205"
-      unit: g
-      sample_rate_hz: 25600
-      shaft_rpm: 1480
-      files:
-        - {path: healthy/*.csv, fault: healthy, specimen: new}
-        - {path: "{fault}/{shaft_rpm}_*.csv", specimen: worn}
+      path,fault,specimen,shaft_rpm
+      new/1.csv,healthy,new,1480
+      worn/1.csv,outer,worn,1475
 
-      raceway import generic pump7/mapping.yaml -o pump7_corpus
+    Keys that all files share are in labels.yaml beside labels.csv, or options:
+
+      raceway import generic labels.csv -o pump7 --set bearing=6205 --set unit=g --set sample_rate_hz=25600
     """
     from gen.importers import import_generic
 
-    _run(lambda report: import_generic(source, output, window=window, folder=folder, progress=report), as_json)
+    _run(
+        lambda report: import_generic(source, output, window=window, folder=folder, common=settings, progress=report),
+        as_json,
+    )
 
 
 def _run(bring: "Callable[[Any], Import]", as_json: bool) -> None:

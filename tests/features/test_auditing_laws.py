@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from features import audit_splits
 from features.auditing import COPY, _signature, phase_correlation
-from gen.importers import import_generic
 from raceway.cli import cli
+from tests.labels import import_labelled
 
 FS = 2000
-COMMON = f"bearing: '6205'\nunit: g\nsample_rate_hz: {FS}\nshaft_rpm: 1500\n"
+COMMON = {"bearing": "6205", "unit": "g", "sample_rate_hz": FS, "shaft_rpm": 1500}
 
 
 def machine(seed, size=8 * FS):
@@ -30,9 +30,8 @@ def corpus(tmp_path, recordings):
     files = []
     for name, signal, fault, specimen in recordings:
         np.save(tmp_path / f"{name}.npy", signal)
-        files.append(f"- {{path: {name}.npy, fault: {fault}, specimen: {specimen}}}\n")
-    (tmp_path / "mapping.yaml").write_text(f"{COMMON}files:\n{''.join(files)}")
-    return import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus").path
+        files.append({"path": f"{name}.npy", "fault": fault, "specimen": specimen})
+    return import_labelled(tmp_path, files, **COMMON).path
 
 
 def sound_set():
@@ -102,12 +101,9 @@ def test_two_sensors_of_one_file_are_not_two_specimens(tmp_path):
     for name, signal, *_ in sound_set():
         np.save(tmp_path / f"{name}.npy", signal)
     np.save(tmp_path / "two.npy", np.stack([machine(95), machine(96)]))
-    files = [
-        f"- {{path: {name}.npy, fault: {fault}, specimen: {specimen}}}\n" for name, _, fault, specimen in sound_set()
-    ]
-    files += [f"- {{path: two.npy, column: {n}, fault: inner, specimen: sensor{n}}}\n" for n in (0, 1)]
-    (tmp_path / "mapping.yaml").write_text(f"{COMMON}files:\n{''.join(files)}")
-    (sentence,) = audit_splits(import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus").path)
+    files = [{"path": f"{name}.npy", "fault": fault, "specimen": specimen} for name, _, fault, specimen in sound_set()]
+    files += [{"path": "two.npy", "column": n, "fault": "inner", "specimen": f"sensor{n}"} for n in (0, 1)]
+    (sentence,) = audit_splits(import_labelled(tmp_path, files, **COMMON).path)
     assert "two.npy holds recordings of more than one specimen; if these are sensors of one machine" in sentence
 
 

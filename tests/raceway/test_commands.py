@@ -20,6 +20,7 @@ from gen.simulation.simulate import response_of
 from gen.support.limits import VARIABLE
 from raceway.cli import GROUPS, cli
 from raceway.commands import models
+from tests.labels import write_labels
 
 
 def leaves(command, path=("raceway",)):
@@ -348,20 +349,20 @@ def test_recordings_are_imported_and_counted(run, told, tmp_path):
     rng = np.random.default_rng(0)
     for name in ("healthy", "outer"):
         np.save(tmp_path / f"{name}.npy", rng.standard_normal(4000))
-    mapping = tmp_path / "mapping.yaml"
-    mapping.write_text(
-        "title: Pump\nbearing: '6205'\nunit: g\nsample_rate_hz: 2000\nshaft_rpm: 1480\nfiles:\n"
-        "  - {path: healthy.npy, fault: healthy, specimen: new}\n"
-        "  - {path: outer.npy, fault: outer, specimen: worn}\n"
-        "  - {path: lost.npy, fault: inner, specimen: lost}\n"
-    )
-    result = run("import", "generic", mapping, "-o", tmp_path / "pump", "--window", 0.25, "--json")
+    rows = (("healthy", "new"), ("outer", "worn"), ("lost", "lost"))
+    labels = write_labels(
+        tmp_path,
+        [{"path": f"{name}.npy", "fault": name.replace("lost", "inner"), "specimen": one} for name, one in rows],
+        title="Pump", bearing="6205", unit="V", sample_rate_hz=2000, shaft_rpm=1480,
+    )  # fmt: skip
+    options = ("--window", 0.25, "--set", "unit=g")
+    result = run("import", "generic", labels, "-o", tmp_path / "pump", *options, "--json")
     made = json.loads(result.stdout)
     assert (made["recordings"], made["records"], len(made["skipped"])) == (2, 16, 1)
-    assert "lost.npy: no file beside" in result.stderr
+    assert "lost.npy: could not be read" in result.stderr
     found = told("info", tmp_path / "pump")
     assert (found["importer"], found["classes"]) == ("generic", {"healthy": 8, "outer": 8})
-    assert "lost.npy: no file beside" in run("info", tmp_path / "pump").stdout
+    assert "lost.npy: could not be read" in run("info", tmp_path / "pump").stdout
 
 
 def test_bench_times_every_stage(run, told, tiny_recipe, monkeypatch):

@@ -164,8 +164,10 @@ TABLE = [
     # recordings
     ("import cwru {nowhere} -o {new}", "nowhere: no such folder; give the folder that holds the .mat files."),
     ("import mfpt {folder} -o {new}", "no .mat file in it or below"),
-    ("import generic {nowhere} -o {new}", "nowhere: no such file; give the YAML file that describes the recordings."),
+    ("import generic {nowhere} -o {new}", "nowhere: no such file; give the table of labels, such as labels.csv."),
     ("import generic {binary} -o {new}", "binary.yaml"),
+    ("import generic {model} -o {new}", "model.skops: is no table of labels; save one as CSV"),
+    ("import generic {file} -o {new} --set unit", "'unit' is not KEY=VALUE, such as unit=g"),
 ]  # fmt: skip
 
 

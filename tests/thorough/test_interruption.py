@@ -12,6 +12,7 @@ import pytest
 from gen import generate
 from gen.corpus import read_manifest, validate_corpus
 from tests.kills import killed
+from tests.labels import write_labels
 
 N_PARTS = 12
 PATIENCE_S = 60
@@ -170,14 +171,11 @@ def is_free(lock):
 
 
 def test_an_interrupted_import_leaves_no_file(start, tmp_path):
-    for number in range(2000):
-        (tmp_path / f"{number}.npy").write_bytes(b"no recording")
-    mapping = tmp_path / "mapping.yaml"
-    mapping.write_text(
-        "title: Pump\nbearing: '6205'\nunit: g\nsample_rate_hz: 2000\nshaft_rpm: 1480\n"
-        "files: [{path: '*.npy', fault: healthy, specimen: new}]\n"
-    )
-    process = start("import", "generic", mapping, "-o", tmp_path / "corpus")
+    files = [{"path": f"{number}.npy", "fault": "healthy", "specimen": "new"} for number in range(2000)]
+    for file in files:
+        (tmp_path / file["path"]).write_bytes(b"no recording")
+    labels = write_labels(tmp_path, files, bearing="6205", unit="g", sample_rate_hz=2000, shaft_rpm=1480)
+    process = start("import", "generic", labels, "-o", tmp_path / "corpus")
     wait_for(lambda: any(tmp_path.glob(".corpus.*.tmp")), process)
     os.killpg(process.pid, signal.SIGINT)
     output, errors = process.communicate(timeout=PATIENCE_S)

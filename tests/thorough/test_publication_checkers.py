@@ -23,6 +23,7 @@ from gen.corpus import (
 )
 from gen.generation.corpus import generate
 from gen.importers import import_generic
+from tests.labels import write_labels
 
 FACTS = {
     "license": "CC-BY-4.0",
@@ -42,13 +43,6 @@ OF_THE_WHOLE = {
     "keywords", "summary", "creator_name", "creator_url", "creator_email", "id", "institution", "license",
     "naming_authority", "processing_level", "publisher_name", "publisher_email",
 }  # fmt: skip
-MAPPING = """
-bearing: "6205"
-unit: g
-sample_rate_hz: 1000
-shaft_rpm: 1500
-files: [{path: one.npy, fault: inner, specimen: a}]
-"""
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +55,8 @@ def simulated(write_recipe, tmp_path_factory):
 def imported(tmp_path_factory):
     folder = tmp_path_factory.mktemp("imported")
     np.save(folder / "one.npy", np.random.default_rng(0).normal(size=3000).astype(np.float32))
-    (folder / "mapping.yaml").write_text(MAPPING)
+    row = {"path": "one.npy", "fault": "inner", "specimen": "a", "shaft_rpm": 1500}
+    write_labels(folder, [row], bearing="6205", unit="g", sample_rate_hz=1000)
     return publish_import(folder, "corpus")
 
 
@@ -75,7 +70,7 @@ def single(imported):
 
 
 def publish_import(folder, name):
-    done = import_generic(folder / "mapping.yaml", folder / name, window=0.5)
+    done = import_generic(folder / "labels.csv", folder / name, window=0.5)
     publish(done.path, read_publication(FACTS))
     return done.path
 

@@ -16,9 +16,9 @@ from features.table.indicators import Orders
 from features.table.recording_speeds import recording_numbers
 from features.table.recordings import recording_table
 from gen.corpus import UNKNOWN_CODE
-from gen.importers import import_generic
 from gen.support.errors import CorpusError
 from raceway.cli import cli
+from tests.labels import import_labelled
 
 LINES = (*EVIDENCE, "raw_kurtosis")
 RATES = {"tested": 25.0, "far": 30.0}
@@ -282,11 +282,9 @@ def imported(folder, *, rpm="1500", window=0.5, bearings=("6205",)):
         np.save(folder / f"{number}.npy", signal)
         bearing = bearings[number % len(bearings)]
         speed = rpm.split()[number % len(rpm.split())]
-        files.append(
-            f"- {{path: {number}.npy, fault: {fault}, specimen: {number}, bearing: '{bearing}', shaft_rpm: {speed}}}\n"
-        )
-    (folder / "mapping.yaml").write_text(f"unit: g\nsample_rate_hz: {FS}\nfiles:\n{''.join(files)}")
-    return import_generic(folder / "mapping.yaml", folder / "corpus", window=window).path
+        told = {"fault": fault, "specimen": number, "bearing": bearing, "shaft_rpm": speed}
+        files.append({"path": f"{number}.npy", **told})
+    return import_labelled(folder, files, window=window, unit="g", sample_rate_hz=FS).path
 
 
 def test_a_reference_recording_has_the_features_of_the_same_records_in_a_corpus(tmp_path):

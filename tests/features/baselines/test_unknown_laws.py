@@ -14,14 +14,14 @@ from features.realism.windows import common_ground, measured_windows
 from features.report.examples import draw_examples
 from features.report.page import write_report
 from gen.corpus import FAULT_NAMES, UNKNOWN_CODE, open_corpus, validate_corpus
-from gen.importers import import_generic
 from gen.support.errors import CorpusError
 from raceway.cli import cli
 from raceway.commands import models
 from raceway.console.summary import describe
+from tests.labels import import_labelled
 
 FS = 12_000
-COMMON = f"bearing: '6205'\nunit: g\nsample_rate_hz: {FS}\nshaft_rpm: 1500\n"
+COMMON = {"bearing": "6205", "unit": "g", "sample_rate_hz": FS, "shaft_rpm": 1500}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -40,9 +40,8 @@ def corpus(tmp_path_factory):
         signal = rng.normal(size=FS)
         signal[:: FS // (60 if fault == "inner" else 400)] += 9.0
         np.save(folder / f"{number}.npy", signal)
-        files.append(f"- {{path: {number}.npy, fault: {fault}, specimen: {number}}}\n")
-    (folder / "mapping.yaml").write_text(f"{COMMON}files:\n{''.join(files)}")
-    return import_generic(folder / "mapping.yaml", folder / "corpus").path
+        files.append({"path": f"{number}.npy", "fault": fault, "specimen": number})
+    return import_labelled(folder, files, **COMMON).path
 
 
 @pytest.fixture(scope="module")

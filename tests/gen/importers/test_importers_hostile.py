@@ -12,12 +12,13 @@ import pytest
 import scipy.io
 
 from gen.corpus import validate_corpus
-from gen.importers import import_cwru, import_generic
+from gen.importers import import_cwru
 from gen.importers.files import UnusableError, read_numpy
 from gen.importers.matlab import read_matlab
 from gen.importers.text import read_text
 from gen.support.errors import CorpusError
 from gen.support.limits import VARIABLE
+from tests.labels import import_labelled
 
 SIGNAL = np.random.default_rng(1).normal(size=(1, 3000))
 
@@ -127,56 +128,45 @@ def test_names_that_are_no_utf_8_are_imported_with_their_bytes_written_out(tmp_p
     os.mkdir(folder)  # noqa: PTH102 - a name in bytes
     source = tmp_path / os.fsdecode(b"Pr\xfcfstand\n")
     scipy.io.savemat(source / "105_0.mat", {"X105_DE_time": SIGNAL.T, "X105RPM": 1797})
-    np.save(source / "a.npy", SIGNAL)
     done = import_cwru(tmp_path, tmp_path / "cwru", window=0.1)
     assert done.records == 2
-    (tmp_path / "mapping.yaml").write_text(
-        "{bearing: '6205', unit: g, sample_rate_hz: 2000, shaft_rpm: 1500, fault: inner, specimen: A, files: [{path: '*/a.npy'}]}"
-    )
-    assert import_generic(tmp_path / "mapping.yaml", tmp_path / "own").records == 3
-    for name in ("cwru", "own"):
-        assert validate_corpus(tmp_path / name) == []
-        (tmp_path / name / "README.md").read_text(encoding="utf-8")
+    assert validate_corpus(done.path) == []
+    (done.path / "README.md").read_text(encoding="utf-8")
 
 
-def test_a_pattern_that_names_too_many_files_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setenv(VARIABLE, "recording_files=20")
-    for number in range(15):
-        np.save(tmp_path / f"{number:02d}.npy", SIGNAL)
-    mapping = (
-        "{bearing: '6205', unit: g, sample_rate_hz: 2000, shaft_rpm: 1500, fault: inner, specimen: A, files: [%s]}"
-    )
-    (tmp_path / "mapping.yaml").write_text(mapping % "{path: '*.npy'}, {path: '*.npy'}")
-    with pytest.raises(
-        CorpusError, match=r"files\[1\]\.path: \*\.npy and the patterns before match 30 files, and the limit is 20;"
-    ):
-        import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus")
-    for number in range(15, 25):
-        (tmp_path / f"{number}.mat").write_bytes(b"x")
+def test_a_folder_of_too_many_files_is_refused(tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, "recording_files=9")
+    for number in range(10):
+        (tmp_path / f"{number}.mat").write_bytes(b"x")
     with pytest.raises(CorpusError, match="holds 10 files, and the limit is 9;"):
         import_cwru(tmp_path, tmp_path / "corpus")
 
 
-HOSTILE = "</h1><script>alert(1)</script>| [x](javascript:y) ![p](http://z/p.png)\\n\\n# Heading\\n[r]: http://w `code` \\\\[q](v)"
+HOSTILE = (
+    "</h1><script>alert(1)</script>| [x](javascript:y) ![p](http://z/p.png)\n\n# Heading\n[r]: http://w `code` \\[q](v)"
+)
 
 
 def card_of(folder, title, channel, bearing, name):
-    """Data card of an imported corpus with texts of a mapping."""
+    """Data card of an imported corpus with texts of labels."""
     folder.mkdir()
     np.save(folder / "a.npy", SIGNAL)
-    (folder / "mapping.yaml").write_text(
-        f'title: "{title}"\norigin: "{title}"\nchannel: "{channel}"\n'
-        f"bearing: {{designation: '{bearing}', n_balls: 9, pitch_diameter_mm: 39, ball_diameter_mm: 8}}\n"
-        "unit: g\nsample_rate_hz: 2000\nshaft_rpm: 1500\nfault: inner\nspecimen: A\n"
-        f"files: [{{path: a.npy}}, {{path: '{name}'}}]\n"
-    )
-    done = import_generic(folder / "mapping.yaml", folder / "corpus")
+    rows = [{"path": "a.npy"}, {"path": name}]
+    facts = {
+        "title": title,
+        "origin": title,
+        "channel": channel,
+        "unit": "g",
+        "sample_rate_hz": 2000,
+        "shaft_rpm": 1500,
+    }
+    geometry = {"designation": bearing, "n_balls": 9, "pitch_diameter_mm": 39, "ball_diameter_mm": 8}
+    done = import_labelled(folder, rows, **facts, bearing=geometry, fault="inner", specimen="A")
     assert validate_corpus(done.path) == []
     return (done.path / "README.md").read_text()
 
 
-def test_text_from_a_mapping_stays_text_in_the_data_card(tmp_path):
+def test_text_of_labels_stays_text_in_the_data_card(tmp_path):
     plain = card_of(tmp_path / "plain", "Title", "sensor", "6205", "missing.npy")
     card = card_of(tmp_path / "hostile", HOSTILE, "<b>|`[x](y)", "<i>|", "<img src=x>[l](m).npy")
     for mark in ("<", ">", "](", "]:", "`", "|", "\n#", "\n```"):

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from gen.importers.mapping import read_mapping
+from gen.importers.label_tables import keys_of_yaml
 from gen.recipe import read_recipe, recipe_hash, shipped_recipes
 from gen.support.errors import CorpusError, RecipeError
 from gen.support.limits import VARIABLE
@@ -122,11 +122,11 @@ def test_what_swells_or_is_of_no_plain_type_is_refused_within_seconds(tmp_path, 
     assert time.monotonic() - start < 5  # each took 20 s or more, or all memory, or was an error of another type
 
 
-@pytest.mark.parametrize("read", [read_recipe, read_mapping])
+@pytest.mark.parametrize("read", [read_recipe, keys_of_yaml])
 @pytest.mark.parametrize(
     "name", ["aliases_of_aliases", "merges_of_merges", "recursive_list", "long_integer", "half_a_character"]
 )
-def test_recipes_and_mappings_are_read_alike(tmp_path, read, name):
+def test_recipes_and_common_keys_of_labels_are_read_alike(tmp_path, read, name):
     path = tmp_path / "odd.yaml"
     path.write_text(REFUSED[name][0])
     with pytest.raises(RecipeError if read is read_recipe else CorpusError) as refused:

@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-TARGETS = ("recipes", "mappings", "corpora")
+TARGETS = ("recipes", "labels", "corpora")
 SECONDS_EACH = 20
 MEMORY = 8_000_000_000  # bytes of address space
 

@@ -1,18 +1,15 @@
-"""Types of the values in a mapping file, and the bearing that is not in the catalogue.
+"""Types of the values in a table of labels.
 
 Text from strangers reaches data cards, messages and the names of variables: control characters are refused.
 """
 
-import math
 import unicodedata
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from gen.corpus import FAULTS, UNKNOWN
-from gen.physics.bearing import Bearing
-from gen.physics.catalogue import CATALOGUE, known_designation
-from gen.support.units import to_si
 
 if TYPE_CHECKING:
     FaultClass = str
@@ -45,6 +42,13 @@ def _on_one_line(text: str) -> str:
     return _printable(text)
 
 
+def _inside(text: str) -> str:
+    path = Path(_on_one_line(text))
+    if path.is_absolute() or ".." in path.parts:
+        raise ValueError(f"{text} leads out of the folder of the recordings; put the table into a folder above them.")
+    return path.as_posix()
+
+
 def _column(column: Any) -> Any:
     if isinstance(column, str):
         return _on_one_line(column)
@@ -59,16 +63,9 @@ def _separates(mark: str) -> str:
     return mark
 
 
-def _in_catalogue(name: str) -> str:
-    known = known_designation(name)
-    if known is None:
-        raise ValueError(f"{name} is not in the catalogue ({', '.join(CATALOGUE)}); give its geometry instead.")
-    return known
-
-
 Text = Annotated[str, Field(min_length=1, max_length=5000), BeforeValidator(_as_text), AfterValidator(_printable)]
-Line = Annotated[str, Field(min_length=1, max_length=1000), BeforeValidator(_as_text), AfterValidator(_on_one_line)]
 Name = Annotated[str, Field(min_length=1, max_length=200), BeforeValidator(_as_text), AfterValidator(_on_one_line)]
+Inside = Annotated[str, Field(min_length=1, max_length=1000), BeforeValidator(_as_text), AfterValidator(_inside)]
 Column = Annotated[int | str, BeforeValidator(_column)]
 Delimiter = Annotated[str, Field(min_length=1, max_length=1), AfterValidator(_separates)]
 Millimetres = Annotated[float, Field(gt=0, le=10_000)]
@@ -79,39 +76,3 @@ Rpm = Annotated[float, Field(ge=0.001, le=1e7)]
 Hertz = Annotated[float, Field(ge=1, le=1e8)]
 Count = Annotated[int, Field(ge=1, le=1000)]
 Sensitivity = Annotated[float, Field(ge=1e-6, le=1e6)]
-
-
-class Geometry(Keys):
-    """A bearing that is not in the catalogue."""
-
-    designation: Name = "own"
-    n_balls: Annotated[int, Field(ge=3, le=1000)]
-    pitch_diameter_mm: Annotated[Millimetres, Field(ge=1)]
-    ball_diameter_mm: Annotated[Millimetres, Field(ge=0.01)]
-    contact_angle_deg: Annotated[float, Field(ge=0, lt=90)] = 0.0
-
-    @model_validator(mode="after")
-    def _balls_fit(self) -> Self:
-        if self.ball_diameter_mm >= self.pitch_diameter_mm * math.sin(math.pi / self.n_balls):
-            raise ValueError(f"{self.n_balls} balls of {self.ball_diameter_mm:g} mm do not fit on the pitch circle.")
-        return self
-
-
-AnyBearing = Annotated[
-    Annotated[Name, AfterValidator(_in_catalogue), Tag("[name]")] | Annotated[Geometry, Tag("[geometry]")],
-    Discriminator(lambda value: "[geometry]" if isinstance(value, dict | Geometry) else "[name]"),
-]
-"""Designation in the catalogue, or a geometry."""
-
-
-def bearing_of(given: str | Geometry) -> Bearing:
-    """Bearing of a designation or a geometry, in SI units."""
-    if isinstance(given, str):
-        return CATALOGUE[given]
-    return Bearing(
-        given.designation,
-        given.n_balls,
-        to_si(given.pitch_diameter_mm, "mm"),
-        to_si(given.ball_diameter_mm, "mm"),
-        to_si(given.contact_angle_deg, "deg"),
-    )
