@@ -14,6 +14,7 @@ from gen.support.errors import CorpusError
 from raceway.commands.recordings import OPTIONS
 from tests.gen.importers.file_writers import FS, X, excel
 from tests.gen.importers.people_files import ONE, OTHER_VALUES, PLAIN, REFUSED, RIGHT, THREE
+from tests.labels import import_labelled, write_labels
 
 FACTORS = {"g": 9.80665, "mg": 9.80665e-3, "m/s2": 1.0, "mm/s2": 1e-3, "V": 1.0, None: 1.0}
 OF_UNITS = (
@@ -101,28 +102,29 @@ def test_a_matlab_7_3_file_with_a_long_end_is_read(tmp_path):
     assert read_signal(tmp_path / "a.mat").values.size == X.size
 
 
-def test_a_mapping_takes_the_rate_from_the_times_and_names_its_own_keys(tmp_path):
-    common = "{bearing: '6205', shaft_rpm: 1500, fault: inner, specimen: A, unit: %s, files: [{path: '*.csv'%s}]}"
+LABELS = {"bearing": "6205", "shaft_rpm": 1500, "fault": "inner", "specimen": "A"}
+
+
+def test_a_corpus_takes_the_rate_from_the_times_and_names_its_own_keys(tmp_path):
     (tmp_path / "a.csv").write_text(THREE)
-    (tmp_path / "mapping.yaml").write_text(common % ("g", ", column: DE"))
-    done = import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus", window=0.02)
+    table = write_labels(tmp_path, [{"path": "a.csv"}], **LABELS)
+    done = import_generic(table, tmp_path / "corpus", window=0.02, common={"unit": "g", "column": "DE"})
     assert (done.records, done.warnings) == (2, ())
-    for keys, sentence in {
-        ("g", ""): "choose one with column",
-        ("m/s2", ", column: DE"): "the unit m/s2 is given; correct what is given with unit",
-        ("g", ", column: DE, sample_rate_hz: 9000"): "9000 Hz are given; correct what is given with sample_rate_hz",
-    }.items():
-        (tmp_path / "mapping.yaml").write_text(common % keys)
+    for keys, sentence in (
+        ({"unit": "g"}, "choose one with column"),
+        ({"unit": "m/s2", "column": "DE"}, "the unit m/s2 is given; correct what is given with unit"),
+        (
+            {"unit": "g", "column": "DE", "sample_rate_hz": 9000},
+            "9000 Hz are given; correct what is given with sample_rate_hz",
+        ),
+    ):
         with pytest.raises(CorpusError, match=sentence):
-            import_generic(tmp_path / "mapping.yaml", tmp_path / "refused", window=0.02)
+            import_generic(table, tmp_path / "refused", window=0.02, common=keys)
 
 
 def test_an_import_warns_of_what_is_left_out_and_of_a_unit_that_is_read_as_another(tmp_path):
     (tmp_path / "a.csv").write_text(PLAIN.replace("[g]", "[counts]") + "end\n")
-    (tmp_path / "mapping.yaml").write_text(
-        "{bearing: '6205', shaft_rpm: 1500, fault: inner, specimen: A, unit: g, files: [{path: a.csv}]}"
-    )
-    done = import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus", window=0.02)
+    done = import_labelled(tmp_path, [{"path": "a.csv"}], window=0.02, **LABELS, unit="g")
     assert done.warnings == (
         "a.csv: text after the numbers is left out: 'end', lines: 1.",
         "a.csv: states 1 acc [counts] in its header; the given unit g is used.",
