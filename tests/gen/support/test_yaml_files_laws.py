@@ -72,7 +72,7 @@ REFUSED = {
     ),
     "merge_twice": (
         "a: &a {k: 1}\nb: {<<: *a, <<: *a}",
-        'line 2: is not valid YAML (while constructing a mapping found duplicate merge key "<<")',
+        "line 2: is not valid YAML (while constructing a mapping found duplicate",
     ),
     "merge_of_a_number": (
         "b: {<<: 1}",
