@@ -14,13 +14,11 @@ from gen.corpus import (
     facts_of_parts,
     finish_corpus,
     open_corpus,
-    open_part,
     part_name,
     read_manifest,
     validate_corpus,
     write_durably,
     write_manifest,
-    write_part,
 )
 from gen.support.errors import CorpusError
 from tests.corpora import SIZES, dataset, write_corpus, write_parts
@@ -342,13 +340,6 @@ def test_sizes_alone_do_not_see_what_hashes_see(copied, file):
             open_corpus(corpus, check="sha256")
 
 
-def test_a_full_disk_leaves_no_half_part(tmp_path):
-    large = dataset(0, 20, samples=5000)
-    with full_disk(), pytest.raises(CorpusError, match=r"part-00000\.nc: could not be written .* free some space"):
-        write_part(large, tmp_path / part_name(0), "none")
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.parametrize("form", FORMS)
 def test_a_full_disk_leaves_no_half_corpus(tmp_path, form):
     with (
@@ -389,13 +380,3 @@ def test_a_full_disk_leaves_the_last_manifest_and_index_as_they_were(copied):
             finish_corpus(copied, rows)
     assert {path: path.read_bytes() for path in copied.iterdir() if path.is_file()} == before
     assert validate_corpus(copied) == []
-
-
-def test_a_damaged_chunk_is_refused_when_it_is_read(copied):
-    """Damage with a right checksum; the other forms of damaged chunks are in ``test_strangers_laws``."""
-    with edited(part(copied, 0)) as found:
-        found[SIGNAL].id.write_direct_chunk((1, 0, 0), b"no zlib stream", 0)
-    with open_part(part(copied, 0)) as found:
-        found[SIGNAL][0].load()
-        with pytest.raises(CorpusError, match=r"part-00000\.nc: damaged \(.*\); generate or copy it again"):
-            found[SIGNAL][1].load()

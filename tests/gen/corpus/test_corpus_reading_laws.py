@@ -1,7 +1,6 @@
 """Laws of reading: the same records for any number of open files and any environment, in threads and in other processes."""
 
 import multiprocessing
-import pickle
 import resource
 import shutil
 import threading
@@ -144,15 +143,6 @@ def test_xarray_alone_decodes_a_part_to_the_same_bits(tmp_path, kind, codec):
         np.testing.assert_allclose(read_channel(RecordBlock(path, 1, 3), 1, ())[0], plain[SIGNAL][1:3, 1], rtol=2e-7)
 
 
-def test_a_pickled_corpus_reads_the_same(many):
-    folder, signal = many
-    with open_corpus(folder) as corpus:
-        corpus[SIGNAL][0].load()
-        again = pickle.loads(pickle.dumps(corpus))  # noqa: S301 - our own
-    np.testing.assert_allclose(again[SIGNAL][40:50], signal[40:50])
-    assert again["fault"].identical(corpus["fault"])
-
-
 def test_dask_reads_the_same_in_threads(many):
     folder, signal = many
     with open_corpus(folder) as corpus:
@@ -214,7 +204,7 @@ def test_the_same_parts_give_the_same_bytes(tmp_path):
     for place in ("one", "two"):
         write_corpus(tmp_path / place / "c")
         write_corpus(tmp_path / place / "c.nc")
-        time.sleep(1.1)  # HDF5 stores times in whole seconds
+        time.sleep(1.1 if place == "one" else 0)  # HDF5 stores times in whole seconds
     one, two = ({path.name: path.read_bytes() for path in (tmp_path / place).rglob("*.nc")} for place in ("one", "two"))
     assert one == two
 

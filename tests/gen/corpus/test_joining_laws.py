@@ -72,17 +72,6 @@ def test_choosing_and_joining_can_change_places(tones, tmp_path):
             np.testing.assert_array_equal(found, values)
 
 
-def test_choices_of_one_corpus_get_their_numbers_back(tones, tmp_path):
-    """In any order, and after a detour through a corpus in which they had others."""
-    copy(tones[0], tmp_path / "low", where="specimen < 2")
-    copy([tones[1], tones[0]], tmp_path / "both")
-    copy(tmp_path / "both", tmp_path / "high", where="specimen >= 6")
-    copy([tmp_path / "high", tmp_path / "low"], tmp_path / "again")
-    rig, specimen = columns(tmp_path / "again", "rig", "specimen")
-    assert set(rig) == {0}
-    assert specimen.tolist() == [*np.repeat([2, 3], 3), *np.repeat([0, 1], 3)]
-
-
 @given(
     st.lists(
         st.tuples(st.sampled_from(["a", "b/x", ""]), *[st.integers(-1, 2**31 - 1) | st.integers(0, 3)] * 4), min_size=1
