@@ -71,25 +71,33 @@ def process(record: KernelInput, first: int, terms: int, times: FloatArray) -> F
     return math.sqrt(2 / terms) * np.cos(turns).sum(axis=1)
 
 
-def slow_motion(record: KernelInput, knot: float, n_knots: int) -> Slow:
-    """Slow quantities at the knots, ``knot`` seconds apart; rates hold from one knot to the next, as they are halfway."""
+def straight(record: KernelInput, knot: float, first: int, terms: int, when: FloatArray) -> FloatArray:
+    """A process of unit rms along straight lines between its nodes, shape (time,)."""
+    nodes = STRIDE * knot * np.arange(int(when[-1] / knot) // STRIDE + 2)
+    return np.interp(when, nodes, process(record, first, terms, nodes))
+
+
+def turned(record: KernelInput, knot: float, n_knots: int) -> tuple[FloatArray, FloatArray]:
+    """Angles of shaft, cage and ball spin at the knots, and their rates up to the next knot, as they are halfway."""
     bearing, drawn = record.bearing, record.turning
     gamma, size = bearing.gamma, bearing.pitch_diameter / bearing.ball_diameter
-    nodes = STRIDE * knot * np.arange(n_knots // STRIDE + 2)
-    times = np.linspace(0, knot * n_knots, n_knots + 1)
-
-    def straight(first: int, terms: int, when: FloatArray) -> FloatArray:
-        return np.interp(when, nodes, process(record, first, terms, nodes))
-
-    halfway = times + knot / 2
-    shaft = 2 * np.pi * drawn.shaft_rate * (1 + drawn.speed_rms * straight(0, SPEED_TERMS, halfway))
+    halfway = knot * (np.arange(n_knots + 1) + 0.5)
+    shaft = 2 * np.pi * drawn.shaft_rate * (1 + drawn.speed_rms * straight(record, knot, 0, SPEED_TERMS, halfway))
     shaft = shaft * scheduled(record, n_knots + 1)[:, 0]
-    slip = drawn.mean_slip + drawn.slip_rms * straight(SLIP_FIRST, SLIP_TERMS, halfway)
+    slip = drawn.mean_slip + drawn.slip_rms * straight(record, knot, SLIP_FIRST, SLIP_TERMS, halfway)
     slip = slip + walk(record, knot, n_knots + 1)
-    wander = 1 + drawn.spin_rms * straight(SPIN_FIRST, SPIN_TERMS, halfway)
+    wander = 1 + drawn.spin_rms * straight(record, knot, SPIN_FIRST, SPIN_TERMS, halfway)
     rates = np.stack([shaft, shaft * (1 - gamma) / 2 * (1 - slip), shaft * size / 2 * (1 - gamma**2) * wander], axis=1)
     start = np.array([drawn.shaft_angle, drawn.cage_angle, drawn.spin_angle])
-    angles = start + np.concatenate([np.zeros((1, 3)), np.cumsum(knot * rates[:-1], axis=0)])
+    return start + np.concatenate([np.zeros((1, 3)), np.cumsum(knot * rates[:-1], axis=0)]), rates
+
+
+def slow_motion(record: KernelInput, knot: float, n_knots: int) -> Slow:
+    """Slow quantities at the knots, ``knot`` seconds apart."""
+    bearing, drawn = record.bearing, record.turning
+    nodes = STRIDE * knot * np.arange(n_knots // STRIDE + 2)
+    times = np.linspace(0, knot * n_knots, n_knots + 1)
+    angles, rates = turned(record, knot, n_knots)
     balls = np.arange(bearing.n_balls)
     at_nodes = np.stack(
         [
@@ -110,7 +118,7 @@ def slow_motion(record: KernelInput, knot: float, n_knots: int) -> Slow:
     jumped, shift = jumps(record, angles[:, 1])
     # the share holds up to the next knot: its tilt is that at the end, but a jump counts from the start
     jumped = np.concatenate([[0.0], jumped[:-1]])
-    tilt = drawn.axis_offset + drawn.axis_rms * straight(TILT_FIRST, TILT_TERMS, times) + jumped
+    tilt = drawn.axis_offset + drawn.axis_rms * straight(record, knot, TILT_FIRST, TILT_TERMS, times) + jumped
     share = np.maximum(0.0, 1 - (tilt / drawn.axis_limit) ** 2) if drawn.axis_limit > 0 else np.ones(n_knots + 1)
     return Slow(angles, gaps, jitter, directions, rates, outer_forces(record, knot, angles, rates), share, shift)
 

@@ -9,6 +9,11 @@ from gen.simulation.timeline import timeline
 from gen.simulation.truth import Truth, truth_of, with_loaded_hits
 
 
+def input_of(scenario):
+    """Kernel input of a scenario."""
+    return kernel_input(scenario, timeline(scenario.settings))
+
+
 def still(recipe, n_records):
     """Accelerations of bodies at rest, shape (record, channel, time) [m s-2]."""
     return np.zeros((n_records, len(recipe.recording.channels), timeline(settings_of(recipe)).returned), np.float32)
@@ -26,5 +31,5 @@ def response_of(scenarios, recipe, *, impossible=()):
 def truth(scenario, recipe) -> Truth:
     """Truth of a scenario."""
     axis = timeline(settings_of(recipe))
-    given = kernel_input(scenario, axis)
+    given = input_of(scenario)
     return with_loaded_hits([truth_of(scenario, axis, given)], [given], axis)[0]

@@ -15,9 +15,9 @@ from gen.physics.kernel.decimate import decimation
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.batches import group_of, integrate_batch
-from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
 from tests.lanes import march_lanes
+from tests.responses import input_of
 
 FS, SAMPLES, LANES = 100_000, 500, 8
 RECORDING = {"sample_rate_hz": FS, "oversampling": 1, "duration_s": 0.001, "settle_s": 0.05}
@@ -40,7 +40,7 @@ def case(request: pytest.FixtureRequest) -> Case:
     seed["recording"].update(RECORDING)
     seed["faults"] = [{"kind": "healthy"} if request.param == "healthy" else spall]
     recipe, profile = Recipe.model_validate(seed), PROFILES[request.param]
-    given = [kernel_input(scenario, timeline(settings_of(recipe))) for scenario in draw_scenarios(recipe, 0, LANES)]
+    given = [input_of(scenario) for scenario in draw_scenarios(recipe, 0, LANES)]
     made = np.stack([trip.accelerations for trip in march_lanes(given, SAMPLES, 1, 1 / FS)], axis=2)
     return Case(profile, seed_records(recipe, LANES)[profile], made[:, :4])
 

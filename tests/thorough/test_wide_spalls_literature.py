@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel.drop import GEOMETRIC, drop
 from gen.scenarios import draw_scenarios
 from gen.simulation.inputs import bare_inputs, only
 from tests.reference_machine import reference_recipe
@@ -57,14 +56,6 @@ def test_a_geometric_spall_is_entered_smoothly_and_the_formulas_of_the_literatur
     )
     assert smooth.entry_fast < 0.01
     assert all(found.entry_fast > 0.1 for found in sharp)
-
-
-def test_the_slope_of_a_geometric_drop_is_zero_at_the_edge():
-    bearing = CATALOGUE["6205"]
-    place = (0.0015 / bearing.outer_radius, bearing.outer_radius, bearing.ball_diameter / 2, -bearing.outer_radius, 1.0)
-    for inside in (1e-4, 1e-5, 1e-6):  # m
-        height = drop(GEOMETRIC, place[0] - inside / bearing.outer_radius, *place)
-        assert height == pytest.approx(inside**2 / 2 * (2 / bearing.ball_diameter - 1 / bearing.outer_radius), rel=0.01)
 
 
 def test_the_level_grows_steeply_until_a_spall_unloads_the_ball_and_little_after_that():

@@ -45,29 +45,6 @@ def test_the_lines_of_a_true_gear_are_at_multiples_of_its_teeth_and_nowhere_else
 
 
 @law
-@given(st.floats(0.05, 1), st.floats(0.05, 1), st.floats(0, 6))
-def test_amplitude_modulation_gives_equal_sidebands_of_half_its_depth(depth, of_mate, point):
-    found = mesh(gear_with(shaft_modulation=depth, mate_modulation=of_mate, high_point=point))
-    for multiple, level in ((1, 1.0), (2, 0.5), (3, 0.25)):
-        carrier = math.sqrt(2) * level
-        for side in (-1, 1):
-            assert amplitude(found, 20 * multiple + side) == pytest.approx(carrier * depth / 2)
-            assert amplitude(found, 20 * multiple + side * 0.5) == pytest.approx(carrier * of_mate / 2)
-
-
-@law
-@given(st.floats(0.1, 1), st.floats(0.05, 0.4), st.floats(0, 6), st.floats(0.3, 1.2))
-def test_phase_modulation_as_well_makes_the_sidebands_unequal(depth, phase, point, apart):
-    """To first order the sidebands of amplitude are +a/2, +a/2 and those of phase ip/2, ip/2, turned by the angles of both."""
-    given = gear_with(shaft_modulation=depth, phase_modulation=phase, high_point=point, lead_point=point + apart)
-    found = mesh(given)
-    lower, upper = (amplitude(found, 20 + side) for side in (-1, 1))
-    assert abs(upper - lower) > 0.05 * depth * phase * math.sin(apart)
-    alone = mesh(gear_with(phase_modulation=phase, lead_point=point))
-    assert amplitude(alone, 19) == pytest.approx(amplitude(alone, 21), rel=1e-6)
-
-
-@law
 @given(st.integers(0, 2**32 - 1))
 def test_the_mesh_is_a_function_of_the_true_angle_of_the_shaft(seed):
     """On a shaft of changing speed, compared with the equation in plain cosines."""

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.signal import fftconvolve
 
 from gen.measurement import judging
 from gen.measurement.judging import FALSE_ALARM, Parts, bands_of, judges_of
@@ -55,7 +56,7 @@ def with_impulses(signal):
     rng = np.random.default_rng(abs(int(1e6 * signal[0, 0])))
     hits = np.zeros(N)
     np.add.at(hits, rng.integers(0, N, rng.poisson(2)), 10 * rng.standard_normal())
-    return signal + np.convolve(hits, IMPULSE)[:N].astype(np.float32)
+    return signal + fftconvolve(hits, IMPULSE)[:N].astype(np.float32)
 
 
 @pytest.mark.parametrize(

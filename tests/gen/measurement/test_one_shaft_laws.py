@@ -116,19 +116,6 @@ def test_knocks_and_the_modulation_of_the_noise_stand_at_their_orders(recipe_wit
         assert nearest_line(spectrum, orders, order) == pytest.approx(order, abs=0.5 / turns)
 
 
-@courses
-def test_the_path_is_modulated_at_the_order_of_the_shaft(recipe_with, changes):
-    recipe = recipe_with(FLOAT | changes)
-    scenarios = draw_scenarios(recipe, 0, 1)
-    rig = {"path": Path(1.0, (), ShaftModulation(0.5, 0.0)), "background": QUIET, "background_rms": 0.0, "gain": 1.0}
-    scenarios = [replace(scenarios[0], rig=replace(scenarios[0].rig, **rig))]
-    steady = np.ones((1, 1, timeline(settings_of(recipe)).returned), np.float32)
-    signal = measure(steady, scenarios).signal[0, 0].astype(float)
-    spectrum, orders = by_order(signal - signal.mean(), scenarios[0], recipe)
-    turns = turns_of(scenarios[0], recipe)
-    assert nearest_line(spectrum, orders, 1) == pytest.approx(1, abs=0.5 / turns)
-
-
 def test_harmonics_have_the_same_phase_to_the_shaft_in_every_record_of_a_rig(recipe_with):
     recipe = recipe_with(FLOAT)
     signals, scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(1, 1.0), Tone(3, 1.0))))

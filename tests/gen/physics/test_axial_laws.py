@@ -8,15 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import root
 
-from gen.corpus import open_corpus
-from gen.generation.corpus import generate
-from gen.generation.plan import plan
 from gen.physics.axial import HALF_LOADED, axial_approach, check_axial_load
 from gen.physics.hertz import LINE_EXPONENT
 from gen.physics.rotor import as_columns, ball_angles
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
-from gen.support.errors import RecipeError
 from tests.strategies import RIG
 
 law = settings(deadline=None, max_examples=40)
@@ -78,14 +74,6 @@ def test_without_a_radial_load_all_balls_share_the_axial_one(angle, clearance, r
 
 
 @law
-@given(slants, clearances, rolling, places, st.floats(10, 1000), st.floats(1.05, 10), st.floats(1.01, 5))
-def test_more_axial_load_squeezes_more(angle, clearance, rolling, places, load, times, more):
-    machine = slanted(angle, clearance, rolling, load)
-    axial = times * HALF_LOADED * load * math.tan(angle)
-    assert approach_of(machine, more * axial, places) > approach_of(machine, axial, places)
-
-
-@law
 @given(
     st.lists(
         st.tuples(slants, clearances, st.integers(5, 20), st.floats(10, 3000), st.floats(1.05, 20)),
@@ -118,30 +106,6 @@ def test_an_axial_load_needs_a_slanted_contact():
     machine = slanted(0.0, 5e-6, (9.26e9, 1.5), 300.0)
     with pytest.raises(ValueError, match=r"an axial load of 500 N needs a contact angle above 0\."):
         approach_of(machine, 500.0, np.zeros(1))
-
-
-def test_a_record_whose_axial_load_cannot_be_carried_is_named_and_left_out(write_recipe, tmp_path):
-    """Every second record has it; 300 N times 1.25 tan 15 degrees are 100.5 N."""
-    changes = {
-        "specimen.contact_angle_deg": 15,
-        "operation.load_n": 300,
-        "operation.axial_load_n": "grid(200, 50)",
-    }
-    recipe = write_recipe(tmp_path / "r.yaml", changes)
-    reason = "an axial load of 50 N is too small to hold its rings together; give at least 100.5 N."
-    planned = plan(recipe)
-    assert (planned.left_out, planned.first_left_out) == (12, f"record 1: {reason}")
-    assert sum(planned.steps_per_sample.values()) == 12
-    made = generate(recipe, tmp_path / "c")
-    assert made.failures == tuple(f"record {number}: {reason}" for number in range(1, 24, 2))
-    with open_corpus(made.path) as corpus:
-        assert corpus["recording"].values.tolist() == list(range(0, 24, 2))
-        assert (corpus["operating_clearance"] < corpus["diametral_clearance"]).all()
-
-
-def test_an_axial_load_needs_a_bearing_with_a_contact_angle(recipe_with):
-    with pytest.raises(RecipeError, match=r"operation\.axial_load_n: needs a contact angle"):
-        recipe_with({"operation.axial_load_n": 50})
 
 
 def test_the_axial_load_holds_against_the_heaviest_radial_load_of_a_profile(recipe_with):

@@ -16,13 +16,6 @@ slips = st.floats(-0.1, 0.2)
 
 
 @law
-@given(bearings())
-def test_the_passages_over_both_races_add_up_to_the_number_of_balls(bearing):
-    found = orders(bearing)
-    assert found.bpfo + found.bpfi == pytest.approx(bearing.n_balls, rel=1e-12)
-
-
-@law
 @given(bearings(), slips)
 def test_slip_takes_from_the_outer_race_what_it_gives_to_the_inner_one(bearing, slip):
     rolling, slipping = orders(bearing), slipping_orders(bearing, slip)

@@ -14,12 +14,6 @@ FOR_THE_CAGE = 0.5e-3  # [m], smallest width of a cage bar
 NOT_IN_THE_MIDDLE = 0.06  # the pitch circle of a real bearing lies this close to the middle of its section
 
 
-def test_the_catalogue_is_worth_the_name():
-    assert len(CATALOGUE) >= 40
-    for series, at_least in (("62", 6), ("63", 6), ("ER-", 3), ("NU", 3)):
-        assert sum(designation.startswith(series) for designation in CATALOGUE) >= at_least, series
-
-
 @every_bearing
 def test_a_bearing_stands_under_its_own_name_with_its_source(bearing):
     assert CATALOGUE[bearing.designation] is bearing

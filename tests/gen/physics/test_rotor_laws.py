@@ -9,9 +9,7 @@ from hypothesis import strategies as st
 
 from gen.physics import rotor
 from gen.physics.hertz import LINE_EXPONENT, line_contact_factor, series_factor
-from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import (
-    Machine,
     as_columns,
     ball_forces,
     highest_angular_frequency,
@@ -61,15 +59,6 @@ def test_at_rest_every_force_has_its_counterforce(some, cage):
     on_shaft = load - pushed - np.asarray(machine.shaft_stiffness)[:, None] * q[:, :2]
     np.testing.assert_allclose(on_shaft / weight, 0, atol=1e-8)
     np.testing.assert_allclose((pushed - support * q[:, 2:]) / weight, 0, atol=1e-8)
-
-
-@law
-@given(st.lists(machines(), min_size=2, max_size=6), angles)
-def test_where_a_machine_rests_does_not_depend_on_the_others_in_its_batch(some, cage):
-    places = ball_angles(cage, LANES)
-    mixed = rest(as_columns([some[lane % len(some)] for lane in range(LANES)]), places)
-    alike = rest(as_columns([some[0]] * LANES), places)
-    np.testing.assert_array_equal(mixed[:: len(some)], alike[:: len(some)])
 
 
 @law
@@ -162,10 +151,3 @@ def test_a_ball_force_is_the_slope_of_its_energy_and_its_stiffness_the_slope_of_
     before, slope = ball_forces(columns, (deep - step * along)[None], places)
     after, _ = ball_forces(columns, (deep + step * along)[None], places)
     assert (after - before)[0, 0] / (2 * step) == pytest.approx(slope[0, 0], rel=1e-4)
-
-
-def test_columns_hold_every_field_of_every_machine():
-    fields = {name: float(place) for place, name in enumerate(Machine._fields)}
-    columns = as_columns([Machine(**fields), Machine(**{name: value + 100 for name, value in fields.items()})])
-    for name, value in fields.items():
-        np.testing.assert_array_equal(getattr(columns, name), [value, value + 100])

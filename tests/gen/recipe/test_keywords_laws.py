@@ -59,26 +59,18 @@ def test_every_name_has_a_section_unless_several_share_it():
     ("keys", "sentence"),
     [
         ({"shaft_rmp": 1480}, "shaft_rmp: no such key; did you mean shaft_rpm?"),
-        ({"rpm": 1480}, "rpm: no such key; did you mean shaft_rpm?"),
-        ({"operation": {"shaft_rmp": 1}}, "operation.shaft_rmp: no such key; did you mean shaft_rpm?"),
         (
             {"width_mm": 1},
             "width_mm: no such key; it is a key of faults; give it there, as in fault=gen.outer(width_mm=...).",
         ),
         ({"knock_nn": 1}, "knock_nn: no such key; did you mean knock_n, a key of faults?"),
         ({"shaft_rpm": -1}, "operation.shaft_rpm: -1 is not in [1, 100000]."),
-        ({"bearing": "620"}, "did you mean 6210 or 6209 or 6208?"),
         (
             {"operation": {"shaft_rpm": 1}, "shaft_rpm": 1},
             "shaft_rpm: is given twice, also in operation; give it once.",
         ),
         ({"operation": 3}, "operation: 3 is not allowed here; it must be a section with keys of its own."),
         ({"operation": 3, "load_n": 3}, "load_n: operation is given and is no section; give one of the two."),
-        ({"faulty_db": 3}, "level.healthy_db: is missing; give it."),
-        (
-            {"specimens_per_rig": 0},
-            "corpus.specimens_per_rig: 0 is not allowed here; it must be greater than or equal to 1.",
-        ),
         ({"faults": []}, "faults: is given twice, also as fault; give it once."),
         ({"n": 0}, "n: 0 is not allowed; it must be a whole number of records, 1 or more."),
         (
@@ -143,12 +135,10 @@ def test_numbers_and_arrays_of_numpy_are_taken_as_numbers():
             lambda: gen.ball(width_mm=0),
             "ball fault: width_mm: 0 is not in (0, 60]; for a bearing without a fault use kind: healthy.",
         ),
-        (lambda: gen.compound(gen.cage()), "compound fault: parts: 1 is too few; give at least 2."),
         (
             lambda: gen.compound(gen.cage(), {"kind": "inner", "width_mm": 1, "depth": 1}),
             "compound fault: parts[1].depth: no such key; did you mean depth_um?",
         ),
-        (lambda: gen.distributed(site="ball"), "distributed fault: site: "),
         (
             lambda: gen.cage(knock_n="unifrm(1, 2)"),
             "cage fault: knock_n: 'unifrm' is no distribution; did you mean uniform?",

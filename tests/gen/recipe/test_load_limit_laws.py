@@ -7,10 +7,9 @@ from gen.generation.plan import plan
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import LEAST_SAFETY, computed_rating, static_rating
 from gen.recipe import read_recipe, shipped_recipes
-from gen.scenarios import draw_scenarios, settings_of
-from gen.simulation.inputs import kernel_input
-from gen.simulation.timeline import timeline
+from gen.scenarios import draw_scenarios
 from gen.support.errors import RecipeError, SimulationError
+from tests.responses import input_of
 
 LIMIT = CATALOGUE["6205"].static_rating / LEAST_SAFETY
 OWN = {"n_balls": 9, "pitch_diameter_mm": 39.04, "ball_diameter_mm": 7.94}
@@ -65,10 +64,10 @@ def test_a_record_is_borne_up_to_twice_the_static_rating(recipe_with, load, born
     recipe = recipe_with({"operation.load_n": f"choice({load}, 100, weights=(1, 0))"})
     scenario = draw_scenarios(recipe, 0, 1)[0]
     if borne:
-        assert kernel_input(scenario, timeline(settings_of(recipe))).machine.load_y == pytest.approx(-load)
+        assert input_of(scenario).machine.load_y == pytest.approx(-load)
         return
     with pytest.raises(SimulationError, match="is more than 2 times the static rating"):
-        kernel_input(scenario, timeline(settings_of(recipe)))
+        input_of(scenario)
 
 
 def test_a_single_record_beyond_the_limit_is_left_out_and_named(write_recipe, tmp_path):
@@ -98,9 +97,9 @@ def test_the_heaviest_moment_of_a_load_profile_counts(recipe_with):
     profile = {"kind": "ramp", "from_percent": 100, "to_percent": "grid(100, 250)"}
     recipe = recipe_with({"operation.load_n": 7000, "operation.load_profile": profile})
     first, second = draw_scenarios(recipe, 0, 2)
-    kernel_input(first, timeline(settings_of(recipe)))
+    input_of(first)
     with pytest.raises(SimulationError, match=r"record 1: .* 1.75e\+04 N"):
-        kernel_input(second, timeline(settings_of(recipe)))
+        input_of(second)
 
 
 def test_a_bearing_of_ones_own_is_rated_by_its_geometry(recipe_with):

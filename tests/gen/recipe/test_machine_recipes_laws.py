@@ -7,8 +7,6 @@ from gen.measurement.measure import measure
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
-from tests.recipes import EVERYTHING
-from tests.responses import truth
 
 FS = 12_000.0
 RATE, MASS = 30.0, 10.0  # of the shaft [Hz], of shaft and housing [kg]
@@ -112,15 +110,3 @@ def test_a_channel_with_a_path_of_its_own_hears_by_that_path(recipe_with):
     np.testing.assert_allclose(measured[:, 1], 0.5 * measured[:, 0], atol=1e-5)
     np.testing.assert_allclose(measured[:, 3], 4 * measured[:, 0], atol=1e-5)
     assert measured[:, 2].std() > 1.2 * measured[:, 1].std()
-
-
-def test_everything_at_once_moves_and_stays_within_its_step(recipe_with):
-    recipe = recipe_with(EVERYTHING)
-    scenarios = draw_scenarios(recipe)
-    response = simulate(scenarios)
-    assert response.failures == {}
-    assert np.isfinite(response.acceleration).all()
-    assert (response.acceleration.std(axis=2) > 1e-3).all()
-    assert (response.step_phase < 0.5).all()
-    rates = [truth(scenario, recipe).true_shaft_rate / scenario.record.conditions.shaft_rate for scenario in scenarios]
-    assert rates == pytest.approx([0.85] * len(rates), rel=0.01)

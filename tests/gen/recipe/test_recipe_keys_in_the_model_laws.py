@@ -2,14 +2,13 @@
 
 import pytest
 
-from gen.scenarios import draw_scenarios, settings_of
-from gen.simulation.inputs import kernel_input
-from gen.simulation.timeline import timeline
+from gen.scenarios import draw_scenarios
+from tests.responses import input_of
 
 
 def machine_with(recipe_with, changes):
     recipe = recipe_with(changes)
-    return kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(settings_of(recipe))).machine
+    return input_of(draw_scenarios(recipe, 0, 1)[0]).machine
 
 
 @pytest.mark.parametrize(

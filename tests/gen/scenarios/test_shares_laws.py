@@ -13,9 +13,6 @@ from gen.drawing.distributions import DISTRIBUTIONS
 from gen.physics.bearing import ball_spacing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import static_rating
-from gen.recipe.machine import MachineSection
-from gen.recipe.operation import OperationSection
-from gen.recipe.shares import quantities
 from gen.scenarios import draw_scenarios
 from gen.simulation.machine import machine_of
 from gen.support.errors import RecipeError
@@ -247,15 +244,6 @@ def test_every_distribution_can_be_a_share():
         assert found.own_support() == found.support()
         found.set_product((3.0, 4.0), (0.0, 9.0))
         assert found.support() == found.known_support() == (3.0, 4.0)
-
-
-def test_a_section_has_the_quantities_that_can_be_drawn():
-    assert set(quantities(OperationSection(shaft_rpm=1))) == set(OperationSection.model_fields) - {
-        "speed_profile",
-        "load_profile",
-        "slip_walk",
-    }
-    assert set(quantities(MachineSection())) == set(MachineSection.model_fields) - {"resonator"}
 
 
 def test_quantiles_of_a_share_are_as_even_as_those_of_any_quantity(recipe_with):

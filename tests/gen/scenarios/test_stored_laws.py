@@ -2,12 +2,10 @@
 
 import json
 
-import numpy as np
 import pytest
 
 from gen.recipe import Recipe, read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios, read_scenario, scenario_texts
-from gen.simulation.simulate import simulate
 from gen.support.errors import CorpusError
 from tests.gen.conftest import small_with
 from tests.paths import ROOT
@@ -160,14 +158,3 @@ def assert_refused(text):
     assert sentence.isprintable()
     assert len(sentence) < 300
     return sentence
-
-
-def test_a_scenario_read_back_simulates_to_the_same_bits():
-    recipe = read_recipe(ROOT / "recipes" / "quickstart.yaml")
-    drawn = draw_scenarios(recipe, 0, RECORDS)
-    scenario = next(one for one in drawn if one.specimen.spalls)
-    read = read_scenario(scenario_texts([scenario])[0])
-    one, other = simulate([scenario]), simulate([read])
-    assert not one.failures
-    np.testing.assert_array_equal(one.acceleration, other.acceleration)
-    assert one.truth == other.truth

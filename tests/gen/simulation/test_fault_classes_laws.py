@@ -1,25 +1,23 @@
 """Laws of the fault classes: their labels, their healthy twins and their shares; and of a corpus with every mechanism."""
 
-import json
 import math
 from collections import Counter
 
 import numpy as np
 import pytest
 
-from gen.corpus import FAULTS, SIGNAL, open_corpus, read_manifest, validate_corpus
+from gen.corpus import FAULTS, open_corpus
 from gen.generation.corpus import generate
 from gen.generation.replaying import replay
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.layout import make_shape
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios, fault_of_each_specimen, read_scenario, settings_of
+from gen.scenarios import draw_scenarios, fault_of_each_specimen
 from gen.simulation.damage import largest_drop_over
-from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
-from gen.simulation.timeline import timeline
 from tests.recipes import EVERYTHING
+from tests.responses import input_of
 
 BEARING = CATALOGUE["6205"]
 KNOWN = ("fault", "parts", "n_spalls", "wear", "pitch_error", "knock", "width_share")
@@ -38,8 +36,7 @@ def whole(recipe_file, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def drawn(recipe_file):
-    recipe = read_recipe(recipe_file)
-    return recipe, draw_scenarios(recipe)
+    return draw_scenarios(read_recipe(recipe_file))
 
 
 def kind_of(specimen):
@@ -61,12 +58,11 @@ LABELS = {
 
 
 def test_every_class_is_labelled_by_what_is_damaged_and_how_much(whole, drawn):
-    _, scenarios = drawn
     assert whole.failures == ()
-    assert {kind_of(scenario.specimen) for scenario in scenarios} == set(LABELS)
+    assert {kind_of(scenario.specimen) for scenario in drawn} == set(LABELS)
     with open_corpus(whole.path) as corpus:
         found = {name: corpus[name].values for name in (*KNOWN, "width", "largest_drop", "angle")}
-    for place, scenario in enumerate(scenarios):
+    for place, scenario in enumerate(drawn):
         kind = kind_of(scenario.specimen)
         parts, n_spalls, wear, pitch_error, knock, width, passed = LABELS[kind]
         label = {name: values[place] for name, values in found.items()}
@@ -80,10 +76,9 @@ def test_every_class_is_labelled_by_what_is_damaged_and_how_much(whole, drawn):
 
 def test_the_largest_drop_is_that_over_the_widest_spall(whole, drawn):
     """A traced one 0.8 mm wide: the ball bridges its deepest points; a half sine is as deep as it says."""
-    _, scenarios = drawn
     with open_corpus(whole.path) as corpus:
         found = corpus["largest_drop"].values
-    for place, scenario in enumerate(scenarios):
+    for place, scenario in enumerate(drawn):
         if scenario.specimen.fault == "compound":
             assert found[place] == largest_drop_over(scenario, 1) < 12e-6
         elif kind_of(scenario.specimen) == "outer":
@@ -97,11 +92,10 @@ def assert_same_waviness(one, other):
 
 def test_a_twin_without_the_fault_is_what_healthy_bearings_alone_would_be(write_recipe, drawn, tmp_path):
     """Machine, motion, waves and all, bit for bit."""
-    recipe, scenarios = drawn
     healthy = read_recipe(write_recipe(tmp_path / "h.yaml", EVERYTHING | {"faults": [{"kind": "healthy"}]}))
-    for scenario, sound in zip(scenarios, draw_scenarios(healthy), strict=True):
-        twin = kernel_input(scenario.without_fault(), timeline(settings_of(recipe)))
-        expected = kernel_input(sound, timeline(settings_of(healthy)))
+    for scenario, sound in zip(drawn, draw_scenarios(healthy), strict=True):
+        twin = input_of(scenario.without_fault())
+        expected = input_of(sound)
         assert twin.machine == expected.machine
         assert twin.turning == expected.turning
         assert twin.spalls == ()
@@ -111,16 +105,14 @@ def test_a_twin_without_the_fault_is_what_healthy_bearings_alone_would_be(write_
 
 
 def test_the_fault_alone_tells_a_record_from_its_twin(drawn):
-    _, scenarios = drawn
-    some = list({kind_of(scenario.specimen): scenario for scenario in scenarios}.values())
+    some = list({kind_of(scenario.specimen): scenario for scenario in drawn}.values())
     damaged, sound = (simulate(batch).acceleration for batch in (some, [scenario.without_fault() for scenario in some]))
     for scenario, one, other in zip(some, damaged, sound, strict=True):
         assert np.array_equal(one, other) == (scenario.specimen.fault == "healthy")
 
 
 def test_everything_at_once_needs_one_kernel_for_healthy_and_damaged(drawn):
-    recipe, scenarios = drawn
-    shapes = {input_shape(kernel_input(scenario, timeline(settings_of(recipe)))) for scenario in scenarios}
+    shapes = {input_shape(input_of(scenario)) for scenario in drawn}
     every = make_shape(
         9, 1, resonator=True, damped=True, wavy=True, spalled=True, jittered=True, forced=True, loose=True
     )
@@ -128,11 +120,8 @@ def test_everything_at_once_needs_one_kernel_for_healthy_and_damaged(drawn):
 
 
 def test_a_broken_cage_displaces_one_ball_and_knocks_and_wear_is_on_its_race_alone(drawn):
-    recipe, scenarios = drawn
-    for scenario in scenarios:
-        damaged, twin = (
-            kernel_input(one, timeline(settings_of(recipe))) for one in (scenario, scenario.without_fault())
-        )
+    for scenario in drawn:
+        damaged, twin = (input_of(one) for one in (scenario, scenario.without_fault()))
         if scenario.specimen.cage:
             assert damaged.turning.late_by == pytest.approx(math.radians(3))
             assert damaged.turning.late_ball == 0
@@ -163,26 +152,7 @@ def test_classes_come_by_weight_and_wear_counts_as_its_site(recipe_with):
     assert len(worn) / len(inner) == pytest.approx(3 / 4, abs=0.08)  # 3 sigma of 320 coins
 
 
-def test_the_draws_of_every_class_are_stored_whole(whole, drawn):
-    with open_corpus(whole.path) as corpus:
-        for text, scenario in zip(corpus["draws"].values, drawn[1], strict=True):
-            assert read_scenario(str(text)) == scenario
-            stored = json.loads(str(text))
-            assert stored["specimen"]["cage"] == scenario.specimen.cage
-            assert stored["record"]["speed_profile"] == {"times": [0, 0.1], "shares": [0.5, 1.2], "smooth": True}
-
-
 def test_records_of_every_class_replay_bit_for_bit(whole, drawn):
-    numbers = {kind_of(scenario.specimen): scenario.record.number for scenario in drawn[1]}
+    numbers = {kind_of(scenario.specimen): scenario.record.number for scenario in drawn}
     for number in numbers.values():
         assert replay(whole.path, number).identical
-
-
-def test_two_workers_make_the_same_corpus_of_everything(recipe_file, whole, tmp_path):
-    generate(recipe_file, tmp_path / "two", workers=2)
-    assert validate_corpus(tmp_path / "two") == []
-    one, two = (read_manifest(folder).parts for folder in (whole.path, tmp_path / "two"))
-    assert [row.sha256 for row in one] == [row.sha256 for row in two]
-    with open_corpus(whole.path) as corpus, open_corpus(tmp_path / "two") as other:
-        np.testing.assert_array_equal(corpus[SIGNAL].values, other[SIGNAL].values)
-        np.testing.assert_array_equal(corpus["step_error"].values, other["step_error"].values)

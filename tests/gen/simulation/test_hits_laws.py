@@ -7,10 +7,10 @@ import pytest
 
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.hits import felt_places, load_zone, loaded_hits
-from gen.simulation.inputs import kernel_input, kernel_inputs, without_fault
+from gen.simulation.inputs import kernel_inputs, without_fault
 from gen.simulation.timeline import timeline
 from tests.recipes import EVERYTHING
-from tests.responses import truth
+from tests.responses import input_of, truth
 
 LOADED = {"machine.load_angle_deg": -90, "operation.load_n": 300, "operation.mean_slip_percent": 0}
 
@@ -18,7 +18,7 @@ LOADED = {"machine.load_angle_deg": -90, "operation.load_n": 300, "operation.mea
 def first_of(recipe_with, fault, **changes):
     recipe = recipe_with(LOADED | {"faults": [fault], "corpus.specimens_per_rig": 1} | changes)
     scenario = draw_scenarios(recipe, 0, 1)[0]
-    return recipe, scenario, kernel_input(scenario, timeline(settings_of(recipe)))
+    return recipe, scenario, input_of(scenario)
 
 
 @pytest.mark.parametrize(("clearance", "half"), [(-8, math.pi), (0, math.pi / 2)])
@@ -89,17 +89,13 @@ def test_the_input_of_a_record_does_not_depend_on_the_others(recipe_with):
     recipe = recipe_with(EVERYTHING)
     scenarios = draw_scenarios(recipe)
     for scenario, together in zip(scenarios, kernel_inputs(scenarios, timeline(settings_of(recipe)))[0], strict=True):
-        for field, other in zip(kernel_input(scenario, timeline(settings_of(recipe))), together, strict=True):
+        for field, other in zip(input_of(scenario), together, strict=True):
             np.testing.assert_equal(field, other)
 
 
 def test_a_record_without_its_fault_has_the_input_of_a_sound_record(recipe_with):
     recipe = recipe_with(EVERYTHING)
     for scenario in draw_scenarios(recipe):
-        found = without_fault(
-            kernel_input(scenario, timeline(settings_of(recipe))), scenario, timeline(settings_of(recipe))
-        )
-        for field, other in zip(
-            found, kernel_input(scenario.without_fault(), timeline(settings_of(recipe))), strict=True
-        ):
+        found = without_fault(input_of(scenario), scenario, timeline(settings_of(recipe)))
+        for field, other in zip(found, input_of(scenario.without_fault()), strict=True):
             np.testing.assert_equal(field, other)

@@ -13,7 +13,7 @@ from scipy.stats import kstest
 
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.inputs import SpallInput, Turning
+from gen.physics.inputs import Turning
 from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
 from gen.physics.rotor import as_columns, rest
 from tests.lanes import march_lanes
@@ -54,34 +54,6 @@ def test_a_support_without_play_is_a_tight_one(cage, shaft_rate):
     assert np.array_equal(march_lanes([loose, none], 240, 8, KNOT)[1].states, tight.states)
 
 
-def swings(motions, turns=4):
-    """Amplitudes of the shaft's motion at once and twice the shaft rate, shape (motion, line, axis) [m]."""
-    stiff = TIGHT._replace(half_clearance=-12e-6, load_x=0.0, load_y=-10.0)
-    found = []
-    for motion in motions:
-        settle, n_knots = 2400, round(turns / motion.shaft_rate / KNOT)
-        trip = march_lanes([scheduled(stiff, motion)], settle + n_knots, 8, KNOT)[0]
-        lines = np.fft.rfft(trip.states[settle:-1, :2], axis=0)[[turns, 2 * turns]]
-        found.append(2 / n_knots * np.abs(lines))
-    return np.array(found)
-
-
-def test_a_bow_pulls_alike_at_any_speed_and_an_unbalance_with_its_square():
-    """Far below the first resonance, some 400 Hz; the rest is its share of the rotor, (20 / 400)^2."""
-    bow_10, bow_20, unbalance_10, unbalance_20 = swings(
-        [Turning(10.0, bow=50.0), Turning(20.0, bow=50.0), Turning(10.0, unbalance=1e-2), Turning(20.0, unbalance=1e-2)]
-    )[:, 0]
-    np.testing.assert_allclose(bow_20 / bow_10, 1, rtol=5e-3)
-    np.testing.assert_allclose(unbalance_20 / unbalance_10, 4, rtol=5e-3)
-    np.testing.assert_allclose(unbalance_10 / bow_10, 1e-2 * (2 * np.pi * 10) ** 2 / 50, rtol=1e-3)
-
-
-def test_misalignment_shakes_the_shaft_along_its_direction_at_twice_the_shaft_rate():
-    along_x, along_y, straight = swings([Turning(20.0, twice_x=50.0), Turning(20.0, twice_y=50.0), Turning(20.0)])
-    assert along_x[1, 0] > 100 * max(along_x[0, 0], along_x[1, 1], straight[1, 0])
-    assert along_y[1, 1] > 100 * max(along_y[0, 1], along_y[1, 0], straight[1, 1])
-
-
 @law
 @given(st.floats(1000, 50_000), st.floats(1, 100), angles, st.floats(0.3, 3.0))
 def test_a_cage_knocks_once_a_turn_with_the_momentum_of_a_half_sine(knots_per_second, strength, place, ahead):
@@ -110,31 +82,6 @@ def test_a_cage_knocks_once_a_turn_with_the_momentum_of_a_half_sine(knots_per_se
     assert after.any()
 
 
-@law
-@given(loads, loads, st.floats(0.2, 3.0))
-def test_a_load_that_changes_ends_where_the_static_balance_of_its_end_says(load_x, load_y, end):
-    machine = TIGHT._replace(load_x=load_x, load_y=load_y)
-    schedule = np.stack([np.ones(601), np.linspace(1, end, 601)], axis=1)  # 50 ms
-    trip = march_lanes([scheduled(machine, STANDING, schedule)], 6000, 8, KNOT)[0]
-    there = rest(as_columns([machine._replace(load_x=end * load_x, load_y=end * load_y)]), PLACES)[0]
-    np.testing.assert_allclose(trip.states[-1, :4], there, rtol=0, atol=1e-11)
-
-
-@law
-@given(st.floats(0, 2), st.floats(0, 2), st.floats(10, 60))
-def test_a_run_up_turns_the_shaft_by_the_integral_of_its_rate(begin, end, shaft_rate):
-    """Linear from one share of the rate to another, then constant; the cage knocks, even at a standstill."""
-    n_knots, half = 400, 200
-    shares = begin + (end - begin) * (np.arange(half) + 0.5) / half
-    schedule = np.stack([np.append(shares, end), np.ones(half + 1)], axis=1)
-    motion = Turning(shaft_rate, knock=10.0)
-    trip = march_lanes([scheduled(TIGHT, motion, schedule)], n_knots, 8, KNOT)[0]
-    turns = shaft_rate * half * KNOT * ((begin + end) / 2 + end)
-    expected = 2 * np.pi * turns * np.array([1, orders(CATALOGUE["6205"]).ftf])
-    np.testing.assert_allclose(trip.angles[-1, :2], expected, rtol=1e-12, atol=1e-12)
-    assert np.isfinite(trip.states).all()
-
-
 def test_a_schedule_that_is_over_holds_whatever_its_neighbours_do():
     motion, short = Turning(30.0), np.linspace([1.0, 1.0], [1.5, 2.0], 50)
     long = scheduled(TIGHT, motion, np.linspace([1.0, 1.0], [0.5, 3.0], 500))
@@ -150,17 +97,3 @@ def test_knocks_scatter_log_normally_and_differ_from_cage_to_cage():
     assert abs(np.corrcoef(logs)[0, 1]) < 0.1
     spectrum = np.abs(np.fft.rfft(logs[0])) ** 2
     assert spectrum[1:].max() < 15 * spectrum[1:].mean()  # no tone
-
-
-@pytest.mark.parametrize("late_by", [0.0, 0.1, 0.3, 0.6])
-def test_a_ball_meets_a_spall_wherever_it_is_in_its_pocket(late_by):
-    """One ball far out of its place, at standstill, lies in the spall at that place.
-
-    Jitter and damping close to zero, and a spall of depth zero, let both records share a kernel that other tests use too.
-    """
-    motion = Turning(1e-6, jitter_rms=1e-12, late_ball=0, late_by=late_by)
-    across = {"load_x": 300 * math.cos(late_by), "load_y": 300 * math.sin(late_by)}
-    machine = RIG._replace(half_clearance=0.0, contact_damping=1e-3, **across)
-    records = [record(machine, motion, [SpallInput("outer", 0.5e-3, depth, late_by)]) for depth in (0.0, 1e-3)]
-    sound, spalled = (trip.states[-1] for trip in march_lanes(records, 600, 8, KNOT))
-    assert (spalled - sound)[:2] @ [math.cos(late_by), math.sin(late_by)] > 1e-6

@@ -9,8 +9,7 @@ from gen.simulation.inputs import kernel_input
 from gen.simulation.shaft import scenario_angles
 from gen.simulation.timeline import timeline
 from gen.support.errors import CorpusError
-from tests.reference import slow_motion
-from tests.responses import truth
+from tests.reference import turned
 
 COURSES = {
     "constant": {"operation.speed_wander_percent": 0},
@@ -32,20 +31,10 @@ def test_the_angle_is_that_by_which_the_kernel_turns_the_bearing(recipe_with, ch
     recipe = recipe_with({"recording.settle_s": 0.2} | changes)
     axis = timeline(settings_of(recipe))
     for scenario in draw_scenarios(recipe, 0, 4):
-        in_kernel = slow_motion(kernel_input(scenario, axis), 1 / axis.fs, axis.knots).angles[:, 0]
+        in_kernel = turned(kernel_input(scenario, axis), 1 / axis.fs, axis.knots)[0][:, 0]
         in_kernel = in_kernel[axis.dropped : axis.dropped + axis.returned]
         # the kernel takes the wander as linear between every eighth knot
         np.testing.assert_allclose(scenario_angles(scenario, axis), in_kernel, rtol=0, atol=2e-5)
-
-
-@courses
-def test_the_turns_of_a_record_are_its_labelled_mean_rate_times_its_duration(recipe_with, changes):
-    recipe = recipe_with({"recording.settle_s": 0.2} | changes)
-    axis = timeline(settings_of(recipe))
-    for scenario in draw_scenarios(recipe, 0, 4):
-        angles = scenario_angles(scenario, axis)[axis.kept]
-        turns = (angles[-1] - angles[0]) / (2 * np.pi) * len(angles) / (len(angles) - 1)
-        assert turns == pytest.approx(truth(scenario, recipe).true_shaft_rate * axis.duration, rel=2e-3)
 
 
 def test_records_of_a_corpus_have_the_angle_of_their_scenarios_and_imported_ones_that_of_their_label(tiny_corpus):

@@ -12,13 +12,13 @@ from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import highest_angular_frequency
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens, settings_of
 from gen.simulation.batches import integrate_all
-from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import open_integrations, simulate
 from gen.simulation.steps import COARSEST_STEP, FINE_STEP
 from gen.simulation.timeline import timeline
 from gen.support.errors import RecipeError, SimulationError
 from tests.lanes import march_lanes
 from tests.reference import contact_stiffness, contacts, slow_motion
+from tests.responses import input_of
 
 FS = 12_000.0
 # the races of the second rig are so rough that ball forces far exceed the load from which the step is chosen
@@ -174,7 +174,7 @@ def test_the_step_phase_is_that_of_the_stiffest_contacts_of_the_record(checked):
     """Contact stiffness is evaluated at every knot; it changes little between two knots."""
     recipe, scenarios, response, _ = checked
     some = [0, 3]
-    records = [kernel_input(scenarios[place], timeline(settings_of(recipe))) for place in some]
+    records = [input_of(scenarios[place]) for place in some]
     n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
     for place, record in zip(some, records, strict=True):
         factor = int(response.oversampling[place])
@@ -189,7 +189,9 @@ def test_the_step_phase_is_that_of_the_stiffest_contacts_of_the_record(checked):
 
 
 def test_records_whose_contacts_outgrow_the_step_are_left_out_with_a_sentence(write_recipe, tmp_path):
-    made = generate(write_recipe(tmp_path / "r.yaml", ROUGH), tmp_path / "c")
+    recipe = write_recipe(tmp_path / "r.yaml", ROUGH)
+    made = generate(recipe, tmp_path / "c")
+    assert (made.records, made.parts) == (16, 2)
     assert [sentence.partition(":")[0] for sentence in made.failures] == [f"record {number}" for number in range(8, 16)]
     grown = "its contacts became stiffer than 1 steps per sample can follow; set recording.oversampling to "
     for sentence in made.failures:
@@ -200,6 +202,8 @@ def test_records_whose_contacts_outgrow_the_step_are_left_out_with_a_sentence(wr
     with open_corpus(made.path) as corpus:
         assert corpus["recording"].values.tolist() == [*range(8), *range(16, 24)]
         assert (corpus["step_phase"].values < COARSEST_STEP).all()
+    again = generate(recipe, tmp_path / "c")
+    assert (again.records, again.kept, again.failures) == (16, 2, made.failures)
 
 
 def test_as_many_steps_as_the_sentence_asks_for_are_enough(recipe_with):

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from gen.physics.bearing import orders
 from gen.physics.rotor import likely_stiffness
 from gen.scenarios import draw_scenarios, settings_of
-from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import runs_of
 from gen.simulation.steps import (
     ENOUGH,
@@ -22,7 +21,7 @@ from gen.simulation.steps import (
     passage_rate,
     steps_per_sample,
 )
-from gen.simulation.timeline import timeline
+from tests.responses import input_of
 
 
 @pytest.fixture
@@ -30,7 +29,7 @@ def drawn(recipe_with):
     """A recipe, a scenario of it and its record, without a spall and a mode that is faster than that of the contacts."""
     recipe = recipe_with()
     (scenario,) = draw_scenarios(recipe, 0, 1)
-    record = kernel_input(scenario, timeline(settings_of(recipe)))
+    record = input_of(scenario)
     machine = record.machine._replace(sensor_mass=0.0, half_clearance=1e-6, contact_damping=0.0)
     return recipe, scenario, record._replace(machine=machine, spalls=())
 
@@ -81,7 +80,7 @@ def test_a_ball_rolls_over_the_narrowest_spall_in_some_steps(recipe_with, width)
     spalls = [{"kind": site, "width_mm": width} for site in ("inner", "outer", "ball")]
     recipe = recipe_with(fast | {"faults": spalls})
     for scenario in draw_scenarios(recipe, 0, 3):
-        record, bearing = kernel_input(scenario, timeline(settings_of(recipe))), scenario.rig.bearing
+        record, bearing = input_of(scenario), scenario.rig.bearing
         of = orders(bearing)
         speed = {
             "outer": of.ftf * bearing.outer_radius,

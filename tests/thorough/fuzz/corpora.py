@@ -25,23 +25,8 @@ from tests.corpora import write_corpus
 INDEX, MANIFEST, SINGLE = "index.nc", "manifest.json", "c.nc"
 LINE_BYTES = 73  # of the checksum
 ODD = (
-    None,
-    True,
-    -1,
-    0,
-    1e308,
-    10**40,
-    "",
-    "x" * 70,
-    "../x",
-    "part-00001.nc",
-    [],
-    {},
-    [[]],
-    {"a": []},
-    "9" * 64,
-    float("nan"),
-)
+    None, True, -1, 0, 1e308, 10**40, "", "x" * 70, "../x", "part-00001.nc", [], {}, [[]], {"a": []}, "9" * 64, float("nan"),
+)  # fmt: skip
 
 
 def seeds(folder):
@@ -131,17 +116,8 @@ def _attribute(file, name, _other, rng):
     node = file if rng.random() < 0.2 else file[name]
     keys = [*node.attrs, "scale_factor", "coordinates", "_FillValue", "units", "calendar", "add_offset"]
     key = str(rng.choice(keys))
-    values = (
-        np.float64(np.nan),
-        np.int64(-1),
-        np.zeros((2, 2)),
-        "days since 1-1-1",
-        "",
-        b"\xff\xfe",
-        "x" * 1000,
-        h5py.Empty("f"),
-        1e308,
-    )
+    texts = "days since 1-1-1", "", b"\xff\xfe", "x" * 1000
+    values = (np.float64(np.nan), np.int64(-1), np.zeros((2, 2)), h5py.Empty("f"), 1e308, *texts)
     if key in node.attrs and rng.random() < 0.3:
         del node.attrs[key]
     else:
@@ -154,20 +130,8 @@ def _replaced(file, name, _other, rng):
         key: file[name].attrs[key] for key in file[name].attrs if key not in ("DIMENSION_LIST", "REFERENCE_LIST")
     }
     del file[name]
-    dtypes = (
-        "f8",
-        "i2",
-        "f4",
-        "S1",
-        "S40",
-        h5py.string_dtype(),
-        "c16",
-        [("a", "i4")],
-        h5py.ref_dtype,
-        "?",
-        "u8",
-        ">i2",
-    )
+    plain = "f8", "i2", "f4", "S1", "S40", "c16", "?", "u8", ">i2"
+    dtypes = (*plain, h5py.string_dtype(), [("a", "i4")], h5py.ref_dtype)
     shapes = (shape, shape[::-1], (), (0,), (4,), (2**40,), (2, 2**36, 2), (4, 2), (*shape, 1))
     dtype, size = dtypes[rng.integers(len(dtypes))], shapes[rng.integers(len(shapes))]
     chunks = True if int(np.prod(size, dtype=float) > 1e6) else None
@@ -175,13 +139,8 @@ def _replaced(file, name, _other, rng):
 
 
 def _link(file, name, other, rng):
-    links = (
-        h5py.SoftLink(f"/{other}"),
-        h5py.ExternalLink("/etc/passwd", "/x"),
-        h5py.SoftLink(f"/{name}"),
-        file["/"],
-        file[other],
-    )
+    soft = [h5py.SoftLink(f"/{target}") for target in (name, other)]
+    links = (*soft, h5py.ExternalLink("/etc/passwd", "/x"), file["/"], file[other])
     del file[name]
     file[name] = links[rng.integers(len(links))]
 
@@ -198,11 +157,8 @@ def _other_manifest(data, rng):
         assert all(isinstance(row, dict) and row for row in manifest["parts"])
     except (ValueError, RecursionError, AssertionError, AttributeError, TypeError):
         return data  # changed already
-    node = (
-        manifest["parts"][rng.integers(len(manifest["parts"]))]
-        if manifest["parts"] and rng.random() < 0.4
-        else manifest
-    )
+    rows = manifest["parts"] if rng.random() < 0.4 else []
+    node = rows[rng.integers(len(rows))] if rows else manifest
     key = str(rng.choice(sorted(node)))
     if rng.random() < 0.2 and len(node) > 1:
         del node[key]

@@ -150,18 +150,8 @@ def _line_change(content: bytes, rng: np.random.Generator) -> bytes:
 def _key_change(content: bytes, rng: np.random.Generator) -> bytes:
     start, stop = _pick(list(re.finditer(rb"\w+(?=:)", content)), rng)
     odd = (
-        b"",
-        b"<<",
-        b"1",
-        b"? [a]",
-        b"null",
-        b"kind",
-        b"\xf0\x9f\x94\xa9",
-        content[start:stop] * 2,
-        b"&k k",
-        b"k" * 2000,
-        b"values",
-    )
+        b"", b"<<", b"1", b"? [a]", b"null", b"kind", b"\xf0\x9f\x94\xa9", content[start:stop] * 2, b"&k k", b"k" * 2000, b"values",
+    )  # fmt: skip
     return content[:start] + odd[int(rng.integers(len(odd)))] + content[stop:]
 
 
@@ -172,16 +162,10 @@ def _aliased(content: bytes, rng: np.random.Generator) -> bytes:
     head = b"a0: &a0 " + found + b"\n"
     form = [b"[%s]", b"{<<: [%s]}", b"{<<: *a0, k: [%s]}"][int(rng.integers(3))]
     for layer in range(1, layers):
-        head += (
-            b"a%d: &a%d " % (layer, layer)
-            + form % b", ".join([b"*a%d" % (layer - 1)] * int(rng.integers(1, 12)))
-            + b"\n"
-        )
-    content = (
-        content[:start]
-        + [b"*a0", b"{<<: *a0}", b"*a%d" % (layers - 1), b"&b {<<: *b}"][int(rng.integers(4))]
-        + content[stop:]
-    )
+        names = b", ".join([b"*a%d" % (layer - 1)] * int(rng.integers(1, 12)))
+        head += b"a%d: &a%d " % (layer, layer) + form % names + b"\n"
+    alias = [b"*a0", b"{<<: *a0}", b"*a%d" % (layers - 1), b"&b {<<: *b}"][int(rng.integers(4))]
+    content = content[:start] + alias + content[stop:]
     return head + content if rng.random() < 0.8 else content
 
 
@@ -209,18 +193,8 @@ def _cut(content: bytes, rng: np.random.Generator) -> bytes:
 
 
 def _wrapped(content: bytes, rng: np.random.Generator) -> bytes:
-    odd = (
-        b"\xef\xbb\xbf",
-        b"\xff\xfe",
-        b"%YAML 1.1\n---\n",
-        b"%YAML 9.9\n---\n",
-        b"%TAG ! x\n---\n",
-        b"--- !!map\n",
-        b"- ",
-        b"\0",
-        b"\t",
-        b"? ",
-    )
+    heads = b"%YAML 1.1\n---\n", b"%YAML 9.9\n---\n", b"%TAG ! x\n---\n", b"--- !!map\n"
+    odd = (b"\xef\xbb\xbf", b"\xff\xfe", *heads, b"- ", b"\0", b"\t", b"? ")
     return odd[int(rng.integers(len(odd)))] + content + (b"\n---\na: 1\n" if rng.random() < 0.2 else b"")
 
 

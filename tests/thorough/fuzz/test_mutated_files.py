@@ -14,15 +14,6 @@ COUNTS = dict.fromkeys(TARGETS, 600) | {"corpora": 250}  # a corpus takes 50 ms;
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_no_mutated_file_gets_past_its_reader(target, tmp_path):
-    command = [
-        sys.executable,
-        "-m",
-        "tests.thorough.fuzz",
-        target,
-        "--count",
-        str(COUNTS[target]),
-        "--keep",
-        str(tmp_path),
-    ]
+    command = [sys.executable, "-m", "tests.thorough.fuzz", target, "--count", str(COUNTS[target]), "--keep", tmp_path]
     run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert json.loads(run.stdout) == [], run.stderr

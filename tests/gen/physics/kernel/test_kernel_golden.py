@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from gen.physics.bearing import Bearing
 from gen.physics.inputs import KernelInput, SpallInput, Turning
@@ -12,7 +11,7 @@ from gen.physics.kernel.layout import n_process_terms
 from gen.physics.rotor import Machine
 from tests.lanes import EVERY_ACCELERATION, march_lanes
 from tests.paths import GOLDEN
-from tests.reference import right_hand_side, slow_motion
+from tests.reference import slow_motion
 
 GOLDEN = json.loads((GOLDEN / "model.json").read_text())
 START = np.array(GOLDEN["start"])
@@ -54,22 +53,3 @@ def test_a_trajectory_of_twenty_milliseconds_ends_where_the_golden_one_does(case
     n_knots = round(case["time"] / KNOT)
     trip = march_lanes([record], n_knots, STEPS_AT_192_KHZ, KNOT, START)[0]
     np.testing.assert_allclose(trip.states[-1, :6], case["state"][:6], rtol=0, atol=case["tolerance"])
-
-
-@pytest.mark.parametrize("case", GOLDEN["trajectories"], ids=lambda case: case["name"])
-def test_another_integrator_of_another_right_hand_side_goes_where_both_kernel_and_golden_one_go(case):
-    """The twin within a single knot, so that its angles are continuous, integrated by DOP853."""
-    record, time = golden_record(case["half_clearance"], with_spalls=case["spalls"]), case["time"]
-    slow = slow_motion(record, time, 1)
-    end = solve_ivp(
-        lambda t, y: right_hand_side(record, slow, time, 0, t / time, y),
-        (0.0, time),
-        START,
-        method="DOP853",
-        rtol=1e-12,
-        atol=np.repeat([1e-18, 1e-15], 6),
-        max_step=1e-4,  # a third of the time that a ball needs to pass the narrowest spall
-    ).y[:, -1]
-    trip = march_lanes([record], round(time / KNOT), STEPS_AT_192_KHZ, KNOT, START)[0]
-    np.testing.assert_allclose(end[:6], case["state"][:6], rtol=0, atol=1e-13)
-    np.testing.assert_allclose(end[:6], trip.states[-1, :6], rtol=0, atol=case["tolerance"])

@@ -6,14 +6,13 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.catalogue import CATALOGUE
 from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
-from gen.physics.inputs import SpallInput, Waviness, at_rest
+from gen.physics.inputs import Waviness, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.layout import N_DYNAMIC
 from tests.lanes import march_lanes
-from tests.strategies import RIG, angles, record, steady_turnings, troubled_records
+from tests.strategies import angles, troubled_records
 
 law = settings(deadline=None, max_examples=20)
 KNOT = 1 / 12_000
@@ -155,17 +154,3 @@ def test_a_mirrored_machine_gives_the_mirrored_record(drawn):
     sign, start = np.tile([-1.0, 1.0], 6), rest_of(there)
     one, near = (way * sign.reshape(6, 2) for way in (ways(there, start), nearby(there, start)))
     assert_alike(one, ways(mirrored, start * sign), near)
-
-
-@law
-@given(steady_turnings(), st.floats(-0.5, 0.5), st.floats(1e-5, 1e-3))
-def test_what_lies_deeper_than_a_ball_can_fall_makes_no_difference(motion, ahead, depth):
-    """A rotor of 54 N and a spall of 5 um or deeper, in the load zone at the start: the ball does not touch the floor."""
-    angle = ahead - math.pi / 2 - motion.shaft_angle
-    spall = SpallInput("inner", math.radians(20) * CATALOGUE["6205"].inner_radius, 5e-6, angle, profile="rectangular")
-    light = RIG._replace(half_clearance=0.0, load_x=0.0, load_y=-54.0, support_stiffness_y=1.5e7)
-    calm = motion._replace(unbalance=0.0)
-    shallow, deep = (record(light, calm, [spall._replace(depth=d)]) for d in (5e-6, depth))
-    one, other = march_lanes([shallow, deep], N_KNOTS, 8, KNOT)
-    np.testing.assert_array_equal(one.states, other.states)
-    assert np.ptp(one.states[:, 1]) > 1e-7

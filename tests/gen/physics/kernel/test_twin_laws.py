@@ -3,12 +3,11 @@
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.extent import MAX_BALLS
-from gen.physics.inputs import SpallInput, Turning, at_rest
+from gen.physics.inputs import at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
@@ -16,7 +15,7 @@ from gen.physics.kernel.integrate import integrate
 from gen.physics.kernel.layout import N_DYNAMIC
 from tests.lanes import march_lanes
 from tests.reference import contact_stiffness, contacts, march_twin, right_hand_side, slow_motion
-from tests.strategies import RIG, extended_records, record, steady_records, troubled_records, wandering_records
+from tests.strategies import extended_records, steady_records, troubled_records, wandering_records
 
 law = settings(deadline=None, max_examples=20)
 KNOT = 1 / 12_000
@@ -99,17 +98,3 @@ def test_the_integrator_gives_the_weighted_accelerations_and_the_largest_contact
 @given(troubled_records(), st.integers(0, 2**32 - 1))
 def test_the_integrator_gives_the_weighted_displacements_and_the_largest_stiffness_of_rollers(drawn, seed):
     assert_what_comes_out_is_the_twins(drawn._replace(displacement=True), seed, 1e-11)
-
-
-@pytest.mark.parametrize("contact", [0.0, math.pi], ids=["on the inner race", "on the outer race"])
-def test_a_tabulated_spall_of_a_ball_has_a_table_for_each_race(contact):
-    """The spall of the loaded ball meets a race at the start: its drop is that of the table of this race."""
-    tables = ((2e-6,) * 9, (5e-6,) * 9)
-    spall = SpallInput("ball", 2e-3, 0.0, angle=contact, ball=0, profile="table", table=tables)
-    turning = Turning(30.0, jitter_rms=1e-3, cage_angle=-math.pi / 2)
-    machine = RIG._replace(contact_damping=100.0)
-    struck = record(machine, turning, [spall], seed=1, waviness=1e-9)
-    assert_the_twin_agrees(struck)
-    other = struck._replace(spalls=(spall._replace(table=tables[::-1]),))
-    one, two = (march_lanes([some], 8, 4, KNOT)[0].accelerations for some in (struck, other))
-    assert not np.array_equal(one, two)
