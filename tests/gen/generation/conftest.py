@@ -1,4 +1,4 @@
-"""A small recipe and its corpus in both forms, made once for each file of tests."""
+"""A small recipe and its corpus in both forms, made once."""
 
 import shutil
 
@@ -7,19 +7,19 @@ import pytest
 from gen.generation.corpus import generate
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def recipe_file(write_recipe, tmp_path_factory):
     return write_recipe(tmp_path_factory.mktemp("recipe") / "small.yaml")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def whole(recipe_file, tmp_path_factory):
     """The small corpus: three parts of eight records."""
     folder = tmp_path_factory.mktemp("whole") / "corpus"
     return generate(recipe_file, folder)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def single(recipe_file, tmp_path_factory):
     """The small corpus in a single file."""
     return generate(recipe_file, tmp_path_factory.mktemp("single") / "corpus.nc")

@@ -14,7 +14,6 @@ from gen.scenarios import draw_scenarios, read_scenario, settings_of
 from gen.simulation.timeline import timeline
 from tests.responses import response_of
 
-FS = 12_000.0
 BALL, PITCH, Z = 7.94e-3, 39.04e-3, 9  # 6205
 STEADY = {
     "operation.shaft_rpm": 1800, "operation.load_n": 400, "operation.speed_wander_percent": 0, "operation.mean_slip_percent": 0,
@@ -50,18 +49,6 @@ def test_a_tachometer_that_reads_too_high_labels_too_high_a_rate(labels_with, pe
     assert found["last_shaft_rate"].values == pytest.approx(30.0)
 
 
-def test_a_run_up_is_labelled_with_its_mean_and_its_ends(labels_with):
-    """The label error changes the labelled mean, and not the truth."""
-    speed, load = ({"kind": "ramp", "from_percent": 50, "to_percent": percent} for percent in (100, 150))
-    found = labels_with(
-        {"operation.label_error_percent": 2, "operation.speed_profile": speed, "operation.load_profile": load}
-    )
-    assert first(found, "shaft_rate") == pytest.approx(30 * 0.75 * 1.02)
-    assert first(found, "true_shaft_rate") == pytest.approx(22.5)
-    assert (first(found, "first_shaft_rate"), first(found, "last_shaft_rate")) == pytest.approx((15.0, 30.0))
-    assert first(found, "load") == pytest.approx(400)
-
-
 def test_the_orders_are_nominal_and_the_true_ones_have_the_slip(labels_with):
     found = labels_with({"operation.mean_slip_percent": 1})
     gamma = BALL / PITCH
@@ -79,25 +66,6 @@ def test_the_contact_angle_of_a_specimen_is_in_the_true_orders_alone(labels_with
     gamma = BALL * math.cos(math.radians(20)) / PITCH
     assert slanted["bpfo"].values == pytest.approx(first(straight, "bpfo"))
     assert slanted["true_bpfo"].values == pytest.approx(Z * (1 - gamma) / 2)
-
-
-@pytest.mark.parametrize(("site", "angle"), [("inner", 15), ("ball", 15), ("outer", -45)])
-def test_the_angle_of_an_outer_spall_counts_from_x_and_not_from_the_load(labels_with, site, angle):
-    found = labels_with({"faults": [OUTER | {"kind": site}], "machine.load_angle_deg": -60})
-    assert found["angle"].values == pytest.approx(math.radians(angle))
-
-
-@pytest.mark.parametrize(
-    ("site", "passed"),
-    [
-        ("inner", math.pi * (PITCH - BALL) / Z),
-        ("outer", math.pi * (PITCH + BALL) / Z),
-        ("ball", math.pi * BALL),
-    ],
-)
-def test_the_width_is_also_labelled_as_a_share_of_the_way_from_ball_to_ball_or_round_a_ball(labels_with, site, passed):
-    found = labels_with({"faults": [OUTER | {"kind": site}]})
-    assert found["width_share"].values == pytest.approx(0.8e-3 / passed)
 
 
 @pytest.mark.parametrize("site", ["inner", "outer", "ball"])
@@ -120,28 +88,6 @@ def test_several_faults_are_labelled_by_the_widest_spall_and_by_all_parts(labels
     assert first(found, "pitch_error") == pytest.approx(math.radians(4))
     assert first(found, "knock") == 30
     assert first(found, "wear") == 0
-
-
-def test_spalls_of_one_part_are_one_part(labels_with):
-    found = labels_with({"faults": [OUTER | {"n_spalls": 3}]})
-    assert (first(found, "n_spalls"), first(found, "parts"), FAULTS[first(found, "fault")]) == (3, "outer", "outer")
-
-
-def test_a_worn_race_is_no_spall(labels_with):
-    found = labels_with({"faults": [{"kind": "distributed", "site": "outer", "waviness_um": 0.3}]})
-    assert FAULTS[first(found, "fault")] == first(found, "parts") == "outer"
-    assert first(found, "wear") == pytest.approx(0.3e-6)
-    assert [first(found, name) for name in ("n_spalls", "width", "depth", "largest_drop", "width_share")] == [0] * 5
-    assert np.isnan(first(found, "angle"))
-
-
-def test_a_healthy_bearing_has_no_part_that_is_damaged(labels_with):
-    found = labels_with({"faults": [{"kind": "healthy"}]})
-    assert FAULTS[first(found, "fault")] == "healthy"
-    assert first(found, "parts") == ""
-    names = ("n_spalls", "width", "depth", "largest_drop", "width_share", "wear", "pitch_error", "knock")
-    assert [first(found, name) for name in names] == [0] * 8
-    assert np.isnan(first(found, "angle"))
 
 
 def test_the_temperature_is_labelled_where_there_is_oil(labels_with):

@@ -8,7 +8,6 @@ import xarray as xr
 
 import gen
 from gen.corpus import SIGNAL
-from gen.drawing.section import plain
 from gen.support.errors import CorpusError, RecipeError, SimulationError
 
 # the kernel of the small recipes
@@ -24,8 +23,17 @@ def ladder():
     return gen.records([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
 
 
-def with_width(one, width):
-    return replace(one, specimen=replace(one.specimen, spalls=(replace(one.specimen.spalls[0], width=width),)))
+def changed(part, **values):
+    """A change of a scenario that gives one of its parts other values."""
+    return lambda one: replace(one, **{part: replace(getattr(one, part), **values)})
+
+
+def with_width(width):
+    return lambda one: changed("specimen", spalls=(replace(one.specimen.spalls[0], width=width),))(one)
+
+
+def with_rate(rate):
+    return lambda one: changed("record", conditions=replace(one.record.conditions, shaft_rate=rate))(one)
 
 
 def same_but_source(one, other):
@@ -82,13 +90,6 @@ def saved(dataset, folder):
 )
 def test_every_record_of_a_dataset_that_was_cut_or_joined_is_replayed(ladder, tmp_path, changed):
     directory = gen.write_corpus(changed(ladder, tmp_path), tmp_path / "corpus")
-    assert gen.validate_corpus(directory) == []
-    assert replayed(directory)
-
-
-def test_records_in_floating_point_are_written_as_they_are(tmp_path):
-    made = gen.records(OUTER, 2, converter={"kind": "float32"}, **SHORT)
-    directory = gen.write_corpus(made, tmp_path / "corpus")
     assert gen.validate_corpus(directory) == []
     assert replayed(directory)
 
@@ -187,14 +188,6 @@ def test_records_of_two_recipes_in_one_dataset_are_replayed_and_their_machines_k
         assert corpus["identity"].values.tolist() == both["identity"].values.tolist()
 
 
-def test_a_folder_that_holds_something_is_left_as_it_is(ladder, tmp_path):
-    (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
-    for place in (tmp_path, tmp_path / "notes.txt"):
-        with pytest.raises(CorpusError, match="exists and is not an empty folder; give a new name, or remove it first"):
-            gen.write_corpus(ladder, place)
-    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
-
-
 def test_a_relative_and_an_empty_folder_are_taken(ladder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "empty").mkdir()
@@ -202,9 +195,8 @@ def test_a_relative_and_an_empty_folder_are_taken(ladder, tmp_path, monkeypatch)
     assert gen.validate_corpus("empty") == []
 
 
-@pytest.mark.parametrize("order", [[1], [5, 4, 3, 2, 1, 0]], ids=["some", "in another order"])
-def test_the_corpus_of_a_choice_has_no_recipe(ladder, tmp_path, order):
-    directory = gen.write_corpus(ladder.isel(record=order), tmp_path / "corpus")
+def test_a_corpus_in_another_order_has_no_recipe(ladder, tmp_path):
+    directory = gen.write_corpus(ladder.isel(record=[5, 4, 3, 2, 1, 0]), tmp_path / "corpus")
     assert not (directory / "recipe.yaml").exists()
     gen.write_recipe(gen.read_recipe(ladder), tmp_path / "recipe.yaml")
     with pytest.raises(CorpusError, match="choose another name"):
@@ -249,10 +241,7 @@ def test_drawn_scenarios_give_the_records_of_their_recipe(ladder):
 def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_path):
     recipe = gen.make_recipe([OUTER, INNER], 3, rungs=[0, 0.5, 1], level=SNR, **SHORT)
     scenarios = gen.draw_scenarios(recipe)
-    faster = [
-        replace(one, record=replace(one.record, conditions=replace(one.record.conditions, shaft_rate=61.0)))
-        for one in scenarios
-    ]
+    faster = [with_rate(61.0)(one) for one in scenarios]
     made = gen.simulate(faster[3:] + faster[:3])
     assert np.allclose(made["true_shaft_rate"], 61, rtol=0.02)
     directory = gen.write_corpus(made.isel(record=[2, 0, 1, 5, 4, 3]), tmp_path / "corpus")
@@ -266,54 +255,36 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
     assert replayed(gen.write_corpus(made.isel(record=[0, 1]), tmp_path / "cut"))
 
 
-@pytest.mark.parametrize(
-    ("changed", "sentence"),
-    [
-        (
-            lambda one: replace(one, rig=replace(one.rig, gain=2.0)),
-            r"scenarios\[1\]: rig 0 is not that of scenarios\[0\]; give another machine",
-        ),
-        (
-            lambda one: replace(one, rig=replace(one.rig, channels=())),
-            r"need one entry for each of 1 settings\.channels",
-        ),
-        (
-            lambda one: replace(one, rig=replace(one.rig, bearing=replace(one.rig.bearing, n_balls=10))),
-            r"scenarios\[1\]: rig\.bearing and specimen\.bearing must have the same n_balls, \d+ at most",
-        ),
-        (
-            lambda one: replace(one, record=replace(one.record, snr=3.0)),
-            r"record\.snr and record\.rms must both be given, or both be None",
-        ),
-        (
-            lambda one: replace(one, settings=replace(one.settings, samples=10**9)),
-            r"scenarios\[1\]: a record of all channels, settings\.settle included, has 1000000720 samples, and the limit",
-        ),
-        (
-            lambda one: replace(one, specimen=replace(one.specimen, fault="outer")),
-            "the damage of the specimen is inner; change",
-        ),
-        (lambda one: with_width(one, 0.0), "width and depth of a spall must be above 0"),
-        (lambda one: with_width(one, 0.3), "specimen 1: a spall of 300 mm does not fit the inner radius of"),
-        (
-            lambda one: replace(one, settings=replace(one.settings, seed="x")),
-            r"scenarios\[1\]: is no scenario \(settings\.seed: .*; change drawn ones with",
-        ),
-        (
-            lambda one: replace(one, record=replace(one.record, conditions={"shaft_rate": float("nan")})),
-            r"scenarios\[1\]: is no scenario \(",
-        ),
-    ],
-)
-def test_scenarios_that_do_not_fit_each_other_are_refused(ladder, changed, sentence):
-    scenarios = gen.read_scenarios(ladder)
+MISFITS = {
+    "another gain": (changed("rig", gain=2.0), r"scenarios\[1\]: rig 0 is not that of scenarios\[0\]; give another machine"),
+    "no channels": (changed("rig", channels=()), r"need one entry for each of 1 settings\.channels"),
+    "other balls": (
+        lambda one: changed("rig", bearing=replace(one.rig.bearing, n_balls=10))(one),
+        r"scenarios\[1\]: rig\.bearing and specimen\.bearing must have the same n_balls, \d+ at most",
+    ),
+    "a ratio without a level": (changed("record", snr=3.0), r"record\.snr and record\.rms must both be given, or both be None"),
+    "a billion samples": (
+        changed("settings", samples=10**9),
+        r"scenarios\[1\]: a record of all channels, settings\.settle included, has 1000000720 samples, and the limit",
+    ),
+    "another class": (changed("specimen", fault="outer"), "the damage of the specimen is inner; change"),
+    "no width": (with_width(0.0), "width and depth of a spall must be above 0"),
+    "a width of 0.3 m": (with_width(0.3), "specimen 1: a spall of 300 mm does not fit the inner radius of"),
+    "a seed of text": (changed("settings", seed="x"), r"scenarios\[1\]: is no scenario \(settings\.seed: .*; change drawn ones with"),
+    "no rate": (changed("record", conditions={"shaft_rate": float("nan")}), r"scenarios\[1\]: is no scenario \("),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("misfit", MISFITS)
+def test_scenarios_that_do_not_fit_each_other_are_refused(ladder, misfit):
+    (change, sentence), scenarios = MISFITS[misfit], gen.read_scenarios(ladder)
     with pytest.raises(RecipeError, match=sentence):
-        gen.simulate([scenarios[0], changed(scenarios[1])])
+        gen.simulate([scenarios[0], change(scenarios[1])])
 
 
 def test_scenarios_of_different_settings_are_simulated_in_different_calls(ladder):
     one, other, *_ = gen.read_scenarios(ladder)
-    other = replace(other, settings=replace(other.settings, seed=6, twins=False))
+    other = changed("settings", seed=6, twins=False)(other)
     with pytest.raises(
         SimulationError, match=r"scenarios\[1\]: its settings are not those of scenarios\[0\] \(seed, twins\); simulate"
     ):
@@ -321,20 +292,15 @@ def test_scenarios_of_different_settings_are_simulated_in_different_calls(ladder
 
 
 @pytest.mark.parametrize(
-    ("changed", "sentence"),
+    ("change", "sentence"),
     [
-        (lambda one: replace(one, rig=replace(one.rig, machine={})), r"cannot be simulated \(KeyError: .*\); keep all"),
-        (
-            lambda one: replace(
-                one, record=replace(one.record, conditions=replace(one.record.conditions, shaft_rate=0.0))
-            ),
-            r"cannot be simulated \(ZeroDivisionError",
-        ),
+        (changed("rig", machine={}), r"cannot be simulated \(KeyError: .*\); keep all"),
+        (with_rate(0.0), r"cannot be simulated \(ZeroDivisionError"),
     ],
 )
-def test_missing_and_absurd_drawn_values_are_one_sentence(ladder, changed, sentence):
+def test_missing_and_absurd_drawn_values_are_one_sentence(ladder, change, sentence):
     with pytest.raises(SimulationError, match=sentence):
-        gen.simulate([changed(gen.read_scenarios(ladder)[0])])
+        gen.simulate([change(gen.read_scenarios(ladder)[0])])
 
 
 def test_no_scenarios_are_no_records():
@@ -342,36 +308,22 @@ def test_no_scenarios_are_no_records():
         gen.simulate([])
 
 
-def test_the_dataset_carries_the_recipe_as_it_was_given(ladder):
-    assert plain(gen.read_recipe(ladder)) == plain(
-        gen.make_recipe([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
-    )
+WRONG_TYPES = [
+    (lambda _: gen.write_corpus(None, "corpus"), CorpusError, "NoneType given in place of a Dataset"),
+    (lambda _: gen.read_recipe(xr.Dataset()), RecipeError, "recipe_text of the Dataset: there is none; give a"),
+    (lambda _: gen.read_recipe(xr.Dataset(attrs={"recipe_text": "{"})), RecipeError, "Dataset: line 1: is not valid"),
+    (lambda _: gen.read_scenarios(3), CorpusError, "int given in place of a Dataset; give records"),
+    (lambda some: gen.simulate(some[0]), RecipeError, "scenarios: Scenario given; give a list"),
+    (lambda _: gen.simulate(None), RecipeError, "scenarios: NoneType given; give a list"),
+    (lambda _: gen.simulate("x"), RecipeError, "scenarios: str given; give a list"),
+    (lambda _: gen.simulate([1]), RecipeError, r"scenarios\[0\]: is no scenario"),
+    (lambda _: gen.read_recipe(None), RecipeError, "recipe: NoneType given; give a path, the name of"),
+    (lambda _: gen.write_recipe({}, "recipe.yaml"), RecipeError, "recipe: dict given; give one that gen.make_recipe"),
+    (lambda _: gen.publish("corpus", [1]), CorpusError, r"publication: \[1\] is not a mapping; give keys"),
+]
 
 
-@pytest.mark.parametrize(
-    ("call", "error", "sentence"),
-    [
-        (lambda _: gen.write_corpus(None, "corpus"), CorpusError, "NoneType given in place of a Dataset"),
-        (lambda _: gen.read_recipe(xr.Dataset()), RecipeError, "recipe_text of the Dataset: there is none; give a"),
-        (
-            lambda _: gen.read_recipe(xr.Dataset(attrs={"recipe_text": "{"})),
-            RecipeError,
-            "Dataset: line 1: is not valid",
-        ),
-        (lambda _: gen.read_scenarios(3), CorpusError, "int given in place of a Dataset; give records"),
-        (lambda some: gen.simulate(some[0]), RecipeError, "scenarios: Scenario given; give a list"),
-        (lambda _: gen.simulate(None), RecipeError, "scenarios: NoneType given; give a list"),
-        (lambda _: gen.simulate("x"), RecipeError, "scenarios: str given; give a list"),
-        (lambda _: gen.simulate([1]), RecipeError, r"scenarios\[0\]: is no scenario"),
-        (lambda _: gen.read_recipe(None), RecipeError, "recipe: NoneType given; give a path, the name of"),
-        (
-            lambda _: gen.write_recipe({}, "recipe.yaml"),
-            RecipeError,
-            "recipe: dict given; give one that gen.make_recipe",
-        ),
-        (lambda _: gen.publish("corpus", [1]), CorpusError, r"publication: \[1\] is not a mapping; give keys"),
-    ],
-)
+@pytest.mark.parametrize(("call", "error", "sentence"), WRONG_TYPES)
 def test_an_argument_of_another_type_is_one_sentence(call, error, sentence, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(error, match=sentence) as caught:
