@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gen.scenarios import Background, ShaftModulation, settings_of
+from gen.measurement.measure import measure
+from gen.scenarios import Background, ShaftModulation, draw_scenarios, settings_of
 from gen.simulation.timeline import timeline
 
 FS = 12_000.0
@@ -33,3 +34,10 @@ def rms(x):
 
 def with_rig(scenarios, **changes):
     return [replace(scenario, rig=replace(scenario.rig, **changes)) for scenario in scenarios]
+
+
+def background_of(recipe, background, n_records=1, **of_rig):
+    """Signals of a machine with a background and a bearing at rest, shape (record, channel, time), and their scenarios."""
+    drawn = draw_scenarios(recipe, 0, n_records)
+    scenarios = with_rig(drawn, **{"background": background, "background_rms": 1.0, "gain": 1.0} | of_rig)
+    return measure(silence(recipe, n_records), scenarios).signal.astype(float), scenarios

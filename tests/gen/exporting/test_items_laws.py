@@ -106,16 +106,6 @@ def test_the_transform_is_called_with_the_signal_of_each_record(corpus):
     np.testing.assert_array_equal(signals, [rms(plain[place][0]) for place in range(3)])
 
 
-def test_a_single_file_gives_the_same_items(corpus, tmp_path):
-    gen.copy(corpus[0], tmp_path / "c.nc")
-    choice = {"split": "train", "channels": ["a"]}
-    plain, packed = gen.torch_dataset(corpus[0], **choice), gen.torch_dataset(tmp_path / "c.nc", **choice)
-    assert len(plain) == len(packed) > 2
-    for (signal, fault), (again, same) in zip(plain, packed, strict=True):
-        np.testing.assert_array_equal(signal, again)
-        assert fault == same
-
-
 @pytest.mark.parametrize(
     ("asked", "sentence"),
     [

@@ -12,7 +12,7 @@ from gen.measurement.measure import measure
 from gen.scenarios import Background, Gear, Mode, Path, ShaftModulation, Tone, draw_scenarios, settings_of, with_level
 from gen.simulation.simulate import Twins
 from gen.simulation.timeline import timeline
-from tests.measuring import FLOAT, FS, QUIET, hiss, response, rms, silence, with_rig
+from tests.measuring import FLOAT, FS, QUIET, background_of, hiss, response, rms, silence, with_rig
 
 law = settings(deadline=None, max_examples=25)
 
@@ -146,9 +146,7 @@ def test_a_tone_comes_through_the_path_with_the_transmissibility_of_its_resonanc
 @pytest.mark.parametrize("slope", [-0.3, 0.0, 1.0, 2.0])
 def test_the_noise_falls_with_the_drawn_slope_and_has_the_drawn_rms(recipe_with, slope):
     recipe = recipe_with(FLOAT | {"recording.duration_s": 20.0})
-    sloped = replace(QUIET, slope=slope)
-    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=sloped, background_rms=0.3, gain=1.0)
-    noise = measure(silence(recipe, 1), scenarios).signal[0, 0].astype(float)
+    noise = background_of(recipe, replace(QUIET, slope=slope), background_rms=0.3)[0][0, 0]
     frequency, density = welch(noise, FS, nperseg=4096)
     band = (frequency > 100) & (frequency < 4700)  # what the anti-alias filter passes
     fitted = np.polyfit(np.log(frequency[band]), np.log(density[band]), 1)[0]
@@ -168,13 +166,11 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
     recipe = recipe_with(
         FLOAT | {"recording.duration_s": 5.0, "operation.shaft_rpm": 1800, "path.modes": None, "path.direct": 1.0}
     )
-    scenarios = draw_scenarios(recipe, 0, 1)
     counts, powers = {}, {}
     for kind, sound in (("knocks", Tone(2.0, 1e3)), ("impulses", Tone(40.0, 1e4))):
-        rigged = with_rig(scenarios, background=replace(QUIET, **{kind: sound}), background_rms=1.0, gain=1.0)
-        signal = measure(silence(recipe, 1), rigged).signal[0, 0]
+        signal = background_of(recipe, replace(QUIET, **{kind: sound}))[0][0, 0]
         counts[kind] = np.count_nonzero(np.abs(signal) > 300)
-        powers[kind] = np.sum((signal / sound.level) ** 2, dtype=float)
+        powers[kind] = np.sum((signal / sound.level) ** 2)
     assert counts["knocks"] == pytest.approx(2 * 30 * 5, abs=1)
     # a knock and an impulse of one size have one energy; the square of the size of a knock is 1 + 0.2^2 on average
     energy = powers["knocks"] / (1.04 * counts["knocks"])
@@ -184,13 +180,11 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
 def test_a_gear_and_impulses_are_both_in_a_record_whose_transform_is_longer(recipe_with):
     """A response of 6,600 samples, whose Fourier transform has 6,750."""
     recipe = recipe_with(FLOAT | {"recording.duration_s": 0.5, "operation.shaft_rpm": 1800})
-    scenarios = draw_scenarios(recipe, 0, 1)
     lines = ({"level": 1.0, "phase": 0.0},)
     gear = Gear(20, 40, lines, 0.0, 0.0, 0.0, high_point=0.0, lead_point=0.0)
-    powers = []
-    for changes in ({"gear": gear}, {"impulses": Tone(40.0, 1e3)}, {"gear": gear, "impulses": Tone(40.0, 1e3)}):
-        rigged = with_rig(scenarios, background=replace(QUIET, **changes), background_rms=1.0, gain=1.0)
-        powers.append(rms(measure(silence(recipe, 1), rigged).signal) ** 2)
+    impulses = Tone(40.0, 1e3)
+    sources = {"gear": gear}, {"impulses": impulses}, {"gear": gear, "impulses": impulses}
+    powers = [rms(background_of(recipe, replace(QUIET, **some))[0]) ** 2 for some in sources]
     assert powers[2] == pytest.approx(powers[0] + powers[1], rel=0.05)
 
 

@@ -5,14 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gen.measurement.measure import measure
 from gen.measurement.rig import along, base_transmissibility
-from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios, settings_of
+from gen.scenarios import Mode, Path, ShaftModulation, Tone, settings_of
 from gen.simulation.shaft import scenario_angles
 from gen.simulation.timeline import timeline
+from tests.measuring import FLOAT, QUIET, background_of
 
-FLOAT = {"recording.converter": {"kind": "float32"}, "recording.duration_s": 1.0, "operation.shaft_rpm": 1800}
-QUIET = Background(0.0, 1e-6, (), ShaftModulation(), (), (), None, None)
+FAST = FLOAT | {"recording.duration_s": 1.0, "operation.shaft_rpm": 1800}
 COURSES = {
     "wandering": {"operation.speed_wander_percent": 1},
     "ramp": {"operation.speed_profile": {"kind": "ramp", "from_percent": 50, "to_percent": 130}},
@@ -25,16 +24,6 @@ CROSSED = [
     {"name": "horizontal", "body": "housing", "angle_deg": 0},
     {"name": "vertical", "body": "housing", "angle_deg": 90},
 ]
-
-
-def background_of(recipe, background, *, acceleration=0.0):
-    """Signals of a machine with a background and a bearing at rest, shape (record, channel, time), and their scenarios."""
-    scenarios = draw_scenarios(recipe, 0, 2)
-    rig = {"background": background, "background_rms": 1.0, "gain": 1.0}
-    scenarios = [replace(scenario, rig=replace(scenario.rig, **rig)) for scenario in scenarios]
-    n = timeline(settings_of(recipe)).returned
-    moved = np.full((2, len(recipe.recording.channels), n), acceleration, np.float32)
-    return measure(moved, scenarios).signal.astype(float), scenarios
 
 
 def by_order(signal, scenario, recipe):
@@ -61,9 +50,9 @@ def nearest_line(spectrum, orders, order):
 @courses
 def test_every_harmonic_stands_at_its_order(recipe_with, changes):
     """With 1 % wander the rate at the twelfth harmonic moves by many lines of the spectrum; its order does not."""
-    recipe = recipe_with(FLOAT | changes)
+    recipe = recipe_with(FAST | changes)
     harmonics = tuple(Tone(order, 1.0) for order in (1, 2, 5, 12))
-    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=harmonics))
+    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=harmonics), 2)
     for signal, scenario in zip(signals[:, 0], scenarios, strict=True):
         spectrum, orders = by_order(signal, scenario, recipe)
         turns = turns_of(scenario, recipe)
@@ -75,15 +64,10 @@ def test_every_harmonic_stands_at_its_order(recipe_with, changes):
 def test_a_harmonic_passes_through_the_path_of_its_channel_at_its_own_frequency(recipe_with):
     channels = [{"name": name, "body": "housing", "angle_deg": 0} for name in ("direct", "resonant")]
     steady = {"operation.speed_wander_percent": 0, "operation.label_error_percent": 0}
-    recipe = recipe_with(FLOAT | steady | {"recording.channels": channels})
+    recipe = recipe_with(FAST | steady | {"recording.channels": channels})
     modes = (Mode(150.0, 0.1, 3.0),)
     paths = Path(1.0, (), ShaftModulation()), Path(0.5, modes, ShaftModulation())
-    scenarios = [
-        replace(one, rig=replace(one.rig, own_paths=paths, background=replace(QUIET, harmonics=(Tone(5, 1e3),))))
-        for one in draw_scenarios(recipe, 0, 1)
-    ]
-    silence = np.zeros((1, 2, timeline(settings_of(recipe)).returned), np.float32)
-    signal = measure(silence, scenarios).signal[0].astype(float)
+    (signal,), scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(5, 1e3),)), own_paths=paths)
     axis = timeline(settings_of(recipe))
     lines = signal @ np.exp(-5j * scenario_angles(scenarios[0], axis)[axis.kept])
     assert lines[1] / lines[0] == pytest.approx(
@@ -92,8 +76,8 @@ def test_a_harmonic_passes_through_the_path_of_its_channel_at_its_own_frequency(
 
 
 def test_the_knocks_of_all_records_of_a_rig_come_at_the_same_angles_of_the_shaft(recipe_with):
-    recipe = recipe_with(FLOAT | {"path.modes": None, "operation.speed_wander_percent": 1})
-    signals, scenarios = background_of(recipe, replace(QUIET, knocks=Tone(3.0, 30.0)))
+    recipe = recipe_with(FAST | {"path.modes": None, "operation.speed_wander_percent": 1})
+    signals, scenarios = background_of(recipe, replace(QUIET, knocks=Tone(3.0, 30.0)), 2)
     axis, of_records = timeline(settings_of(recipe)), []
     for signal, scenario in zip(signals[:, 0], scenarios, strict=True):
         angles = scenario_angles(scenario, axis)[axis.kept][np.abs(signal) > 10]
@@ -105,7 +89,7 @@ def test_the_knocks_of_all_records_of_a_rig_come_at_the_same_angles_of_the_shaft
 
 @courses
 def test_knocks_and_the_modulation_of_the_noise_stand_at_their_orders(recipe_with, changes):
-    recipe = recipe_with(FLOAT | changes | {"path.modes": None})
+    recipe = recipe_with(FAST | changes | {"path.modes": None})
     knocking = replace(QUIET, knocks=Tone(3.0, 30.0))
     modulated = replace(QUIET, modulation=ShaftModulation(0.9, 0.0))
     for background, order in ((knocking, 3), (modulated, 1)):
@@ -117,8 +101,8 @@ def test_knocks_and_the_modulation_of_the_noise_stand_at_their_orders(recipe_wit
 
 
 def test_harmonics_have_the_same_phase_to_the_shaft_in_every_record_of_a_rig(recipe_with):
-    recipe = recipe_with(FLOAT)
-    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(1, 1.0), Tone(3, 1.0))))
+    recipe = recipe_with(FAST)
+    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(1, 1.0), Tone(3, 1.0))), 2)
     for order in (1, 3):
         phases = [
             np.angle(at_order(one, scenario, recipe, order))
@@ -138,7 +122,7 @@ def at_order(signal, scenario, recipe, order):
 def test_the_first_harmonic_is_in_phase_with_the_unbalance(recipe_with):
     """A sensor at the direction of the mark of the shaft sees the positive peak of a circular orbit, behind a path without delay."""
     recipe = recipe_with(
-        FLOAT | {"recording.channels": CROSSED, "path": {"direct": 1.0}, "operation.speed_wander_percent": 0}
+        FAST | {"recording.channels": CROSSED, "path": {"direct": 1.0}, "operation.speed_wander_percent": 0}
     )
     signals, scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(1, 1.0),)))
     horizontal, vertical = (at_order(one, scenarios[0], recipe, 1) for one in signals[0])
@@ -157,7 +141,7 @@ def test_an_orbit_is_an_ellipse_with_the_drawn_flatness(flatness):
 
 
 def test_lines_have_their_level_on_average_over_the_channels_and_a_phase_of_their_own_in_each(recipe_with):
-    recipe = recipe_with(FLOAT | {"recording.channels": CROSSED, "operation.speed_wander_percent": 0})
+    recipe = recipe_with(FAST | {"recording.channels": CROSSED, "operation.speed_wander_percent": 0})
     lines = {"harmonics": (Tone(1, 1.0), Tone(2, 2.0)), "tones": (Tone(1000.0, 3.0),)}
     signals, scenarios = background_of(recipe, replace(QUIET, **lines))
     for order, level in ((1, 1.0), (2, 2.0)):
@@ -172,7 +156,7 @@ def test_lines_have_their_level_on_average_over_the_channels_and_a_phase_of_thei
 def test_the_noise_of_two_channels_has_the_drawn_coherence(recipe_with, coherence):
     from scipy.signal import coherence as measured
 
-    recipe = recipe_with(FLOAT | {"recording.channels": CROSSED, "recording.duration_s": 8.0})
+    recipe = recipe_with(FAST | {"recording.channels": CROSSED, "recording.duration_s": 8.0})
     signals, _ = background_of(recipe, replace(QUIET, coherence=coherence))
     _, found = measured(*signals[0], 12000, nperseg=256)
     assert found[4:-4].mean() == pytest.approx(coherence, abs=0.02)
@@ -181,7 +165,7 @@ def test_the_noise_of_two_channels_has_the_drawn_coherence(recipe_with, coherenc
 
 def test_harmonics_grow_with_the_drawn_power_of_the_speed(recipe_with):
     steps = {"kind": "steps", "levels_percent": [50, 100], "step_s": 0.01}
-    recipe = recipe_with(FLOAT | {"operation.speed_profile": steps, "operation.speed_wander_percent": 0})
+    recipe = recipe_with(FAST | {"operation.speed_profile": steps, "operation.speed_wander_percent": 0})
     signals, _ = background_of(recipe, replace(QUIET, harmonics=(Tone(4, 1.0),), growth=2.0))
     slow, fast = np.std(signals[0, 0][:5500]), np.std(signals[0, 0][6500:])
     noise = np.std(background_of(recipe, QUIET)[0][0, 0])

@@ -61,13 +61,6 @@ def test_warmer_oil_is_thinner_and_dynamic_viscosity_falls_faster_than_kinematic
 
 
 @law
-@given(either, st.floats(-10e-6, 60e-6), st.floats(0.1, 30))
-def test_a_hotter_inner_ring_takes_up_clearance_and_an_equally_warm_one_none(bearing, clearance, hotter):
-    assert warm_clearance(bearing, clearance, 0) == clearance
-    assert warm_clearance(bearing, clearance, hotter) < clearance < warm_clearance(bearing, clearance, -hotter)
-
-
-@law
 @given(either, st.floats(-20, 40))
 def test_clearance_is_what_the_grown_inner_ring_and_two_grown_balls_leave_free(bearing, hotter):
     bearing = replace(bearing, contact_angle=0.0)

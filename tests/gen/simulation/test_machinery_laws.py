@@ -12,7 +12,6 @@ from gen.measurement.measure import measure
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_factor
 from gen.physics.kernel.batch import input_shape
-from gen.physics.lubricant import STEEL_EXPANSION
 from gen.scenarios import draw_scenarios
 from gen.simulation.machine import heaviest_ball_load
 from gen.simulation.motion import cosine_sum
@@ -45,13 +44,6 @@ def labels(recipe):
     scenarios = draw_scenarios(recipe)
     response = response_of(scenarios, recipe)
     return part_dataset(measure(response.acceleration, scenarios), response)
-
-
-def test_a_hotter_inner_ring_takes_up_clearance_as_steel_expands(record_of):
-    cold, warm = (record_of({"operation.inner_ring_hotter_k": hotter}) for hotter in (0, 20))
-    taken = cold.machine.half_clearance - warm.machine.half_clearance
-    assert taken == pytest.approx(20 * STEEL_EXPANSION * cold.bearing.outer_radius, rel=1e-9)
-    assert warm.machine._replace(half_clearance=cold.machine.half_clearance) == cold.machine
 
 
 def test_an_oil_film_takes_up_clearance_yields_and_damps(record_of):

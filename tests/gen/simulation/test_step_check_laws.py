@@ -152,18 +152,6 @@ def test_a_part_of_which_nothing_is_to_be_checked_is_not_run_again(recipe_with):
     assert np.isnan(step_errors(scenarios, recipe, response)).all()
 
 
-def test_a_coarser_step_changes_more_when_it_is_halved(recipe_with):
-    """At least to half: the order is 4, but 2 where a ball swaps edges."""
-    errors = []
-    for steps in (2, 4, 8):
-        recipe = recipe_with({"recording.oversampling": steps})
-        scenarios = draw_scenarios(recipe, 0, 8)
-        errors.append(step_errors(scenarios, recipe, simulate(scenarios)))
-    tried = np.isfinite(errors[0])
-    assert (errors[0] > 2 * errors[1])[tried].all()
-    assert (errors[1] > 2 * errors[2])[tried].all()
-
-
 def test_chosen_steps_follow_the_stiffest_contacts_and_no_finer_than_they_need(checked):
     _, _, response, _ = checked
     assert (response.step_phase < FINE_STEP).all()
