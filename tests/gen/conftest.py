@@ -2,6 +2,7 @@
 
 import copy
 import io
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from ruamel.yaml import YAML
 
 from gen.drawing.section import plain
 from gen.recipe import Recipe
+from tests import corpora
 
 RecipeWith = Callable[..., Recipe]
 
@@ -70,6 +72,27 @@ def small_with(changes: dict[str, Any]) -> dict[str, Any]:
             section = section.setdefault(name, {})
         section[key] = value
     return data
+
+
+@pytest.fixture(scope="session")
+def nine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder that holds one corpus of nine random records as a folder, ``c``, and as a file, ``c.nc``; change copies alone."""
+    place = tmp_path_factory.mktemp("nine")
+    for form in ("c", "c.nc"):
+        corpora.write_corpus(place / form)
+    return place
+
+
+@pytest.fixture
+def copied_folder(nine: Path, tmp_path: Path) -> Path:
+    """Copy of the folder of nine records."""
+    return shutil.copytree(nine / "c", tmp_path / "copy")
+
+
+@pytest.fixture
+def copied_file(nine: Path, tmp_path: Path) -> Path:
+    """Copy of the file of nine records."""
+    return Path(shutil.copyfile(nine / "c.nc", tmp_path / "copy.nc"))
 
 
 @pytest.fixture(scope="session")

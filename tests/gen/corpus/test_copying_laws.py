@@ -1,5 +1,7 @@
 """Laws of copies: records stay as they are in every form of a corpus, and a killed call leaves the whole copy or none."""
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -14,10 +16,9 @@ NAMES = ("copy", "copy.nc")
 
 
 @pytest.fixture
-def source(tmp_path):
+def source(nine, tmp_path):
     """Folder of a corpus of nine records in parts of three, four and two."""
-    corpora.write_corpus(tmp_path / "source")
-    return tmp_path / "source"
+    return shutil.copytree(nine / "c", tmp_path / "source")
 
 
 def contents(path, records=slice(None)):

@@ -28,25 +28,6 @@ from tests.tampering import edit_manifest, edited, manifest_content, seal
 FORMS = ("c", "c.nc")
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """Folder that holds the same corpus as a folder and as a single file."""
-    place = tmp_path_factory.mktemp("made")
-    for form in FORMS:
-        write_corpus(place / form)
-    return place
-
-
-@pytest.fixture
-def copied(made, tmp_path):
-    return shutil.copytree(made / "c", tmp_path / "copy")
-
-
-@pytest.fixture
-def file(made, tmp_path):
-    return shutil.copyfile(made / "c.nc", tmp_path / "copy.nc")
-
-
 def flip(path, place=-100):
     content = bytearray(path.read_bytes())
     content[place] ^= 0xFF
@@ -69,9 +50,9 @@ FILES = ("c.nc", f"c/parts/{part_name(1)}", "c/index.nc")
 @pytest.mark.parametrize("name", FILES)
 @settings(deadline=None, max_examples=60)
 @given(share=st.floats(0, 1), mask=st.integers(1, 255), how=st.sampled_from(["changed", "cut", "longer"]))
-def test_a_file_with_any_other_byte_is_refused_by_name(made, tmp_path_factory, name, share, mask, how):
+def test_a_file_with_any_other_byte_is_refused_by_name(nine, tmp_path_factory, name, share, mask, how):
     corpus = tmp_path_factory.mktemp("bytes") / name.partition("/")[0]
-    (shutil.copytree if corpus.suffix != ".nc" else shutil.copyfile)(made / corpus.name, corpus)
+    (shutil.copytree if corpus.suffix != ".nc" else shutil.copyfile)(nine / corpus.name, corpus)
     path = corpus.parent / name
     content = bytearray(path.read_bytes())
     place = int(share * (len(content) - 1))
@@ -171,10 +152,10 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("damage", REFUSED)
-def test_a_damaged_folder_is_refused_with_the_file_named_and_found_by_validation(copied, damage):
+def test_a_damaged_folder_is_refused_with_the_file_named_and_found_by_validation(copied_folder, damage):
     break_it, sentence = REFUSED[damage]
-    break_it(copied)
-    assert_refused(copied, sentence, problems=3 if "parts is a link" in damage else 1)
+    break_it(copied_folder)
+    assert_refused(copied_folder, sentence, problems=3 if "parts is a link" in damage else 1)
 
 
 def set_fact(name, value):
@@ -202,10 +183,10 @@ REFUSED_FILES = {
 
 
 @pytest.mark.parametrize("damage", REFUSED_FILES)
-def test_a_file_that_is_none_of_the_format_is_refused(file, damage):
+def test_a_file_that_is_none_of_the_format_is_refused(copied_file, damage):
     break_it, sentence = REFUSED_FILES[damage]
-    break_it(file)
-    assert_refused(file, sentence)
+    break_it(copied_file)
+    assert_refused(copied_file, sentence)
 
 
 FACTS = {
@@ -219,12 +200,12 @@ FACTS = {
 
 
 @pytest.mark.parametrize("fact", FACTS)
-def test_a_changed_fact_of_the_manifest_is_found(copied, fact):
-    edit_manifest(copied, **{fact: FACTS[fact]})
-    with_problem = [problem for problem in validate_corpus(copied) if fact in problem]
+def test_a_changed_fact_of_the_manifest_is_found(copied_folder, fact):
+    edit_manifest(copied_folder, **{fact: FACTS[fact]})
+    with_problem = [problem for problem in validate_corpus(copied_folder) if fact in problem]
     assert with_problem or fact == "parts_sha256"
     if fact == "parts_sha256":
-        assert_refused(copied, r"is the index of other parts than manifest\.json lists")
+        assert_refused(copied_folder, r"is the index of other parts than manifest\.json lists")
 
 
 def test_a_changed_recipe_and_a_changed_croissant_are_found(tiny_corpus, tmp_path):
@@ -250,19 +231,19 @@ def test_a_part_of_another_recipe_or_of_other_sources_is_found(tiny_corpus, tmp_
 
 @pytest.mark.parametrize("name", ["fault", "shaft_rate", "bearing"])
 @pytest.mark.parametrize("where", ["index", "part"])
-def test_validation_finds_an_index_that_differs_from_its_parts(copied, name, where):
-    with edited(copied / "index.nc" if where == "index" else part(copied, 0)) as found:
+def test_validation_finds_an_index_that_differs_from_its_parts(copied_folder, name, where):
+    with edited(copied_folder / "index.nc" if where == "index" else part(copied_folder, 0)) as found:
         found[name][2] = found[name][1]
-    seal(copied)
-    assert any(f"part-00000.nc: {name} differs from index.nc" in problem for problem in validate_corpus(copied))
+    seal(copied_folder)
+    assert any(f"part-00000.nc: {name} differs from index.nc" in problem for problem in validate_corpus(copied_folder))
 
 
-def test_a_part_with_another_scale_than_the_first_is_not_read(copied):
-    with edited(part(copied, 1)) as found:
+def test_a_part_with_another_scale_than_the_first_is_not_read(copied_folder):
+    with edited(part(copied_folder, 1)) as found:
         found[SIGNAL].attrs.modify("scale_factor", found[SIGNAL].attrs["scale_factor"] * 2)
-    seal(copied)
+    seal(copied_folder)
     with (
-        open_corpus(copied) as corpus,
+        open_corpus(copied_folder) as corpus,
         pytest.raises(CorpusError, match=r"part-00001\.nc: its signal has another shape or type than the corpus"),
     ):
         corpus[SIGNAL].load()
@@ -324,17 +305,17 @@ def test_counts_of_useless_records_are_those_of_the_signals(tmp_path, form):
     assert any("1 dead of its records cannot be used, none are listed" in p for p in validate_corpus(tmp_path / form))
 
 
-def test_a_corpus_made_before_manifests_had_a_hash_opens(copied):
-    content = manifest_content(copied)
-    (copied / "manifest.json").write_text(json.dumps(content))
-    with open_corpus(copied) as corpus:
+def test_a_corpus_made_before_manifests_had_a_hash_opens(copied_folder):
+    content = manifest_content(copied_folder)
+    (copied_folder / "manifest.json").write_text(json.dumps(content))
+    with open_corpus(copied_folder) as corpus:
         assert corpus.sizes["record"] == content["records"]
 
 
-def test_sizes_alone_do_not_see_what_hashes_see(copied, file):
-    flip(part(copied, 1))
-    flip(file)
-    for corpus in (copied, file):
+def test_sizes_alone_do_not_see_what_hashes_see(copied_folder, copied_file):
+    flip(part(copied_folder, 1))
+    flip(copied_file)
+    for corpus in (copied_folder, copied_file):
         open_corpus(corpus, check="size").close()
         with pytest.raises(CorpusError, match="altered"):
             open_corpus(corpus, check="sha256")
@@ -361,8 +342,8 @@ def test_a_pipe_or_a_folder_is_not_replaced_by_a_file(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
 
 
-def test_no_corpus_is_written_over_anything(copied, file):
-    for corpus in (copied, file):
+def test_no_corpus_is_written_over_anything(copied_folder, copied_file):
+    for corpus in (copied_folder, copied_file):
         before = {path: path.read_bytes() for path in [*corpus.rglob("*"), corpus] if path.is_file()}
         for refuse in (check_new, write_corpus):
             with pytest.raises(CorpusError, match="exists"):
@@ -370,13 +351,16 @@ def test_no_corpus_is_written_over_anything(copied, file):
         assert all(path.read_bytes() == content for path, content in before.items())
 
 
-def test_a_full_disk_leaves_the_last_manifest_and_index_as_they_were(copied):
-    rows, before = read_manifest(copied).parts, {path: path.read_bytes() for path in copied.iterdir() if path.is_file()}
-    assert len(before[copied / "index.nc"]) > 20_000
+def test_a_full_disk_leaves_the_last_manifest_and_index_as_they_were(copied_folder):
+    rows, before = (
+        read_manifest(copied_folder).parts,
+        {path: path.read_bytes() for path in copied_folder.iterdir() if path.is_file()},
+    )
+    assert len(before[copied_folder / "index.nc"]) > 20_000
     with full_disk():
         with pytest.raises(CorpusError, match=r"manifest\.json: could not be written"):
-            write_manifest(copied, facts_of_parts(rows, {"title": "x" * 30_000}))
+            write_manifest(copied_folder, facts_of_parts(rows, {"title": "x" * 30_000}))
         with pytest.raises(CorpusError, match=r"index\.nc: could not be written"):
-            finish_corpus(copied, rows)
-    assert {path: path.read_bytes() for path in copied.iterdir() if path.is_file()} == before
-    assert validate_corpus(copied) == []
+            finish_corpus(copied_folder, rows)
+    assert {path: path.read_bytes() for path in copied_folder.iterdir() if path.is_file()} == before
+    assert validate_corpus(copied_folder) == []

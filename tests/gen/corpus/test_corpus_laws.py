@@ -26,17 +26,11 @@ from gen.corpus import (
 )
 from gen.corpus.part import deflate
 from gen.support.errors import CorpusError
-from tests.corpora import EXTRA, FS, SIZES, columns, dataset, physical, write_corpus, write_parts
+from tests.corpora import EXTRA, FS, SIZES, columns, dataset, physical, write_parts
 
 law = settings(deadline=None, max_examples=10)
 FORMS = ("c", "c.nc")
 """Names of a folder and of a single file."""
-
-
-@pytest.fixture(scope="module", params=FORMS)
-def corpus(request, tmp_path_factory):
-    path = tmp_path_factory.mktemp("corpus") / request.param
-    return path, write_corpus(path)
 
 
 @pytest.mark.parametrize("codec", CODECS)
@@ -69,39 +63,34 @@ def test_any_shape_survives_the_journey_with_any_codec_and_both_forms_hold_the_s
         assert all(folder[name].variable.identical(file[name].variable) for name in folder.variables)
 
 
-def test_every_part_is_a_corpus_of_its_own(tmp_path):
-    parts = write_corpus(tmp_path / "c")
-    with open_corpus(tmp_path / "c") as whole:
+def test_every_part_is_a_corpus_of_its_own(nine):
+    with open_corpus(nine / "c") as whole:
         for number, first in enumerate(np.cumsum([0, *SIZES[:-1]])):
-            path = tmp_path / "c" / "parts" / part_name(number)
+            path = nine / "c" / "parts" / part_name(number)
             assert validate_corpus(path) == []
             assert read_manifest(path).records == SIZES[number]
             with open_corpus(path) as alone:
-                np.testing.assert_allclose(alone[SIGNAL], physical(parts[number]))
+                np.testing.assert_allclose(alone[SIGNAL], physical(dataset(int(first), SIZES[number])))
                 here = whole.isel(record=slice(first, first + SIZES[number]))
                 assert all(alone[name].variable.identical(here[name].variable) for name in whole.variables)
 
 
-def test_an_index_alone_is_refused_with_the_name_of_its_folder(tmp_path):
-    write_corpus(tmp_path / "c")
+def test_an_index_alone_is_refused_with_the_name_of_its_folder(nine):
     with pytest.raises(CorpusError, match=r"index\.nc: is the index of a corpus and holds no signals; give its folder"):
-        open_corpus(tmp_path / "c" / "index.nc")
+        open_corpus(nine / "c" / "index.nc")
 
 
-def test_both_forms_take_what_they_know_from_the_same_facts(tmp_path):
-    for form in FORMS:
-        write_corpus(tmp_path / form)
-    folder, file = (read_manifest(tmp_path / form) for form in FORMS)
+def test_both_forms_take_what_they_know_from_the_same_facts(nine):
+    folder, file = (read_manifest(nine / form) for form in FORMS)
     assert folder.model_copy(update={"parts": ()}) == file
-    index, single = (open_corpus(tmp_path / form).attrs for form in FORMS)
+    index, single = (open_corpus(nine / form).attrs for form in FORMS)
     assert index == single
 
 
-def test_the_lister_of_the_netcdf4_wheel_shows_dimensions_and_classes(tmp_path):
-    write_corpus(tmp_path / "c.nc")
+def test_the_lister_of_the_netcdf4_wheel_shows_dimensions_and_classes(nine):
     lister = Path(sys.executable).with_name("ncinfo")
     header, fault = (
-        subprocess.run([lister, *chosen, tmp_path / "c.nc"], capture_output=True, text=True, check=True).stdout
+        subprocess.run([lister, *chosen, nine / "c.nc"], capture_output=True, text=True, check=True).stdout
         for chosen in ((), ("-v", "fault"))
     )
     assert "dimensions(sizes): record(9), channel(2), elapsed_time(50)," in header
@@ -109,15 +98,16 @@ def test_the_lister_of_the_netcdf4_wheel_shows_dimensions_and_classes(tmp_path):
     assert f"flag_meanings: {' '.join(FAULT_NAMES.values())}\n" in fault
 
 
-def test_a_corpus_reads_alike_from_anywhere_and_after_it_was_moved(corpus, tmp_path, monkeypatch):
-    path, parts = corpus
+@pytest.mark.parametrize("form", FORMS)
+def test_a_corpus_reads_alike_from_anywhere_and_after_it_was_moved(nine, tmp_path, monkeypatch, form):
+    path, last = nine / form, physical(dataset(sum(SIZES[:-1]), SIZES[-1]))[-1]
     moved = tmp_path / "elsewhere" / f"other name{path.suffix}"
     (shutil.copytree if path.is_dir() else shutil.copyfile)(path, (moved.parent.mkdir(), moved)[1])
     places = [(tmp_path, moved), (moved.parent, Path(moved.name))]
     for here, name in places + ([(moved, Path()), (moved / "parts", Path(".."))] if path.is_dir() else []):
         monkeypatch.chdir(here)
         with open_corpus(name) as found:
-            np.testing.assert_allclose(found[SIGNAL][-1], physical(parts[-1])[-1])
+            np.testing.assert_allclose(found[SIGNAL][-1], last)
 
 
 @pytest.mark.parametrize("columns_change", [lambda c: c.pop("bpfi"), lambda c: c.update(colour=np.zeros(2))])

@@ -84,21 +84,18 @@ def test_no_file_stays_open_after_a_look_at_it(many):
         pass
 
 
-def test_a_missing_part_is_never_taken_from_the_current_folder(tmp_path, monkeypatch):
-    write_corpus(tmp_path / "c", (2, 3))
-    shutil.copytree(tmp_path / "c", tmp_path / "other")
-    with open_corpus(tmp_path / "c") as corpus:
-        (tmp_path / "c" / "parts" / part_name(1)).unlink()
-        monkeypatch.chdir(tmp_path / "other")
+def test_a_missing_part_is_never_taken_from_the_current_folder(nine, copied_folder, monkeypatch):
+    with open_corpus(copied_folder) as corpus:
+        (copied_folder / "parts" / part_name(1)).unlink()
+        monkeypatch.chdir(nine / "c")
         with pytest.raises(CorpusError, match=r"part-00001\.nc: not a readable file of a corpus"):
             corpus[SIGNAL][3].load()
 
 
-def test_a_part_that_changes_after_the_corpus_was_opened_is_refused(tmp_path):
-    write_corpus(tmp_path / "c", (2, 3))
-    with open_corpus(tmp_path / "c") as corpus:
+def test_a_part_that_changes_after_the_corpus_was_opened_is_refused(copied_folder):
+    with open_corpus(copied_folder) as corpus:
         corpus[SIGNAL][0].load()
-        shutil.copyfile(tmp_path / "c" / "parts" / part_name(1), tmp_path / "c" / "parts" / part_name(0))
+        shutil.copyfile(copied_folder / "parts" / part_name(1), copied_folder / "parts" / part_name(0))
         with pytest.raises(
             CorpusError, match=r"part-00000\.nc: changed since the corpus was opened; open the corpus again"
         ):
@@ -119,9 +116,8 @@ def test_any_piece_of_the_signal_is_that_piece_of_the_whole(many, key):
         np.testing.assert_allclose(corpus[SIGNAL][key], whole[key])
 
 
-def test_a_missing_sample_is_nan_and_no_other_is(tmp_path):
-    write_corpus(tmp_path / "c", (2,))
-    path = tmp_path / "c" / "parts" / part_name(0)
+def test_a_missing_sample_is_nan_and_no_other_is(copied_folder):
+    path = copied_folder / "parts" / part_name(2)
     with h5py.File(path, "r+") as part:
         values = part[SIGNAL][:]
         values[1, 0, 7] = -32768

@@ -116,7 +116,7 @@ def test_records_of_silence_may_be_alike(tmp_path):
     [
         (
             {"channels": ("a", "c")},
-            r"has the channels a, c, and .*one has a, b; .*\(--rename-channel c=b\).*\(--channels\)",
+            r"has the channels a, c, and .*c has a, b; .*\(--rename-channel c=b\).*\(--channels\)",
         ),
         (
             {"samples": 40},
@@ -125,45 +125,41 @@ def test_records_of_silence_may_be_alike(tmp_path):
         ({"kind": "float32"}, r"has the storage of the signals float32, and .* m s-2; .*\(--float32\)"),
     ],
 )
-def test_corpora_that_do_not_fit_together_are_refused_with_the_difference(tmp_path, changed, sentence):
-    corpora.write_corpus(tmp_path / "one")
+def test_corpora_that_do_not_fit_together_are_refused_with_the_difference(nine, tmp_path, changed, sentence):
     corpora.write_parts(tmp_path / "other", [corpora.dataset(100, 3, **changed)])
     with pytest.raises(CorpusError, match=sentence):
-        copy([tmp_path / "one", tmp_path / "other"], tmp_path / "joined")
+        copy([nine / "c", tmp_path / "other"], tmp_path / "joined")
 
 
-def test_corpora_of_another_sample_rate_are_refused(tmp_path, monkeypatch):
-    corpora.write_corpus(tmp_path / "one")
+def test_corpora_of_another_sample_rate_are_refused(nine, tmp_path, monkeypatch):
     monkeypatch.setattr(corpora, "FS", 2000.0)
     corpora.write_parts(tmp_path / "other", [corpora.dataset(100, 3)])
-    with pytest.raises(CorpusError, match=r"has the sample rate 2000 Hz, and .*one has 1000 Hz;"):
-        copy([tmp_path / "one", tmp_path / "other"], tmp_path / "joined")
+    with pytest.raises(CorpusError, match=r"has the sample rate 2000 Hz, and .*c has 1000 Hz;"):
+        copy([nine / "c", tmp_path / "other"], tmp_path / "joined")
 
 
-def test_counts_and_floating_point_join_in_floating_point_if_asked(tmp_path):
-    corpora.write_corpus(tmp_path / "counts")
+def test_counts_and_floating_point_join_in_floating_point_if_asked(nine, tmp_path):
     corpora.write_parts(tmp_path / "floats", [corpora.dataset(100, 3, kind="float32")])
-    copy([tmp_path / "counts", tmp_path / "floats"], tmp_path / "joined", float32=True)
+    copy([nine / "c", tmp_path / "floats"], tmp_path / "joined", float32=True)
     assert validate_corpus(tmp_path / "joined") == []
     with open_corpus(tmp_path / "joined") as corpus:
         told = "copied by raceway copy: joined 2 corpora; stored in floating point"
         assert corpus.attrs["history"].splitlines() == ["made by a test", told]
     (found,) = columns(tmp_path / "joined", SIGNAL)
-    expected = [columns(tmp_path / name, SIGNAL)[0].astype(np.float32) for name in ("counts", "floats")]
+    expected = [columns(path, SIGNAL)[0].astype(np.float32) for path in (nine / "c", tmp_path / "floats")]
     assert found.dtype == np.float32
     np.testing.assert_array_equal(found, np.concatenate(expected))
 
 
-def test_channels_of_two_sources_join_by_name_in_any_order(tmp_path):
-    corpora.write_corpus(tmp_path / "one", (2,))
+def test_channels_of_two_sources_join_by_name_in_any_order(nine, tmp_path):
     corpora.write_parts(tmp_path / "other", [corpora.dataset(100, 3, channels=("sensor", "a", "extra"))])
     copy(
-        [tmp_path / "one", tmp_path / "other"], tmp_path / "joined", rename={"sensor": "b"}, channels=["a", "b"]
+        [nine / "c", tmp_path / "other"], tmp_path / "joined", rename={"sensor": "b"}, channels=["a", "b"]
     )  # fmt: skip
     found, channels = columns(tmp_path / "joined", SIGNAL, "channel")
     (other,) = columns(tmp_path / "other", SIGNAL)
     assert channels.tolist() == ["a", "b"]
-    np.testing.assert_array_equal(found[2:], other[:, [1, 0]])
+    np.testing.assert_array_equal(found[9:], other[:, [1, 0]])
 
 
 def test_facts_are_kept_if_all_corpora_have_them(tones, tmp_path):

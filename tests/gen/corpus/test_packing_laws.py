@@ -19,7 +19,7 @@ from gen.corpus import (
 from gen.corpus.schema import signal_attributes
 from gen.recipe.sensing import Converter
 from gen.support.errors import CorpusError
-from tests.corpora import dataset, write_corpus, write_parts
+from tests.corpora import SIZES, dataset, write_parts
 
 law = settings(deadline=None, max_examples=100)
 EVERY_COUNT = np.arange(-(2**15), 2**15).astype(np.int16)
@@ -56,14 +56,9 @@ def test_every_count_comes_back_from_single_precision_for_any_full_scale(full_sc
     np.testing.assert_allclose(decoded[1:], EVERY_COUNT[1:] * (full_scale / LARGEST), rtol=1.2e-7)
 
 
-@pytest.fixture(scope="module")
-def corpus(tmp_path_factory):
-    path = tmp_path_factory.mktemp("packed") / "c.nc"
-    return path, np.concatenate([part[SIGNAL].values for part in write_corpus(path)])
-
-
-def test_every_reader_decodes_to_the_same_single_precision_numbers(corpus):
-    path, counts = corpus
+def test_every_reader_decodes_to_the_same_single_precision_numbers(nine):
+    path, starts = nine / "c.nc", np.cumsum([0, *SIZES[:-1]])
+    counts = np.concatenate([dataset(int(first), n)[SIGNAL] for first, n in zip(starts, SIZES, strict=True)])
     with open_corpus(path) as opened:
         signal, scale = opened[SIGNAL].load(), opened[SIGNAL].encoding["scale_factor"]
         bearings = opened["bearing"].values.tolist()

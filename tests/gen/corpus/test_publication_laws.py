@@ -1,7 +1,5 @@
 """Laws of publication: who made a corpus and how it may be used changes no part, and a killed change leaves a corpus that can be read."""
 
-import shutil
-
 import netCDF4
 import pytest
 from ruamel.yaml import YAML
@@ -39,21 +37,10 @@ def _no_clock(monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
 
 
-@pytest.fixture(scope="module", params=["corpus", "corpus.nc"])
-def plain(request, tmp_path_factory):
-    path = tmp_path_factory.mktemp("plain") / request.param
-    corpora.write_corpus(path)
-    return path
-
-
-@pytest.fixture
-def corpus(plain, tmp_path):
+@pytest.fixture(params=["copied_folder", "copied_file"])
+def corpus(request):
     """A finished corpus without a publication: a folder or a single file."""
-    return copy(plain, tmp_path / plain.name)
-
-
-def copy(path, target):
-    return shutil.copytree(path, target) if path.is_dir() else shutil.copyfile(path, target)
+    return request.getfixturevalue(request.param)
 
 
 def test_a_published_corpus_has_the_files_of_one_that_was_made_with_its_publication(corpus, tmp_path):
@@ -93,21 +80,19 @@ STEPS = ("write_index", "write_manifest", "write_card", "write_croissant")
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_a_call_that_ends_between_two_files_is_found_and_repaired(tmp_path, monkeypatch, step):
-    corpora.write_corpus(tmp_path / "c")
-
+def test_a_call_that_ends_between_two_files_is_found_and_repaired(copied_folder, monkeypatch, step):
     def killed(*_):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
         patch.setattr(f"gen.corpus.finishing.{step}", killed)
         with pytest.raises(KeyboardInterrupt):
-            publish(tmp_path / "c", WHOLE)
-    open_corpus(tmp_path / "c").close()
-    assert (validate_corpus(tmp_path / "c") == []) == (step == "write_index")
-    publish(tmp_path / "c", WHOLE)
-    assert validate_corpus(tmp_path / "c") == []
-    assert read_manifest(tmp_path / "c").publication == WHOLE
+            publish(copied_folder, WHOLE)
+    open_corpus(copied_folder).close()
+    assert (validate_corpus(copied_folder) == []) == (step == "write_index")
+    publish(copied_folder, WHOLE)
+    assert validate_corpus(copied_folder) == []
+    assert read_manifest(copied_folder).publication == WHOLE
 
 
 def test_an_altered_corpus_is_not_published(corpus):

@@ -23,21 +23,22 @@ from gen.support.errors import CorpusError
 from tests.corpora import FS, dataset, write_corpus, write_parts
 from tests.same_corpora import files
 
-KINDS = ("counts", "float32")
 
-
-@pytest.fixture(scope="module", params=KINDS)
-def corpus(request, tmp_path_factory):
-    folder = tmp_path_factory.mktemp(request.param) / "corpus"
-    write_corpus(folder, kind=request.param)
+@pytest.fixture(scope="module")
+def floats(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("float32") / "corpus"
+    write_corpus(folder, kind="float32")
     return folder
 
 
 @pytest.fixture(scope="module")
-def counts(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("for_kills") / "corpus"
-    write_corpus(folder)
-    return folder
+def counts(nine):
+    return nine / "c"
+
+
+@pytest.fixture(params=["counts", "floats"])
+def corpus(request):
+    return request.getfixturevalue(request.param)
 
 
 def opened(folder):

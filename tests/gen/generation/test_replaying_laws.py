@@ -123,10 +123,9 @@ def test_a_record_that_is_not_there_is_not_replayed(tiny_corpus, record):
         replay(tiny_corpus, record)
 
 
-def test_a_stored_text_that_is_no_scenario_is_refused_with_corpus_and_record(tmp_path):
-    corpora.write_corpus(tmp_path / "corpus")
-    with pytest.raises(CorpusError, match=r"corpus: record 4: stored scenario: the whole text: Invalid JSON"):
-        replay(tmp_path / "corpus", 4)
+def test_a_stored_text_that_is_no_scenario_is_refused_with_corpus_and_record(nine):
+    with pytest.raises(CorpusError, match=r"c: record 4: stored scenario: the whole text: Invalid JSON"):
+        replay(nine / "c", 4)
 
 
 def test_a_corpus_that_stores_no_scenarios_is_refused(tmp_path, monkeypatch):
