@@ -7,7 +7,6 @@ import pytest
 from gen.corpus import RECIPE_NAME, part_name, read_manifest, recipe_text
 from gen.corpus.index import corpus_attributes, write_index
 from gen.corpus.manifest import facts_of_parts, write_manifest
-from gen.generation.corpus import generate
 from tests.corpora import write_corpus
 
 
@@ -22,13 +21,12 @@ def test_the_index_has_the_same_bytes_however_many_parts_are_copied_together(tmp
     assert (tmp_path / "c" / "index.nc").read_bytes() == before
 
 
-def test_parts_beyond_the_hundred_thousandth_are_in_the_order_of_their_records(write_recipe, tmp_path):
-    folder = generate(write_recipe(tmp_path / "r.yaml"), tmp_path / "c").path
+def test_parts_beyond_the_hundred_thousandth_are_in_the_order_of_their_records(copied):
     names = [part_name(number) for number in (99_999, 100_000)]
     for name in names:
-        shutil.copy(folder / "parts" / part_name(0), folder / "parts" / name)
+        shutil.copy(copied / "parts" / part_name(0), copied / "parts" / name)
     for number in range(3):
-        (folder / "parts" / part_name(number)).unlink()
-    write_manifest(folder, facts_of_parts([], {"title": "unfinished"}, complete=False))
-    assert (folder / RECIPE_NAME).is_file()
-    assert [row.name for row in read_manifest(folder).parts] == names
+        (copied / "parts" / part_name(number)).unlink()
+    write_manifest(copied, facts_of_parts([], {"title": "unfinished"}, complete=False))
+    assert (copied / RECIPE_NAME).is_file()
+    assert [row.name for row in read_manifest(copied).parts] == names
