@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.bearing import free_contact_angle, orders, slipping_orders
+from gen.physics.bearing import ball_spacing, free_contact_angle, orders, slipping_orders
 from tests.strategies import bearings
 
 law = settings(deadline=None, max_examples=100)
@@ -70,3 +70,10 @@ def test_a_bearing_moved_along_its_axis_to_the_free_angle_closes_its_clearance(b
         assert apart * (1 - math.cos(angle)) == pytest.approx(clearance / 2, abs=1e-12)
     assert free_contact_angle(bearing, -clearance) == 0
     assert free_contact_angle(replace(bearing, rolling_element="roller", roller_length=0.01), clearance) == 0
+
+
+@law
+@given(bearings())
+def test_the_arcs_between_the_balls_make_a_whole_turn(bearing):
+    for site in ("inner", "outer"):
+        assert bearing.n_balls * ball_spacing(bearing, site) == pytest.approx(2 * math.pi * bearing.radius(site))

@@ -164,3 +164,11 @@ def test_the_first_record_of_each_class_is_the_first_one_drawn_with_it(recipe_wi
     drawn = [(one.specimen.fault, one.record.number) for one in draw_scenarios(recipe)]
     assert first_records(recipe) == dict(reversed(drawn))
     assert set(first_specimens(recipe)) >= set(first_records(recipe)) - {"healthy"}
+
+
+def test_over_the_seeds_the_other_bearings_of_a_rig_have_the_shares_of_their_weights(recipe_with):
+    weights, seeds_tried = (2, 1, 0.6, 0.4), 2000
+    recipe = recipe_with(with_other(0.4, weights) | {"corpus.specimens_per_rig": 3})
+    pairs = sum(pairs_over_rigs(recipe.model_copy(update={"seed": seed}), 1)[0] for seed in range(seeds_tried))
+    expected = 3 * np.outer(np.array(weights) / sum(weights), shares_of_other(0.4, weights))
+    np.testing.assert_allclose(pairs / seeds_tried, expected, atol=0.09)  # 4 sigma of the most frequent pair

@@ -1,5 +1,7 @@
 """Laws of the drop of a ball over a spall."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -89,3 +91,15 @@ def test_the_drop_in_the_cache_has_the_bits_of_that_in_the_kernel(profile, share
 @given(st.floats(1.0, 2.5), st.floats(0, 0.25), races, st.floats(1e-6, 1e-4))
 def test_far_inside_a_spall_as_wide_as_several_balls_a_ball_lies_on_the_floor(half, share, race, depth):
     assert fall(GEOMETRIC, share * half, half, race, depth) == depth
+
+
+@law
+@given(shares, halves, races)
+def test_a_ball_on_an_edge_keeps_its_distance_from_that_edge(share, half, race):
+    """The triangle of ring centre, edge and ball centre, without a sagitta in it."""
+    offset = share * half
+    angle = half - offset
+    reach = abs(race) + math.copysign(BALL, race)
+    centre = reach - math.copysign(fall(GEOMETRIC, offset, half, race), race)
+    from_edge = math.hypot(centre * math.cos(angle) - abs(race), centre * math.sin(angle))
+    assert from_edge == pytest.approx(BALL, rel=1e-9)
