@@ -2,15 +2,7 @@
 
 import numpy as np
 
-from gen.corpus import (
-    FAULTS,
-    SCHEMA,
-    SIGNAL,
-    Variable,
-    identity,
-    make_dataset,
-    new_corpus,
-)
+from gen.corpus import FAULTS, SCHEMA, SIGNAL, Variable, identity, make_dataset, new_corpus
 
 FS = 1000.0
 COUNTS_PER_UNIT = 65.534

@@ -6,16 +6,7 @@ import pytest
 
 from tests.paths import ROOT
 
-TASKS = (
-    "fault class",
-    "feature group",
-    "channel",
-    "importer",
-    "form of copy",
-    "baseline",
-    "bearing",
-    "label",
-)
+TASKS = ("fault class", "feature group", "channel", "importer", "form of copy", "baseline", "bearing", "label")
 PAGE = (ROOT / "docs" / "developing.md").read_text(encoding="utf-8")
 FILE = re.compile(r"^(\d+)\. `([\w/.-]+)`: (.+(?:\n   .+)*)", re.MULTILINE)
 

@@ -7,15 +7,7 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.corpus import (
-    MISSING_COUNT,
-    SIGNAL,
-    open_corpus,
-    open_part,
-    part_name,
-    validate_corpus,
-    write_part,
-)
+from gen.corpus import MISSING_COUNT, SIGNAL, open_corpus, open_part, part_name, validate_corpus, write_part
 from gen.corpus.schema import signal_attributes
 from gen.recipe.sensing import Converter
 from gen.support.errors import CorpusError

@@ -4,15 +4,7 @@ import netCDF4
 import pytest
 from ruamel.yaml import YAML
 
-from gen.corpus import (
-    Publication,
-    new_corpus,
-    open_corpus,
-    publish,
-    read_manifest,
-    read_publication,
-    validate_corpus,
-)
+from gen.corpus import Publication, new_corpus, open_corpus, publish, read_manifest, read_publication, validate_corpus
 from gen.corpus.publication import check_doi, check_orcid
 from gen.recipe import read_recipe, recipe_hash
 from gen.support.errors import CorpusError, RecipeError

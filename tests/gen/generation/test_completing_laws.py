@@ -8,12 +8,7 @@ import shutil
 import pytest
 
 from gen import copy
-from gen.corpus import (
-    open_corpus,
-    part_name,
-    read_manifest,
-    write_manifest,
-)
+from gen.corpus import open_corpus, part_name, read_manifest, write_manifest
 from gen.generation import sources as sources_of_records
 from gen.generation.corpus import generate
 from gen.generation.scheduling import Crew

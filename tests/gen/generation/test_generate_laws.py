@@ -8,13 +8,7 @@ import pytest
 from distributed import LocalCluster
 
 from gen import replay
-from gen.corpus import (
-    SIGNAL,
-    open_corpus,
-    read_manifest,
-    recipe_text,
-    validate_corpus,
-)
+from gen.corpus import SIGNAL, open_corpus, read_manifest, recipe_text, validate_corpus
 from gen.corpus.manifest import Overrides
 from gen.generation.corpus import generate
 from gen.support.errors import ClusterError, CorpusError, RecipeError

@@ -6,15 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gen import (
-    draw_scenarios,
-    generate,
-    open_corpus,
-    read_recipe,
-    read_scenarios,
-    replay,
-    write_corpus,
-)
+from gen import draw_scenarios, generate, open_corpus, read_recipe, read_scenarios, replay, write_corpus
 from gen.corpus import SIGNAL, finish_corpus, part_name, write_part
 from gen.support.errors import CorpusError
 from tests import corpora
@@ -50,11 +42,7 @@ def test_a_record_that_was_tampered_with_is_not_what_replay_makes(write_recipe, 
 
 def test_records_of_faults_and_levels_that_were_drawn_again_are_replayed_bit_for_bit(write_recipe, tmp_path):
     """Also where records before them were left out, so that their places in the corpus are not their numbers."""
-    level = {
-        "kind": "snr",
-        "faulty_db": "uniform(-25, 10)",
-        "healthy_db": "uniform(-15, 10)",
-    }
+    level = {"kind": "snr", "faulty_db": "uniform(-25, 10)", "healthy_db": "uniform(-15, 10)"}
     outer = {"kind": "outer", "width_mm": 0.5, "angle_deg": "uniform(-180, 180)"}
     hidden = {"kind": "ball", "width_mm": 0.1, "level": {"faulty_db": -60}}
     changes = {"level": level, "faults": [outer, hidden], "recording.duration_s": 0.25, "truth.undetected": "redraw"}

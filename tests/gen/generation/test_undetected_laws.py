@@ -16,11 +16,7 @@ from gen.simulation.simulate import simulate
 
 FLOAT = FloatConverter(kind="float32")
 OUTER = {"kind": "outer", "width_mm": 0.5, "angle_deg": "uniform(-180, 180)"}
-LEVEL = {
-    "kind": "snr",
-    "faulty_db": "uniform(-15, 10)",
-    "healthy_db": "uniform(-15, 10)",
-}
+LEVEL = {"kind": "snr", "faulty_db": "uniform(-15, 10)", "healthy_db": "uniform(-15, 10)"}
 TRAINING = {
     "level": LEVEL,
     "recording.duration_s": 0.25,

@@ -20,12 +20,7 @@ law = settings(deadline=None, max_examples=25)
 @pytest.fixture(scope="module")
 def levelled(recipe_with):
     """A recipe whose levels follow a signal-to-noise ratio, and its scenarios."""
-    level = {
-        "kind": "snr",
-        "faulty_db": "uniform(-10, 25)",
-        "healthy_db": "uniform(-20, 10)",
-        "rms_m_s2": 1.0,
-    }
+    level = {"kind": "snr", "faulty_db": "uniform(-10, 25)", "healthy_db": "uniform(-20, 10)", "rms_m_s2": 1.0}
     recipe = recipe_with(FLOAT | {"level": level, "recording.duration_s": 1.0})
     return recipe, draw_scenarios(recipe)
 
@@ -130,10 +125,7 @@ def test_a_tone_comes_through_the_path_with_the_transmissibility_of_its_resonanc
 ):
     recipe = recipe_with(FLOAT)
     scenarios = with_rig(
-        draw_scenarios(recipe, 0, 1),
-        path=Path(direct, tuple(modes), ShaftModulation()),
-        gain=1.0,
-        background_rms=0.0,
+        draw_scenarios(recipe, 0, 1), path=Path(direct, tuple(modes), ShaftModulation()), gain=1.0, background_rms=0.0
     )
     tone, found = tone_through(recipe, scenarios, frequency)
     expected = complex(direct)

@@ -72,10 +72,7 @@ def test_a_record_is_borne_up_to_twice_the_static_rating(recipe_with, load, born
 
 def test_a_single_record_beyond_the_limit_is_left_out_and_named(write_recipe, tmp_path):
     """Grids follow the number of the record: one record of four is 100 N too heavy."""
-    path = write_recipe(
-        tmp_path / "r.yaml",
-        {"operation.load_n": f"grid(500, {LIMIT + 100}, 500, 500)", "records": 4},
-    )
+    path = write_recipe(tmp_path / "r.yaml", {"operation.load_n": f"grid(500, {LIMIT + 100}, 500, 500)", "records": 4})
     made = generate(path, tmp_path / "corpus")
     assert made.records == 3
     (sentence,) = made.failures

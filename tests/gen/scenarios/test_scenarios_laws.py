@@ -155,11 +155,7 @@ def test_the_first_rigs_of_a_corpus_set_aside_the_share_of_their_specimens_whate
 
 @pytest.mark.parametrize("sampling", ["sobol", "halton"])
 def test_quasi_random_records_fill_the_range_of_a_value_evenly(recipe_with, sampling):
-    changes = {
-        "corpus.sampling": sampling,
-        "corpus.rigs": 8,
-        "operation.shaft_rpm": "uniform(1, 64)",
-    }
+    changes = {"corpus.sampling": sampling, "corpus.rigs": 8, "operation.shaft_rpm": "uniform(1, 64)"}
     drawn = draw_scenarios(recipe_with(changes))
     quantiles = [(scenario.record.conditions.shaft_rate * 60 - 1) / 63 for scenario in drawn]
     assert len(quantiles) == 64

@@ -11,12 +11,7 @@ from tests.responses import input_of
 
 
 def test_a_record_does_not_depend_on_whether_its_neighbours_have_waviness(recipe_with):
-    recipe = recipe_with(
-        {
-            "faults": [{"kind": "inner", "width_mm": 0.5}],
-            "specimen.waviness_nm": "choice(0, 500)",
-        }
-    )
+    recipe = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}], "specimen.waviness_nm": "choice(0, 500)"})
     scenarios = draw_scenarios(recipe)
     assert len({input_of(scenario).waviness.races.size for scenario in scenarios}) == 2
     together = simulate(scenarios).acceleration

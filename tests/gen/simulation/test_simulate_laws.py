@@ -42,19 +42,14 @@ def test_a_longer_settling_time_drops_more_and_changes_nothing_else(recipe_with)
 
 
 def test_a_response_is_the_decimated_motion_of_its_bodies_along_its_channels(recipe_with):
-    channels = [
-        {"name": "a", "body": "sensor", "angle_deg": 30},
-        {"name": "b", "body": "housing"},
-    ]
+    channels = [{"name": "a", "body": "sensor", "angle_deg": 30}, {"name": "b", "body": "housing"}]
     recipe = recipe_with({"recording.channels": channels, "recording.oversampling": 8})
     scenarios = draw_scenarios(recipe, 0, 3)
     response = simulate(scenarios).acceleration
     n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
     taps = decimation_taps(8)
     for trip, found in zip(
-        march_lanes([input_of(scenario) for scenario in scenarios], n_knots, 8, 1 / FS),
-        response,
-        strict=True,
+        march_lanes([input_of(scenario) for scenario in scenarios], n_knots, 8, 1 / FS), response, strict=True
     ):
         full_rate = trip.accelerations
         tilted = math.cos(math.pi / 6) * full_rate[:, 4] + math.sin(math.pi / 6) * full_rate[:, 5]
@@ -98,11 +93,7 @@ def test_a_machine_too_stiff_for_any_step_is_refused(recipe_with):
 def test_a_record_that_diverges_is_named_and_leaves_the_others_as_they_are(recipe_with, monkeypatch):
     """Two rigs, one step per sample: a resonance at 5.9 kHz is beyond what Runge-Kutta holds (2.83 / dt), one at 1.5 kHz is not."""
     monkeypatch.setattr("gen.simulation.steps.COARSEST_STEP", math.inf)
-    changes = {
-        "corpus.rigs": 2,
-        "recording.oversampling": 1,
-        "machine.resonator.frequency_hz": "grid(1500, 5900)",
-    }
+    changes = {"corpus.rigs": 2, "recording.oversampling": 1, "machine.resonator.frequency_hz": "grid(1500, 5900)"}
     recipe = recipe_with(changes)
     scenarios = draw_scenarios(recipe)
     response = simulate(scenarios)
