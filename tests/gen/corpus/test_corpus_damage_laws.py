@@ -5,7 +5,7 @@ import os
 import shutil
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.corpus import (
@@ -48,7 +48,6 @@ FILES = ("c.nc", f"c/parts/{part_name(1)}", "c/index.nc")
 
 
 @pytest.mark.parametrize("name", FILES)
-@settings(deadline=None, max_examples=60)
 @given(share=st.floats(0, 1), mask=st.integers(1, 255), how=st.sampled_from(["changed", "cut", "longer"]))
 def test_a_file_with_any_other_byte_is_refused_by_name(nine, tmp_path_factory, name, share, mask, how):
     corpus = tmp_path_factory.mktemp("bytes") / name.partition("/")[0]

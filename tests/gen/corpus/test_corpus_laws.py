@@ -28,7 +28,7 @@ from gen.corpus.part import deflate
 from gen.support.errors import CorpusError
 from tests.corpora import EXTRA, FS, SIZES, columns, dataset, physical, write_parts
 
-law = settings(deadline=None, max_examples=10)
+law = settings(max_examples=10)
 FORMS = ("c", "c.nc")
 """Names of a folder and of a single file."""
 

@@ -4,7 +4,7 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.corpus import MISSING_COUNT, SIGNAL, open_corpus, open_part, part_name, validate_corpus, write_part
@@ -13,7 +13,6 @@ from gen.recipe.sensing import Converter
 from gen.support.errors import CorpusError
 from tests.corpora import SIZES, dataset, write_parts
 
-law = settings(deadline=None, max_examples=100)
 EVERY_COUNT = np.arange(-(2**15), 2**15).astype(np.int16)
 LARGEST = 32767
 LIMITS = (1e-6, 1e6)  # of recording.converter.full_scale_m_s2
@@ -31,7 +30,6 @@ def decoded_by_xarray(counts, attributes):
     return xr.decode_cf(xr.Dataset({"x": ("time", counts, attributes)}))["x"]
 
 
-@law
 @given(st.floats(*LIMITS))
 def test_every_count_comes_back_from_single_precision_for_any_full_scale(full_scale):
     attributes = signal_attributes(LARGEST / full_scale)

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import kstest, loguniform, truncnorm, uniform
 
 from gen.drawing.distributions import Choice, Constant, Grid, LogUniform, Normal, Uniform, weighted_index
 
-law = settings(deadline=None, max_examples=50)
 quantiles = st.floats(0, 1, exclude_max=True)
 numbers = st.floats(0.01, 100)
 EVEN = (np.arange(2000) + 0.5) / 2000
@@ -32,14 +31,12 @@ def distributions(draw):
     )
 
 
-@law
 @given(distributions(), quantiles)
 def test_every_value_lies_in_the_support(distribution, u):
     low, high = distribution.support()
     assert low * (1 - 1e-12) <= distribution.draw(u) <= high * (1 + 1e-12)
 
 
-@law
 @given(distributions(), quantiles, quantiles)
 def test_a_higher_quantile_never_gives_a_lower_value_of_a_continuous_distribution(distribution, u, v):
     if isinstance(distribution, Constant | Uniform | LogUniform | Normal):
@@ -61,7 +58,6 @@ def test_values_at_even_quantiles_follow_the_distribution_they_are_named_after(d
     assert kstest(values, expected.cdf).statistic < 1e-3
 
 
-@law
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=5).filter(lambda weights: sum(weights) > 0.1))
 def test_a_weighted_choice_gives_each_value_its_share(weights):
     found = np.bincount([weighted_index(tuple(weights), u) for u in EVEN], minlength=len(weights)) / len(EVEN)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.corpus.schema import signal_attributes
@@ -11,10 +11,7 @@ from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.timeline import timeline
 from tests.measuring import FLOAT, QUIET, hiss, response, silence, with_rig
 
-law = settings(deadline=None, max_examples=25)
 
-
-@law
 @given(st.floats(1.0, 1000.0))
 def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recipe_with, full_scale):
     adc = {"recording.converter": {"kind": "adc", "full_scale_m_s2": full_scale}}
@@ -33,7 +30,6 @@ def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recip
     np.testing.assert_array_equal(counts.signal[over], np.sign(scaled[over]) * LARGEST_COUNT)
 
 
-@law
 @given(st.floats(1e-6, 1e6))
 def test_the_converter_rounds_in_steps_of_exactly_the_stored_scale_factor(recipe_with, full_scale):
     """The factor is in single precision, so it can differ from that of the full scale by 6e-8."""

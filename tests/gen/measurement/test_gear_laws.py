@@ -5,14 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.measurement.gear import gear_mesh
 from gen.measurement.rig import rig_filters
 from gen.scenarios import Gear, draw_scenarios
 
-law = settings(deadline=None, max_examples=25)
 FS, RATE, N = 12_000.0, 25.0, 24_000  # two seconds: 50 turns of the shaft
 BIN = N / FS  # bins per Hz
 STEADY = 2 * np.pi * RATE / FS * np.arange(N)
@@ -44,7 +43,6 @@ def test_the_lines_of_a_true_gear_are_at_multiples_of_its_teeth_and_nowhere_else
     assert np.count_nonzero(spectrum > 1e-9) == 3
 
 
-@law
 @given(st.integers(0, 2**32 - 1))
 def test_the_mesh_is_a_function_of_the_true_angle_of_the_shaft(seed):
     """On a shaft of changing speed, compared with the equation in plain cosines."""

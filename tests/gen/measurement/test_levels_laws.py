@@ -4,14 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.measurement.levels import fault_over_rest, gains_of, mean_square
 from gen.measurement.mixing import Products
 from gen.scenarios import draw_scenarios
 
-law = settings(deadline=None, max_examples=50)
 SNR = {"level": {"kind": "snr", "faulty_db": 3, "healthy_db": 0, "rms_m_s2": 2.0}}
 
 
@@ -26,7 +25,6 @@ def products_of(fault, healthy, noise):
     )))  # fmt: skip
 
 
-@law
 @given(st.integers(0, 2**32 - 1), st.floats(-20, 20), st.floats(0.1, 10), st.floats(0.01, 1), st.floats(0.1, 100))
 def test_fault_and_record_have_their_drawn_levels_however_the_parts_are_correlated(
     scenario, seed, ratio, rms, quiet, loud

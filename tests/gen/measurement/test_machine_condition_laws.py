@@ -6,7 +6,7 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.corpus.simulated import MACHINE_CONDITIONS
@@ -15,12 +15,10 @@ from gen.recipe import read_recipe
 from gen.recipe.machine_conditions import MachineKind
 from gen.scenarios import ConditionSignal, draw_scenarios
 
-law = settings(deadline=None, max_examples=25)
 TURNS, N = 40, 24_000
 STEADY = 2 * np.pi * TURNS / N * np.arange(N)
 
 
-@law
 @given(
     st.sampled_from([0.5, 1.0, 1.5]), st.lists(st.tuples(st.floats(1e-3, 1), st.floats(0, 6)), min_size=1, max_size=60)
 )

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import welch
 
@@ -13,8 +13,6 @@ from gen.scenarios import Background, Gear, Mode, Path, ShaftModulation, Tone, d
 from gen.simulation.simulate import Twins
 from gen.simulation.timeline import timeline
 from tests.measuring import FLOAT, FS, QUIET, background_of, hiss, response, rms, silence, with_rig
-
-law = settings(deadline=None, max_examples=25)
 
 
 @pytest.fixture(scope="module")
@@ -114,7 +112,6 @@ def tone_through(recipe, scenarios, frequency):
     return tone, complex(real, imaginary)
 
 
-@law
 @given(
     st.floats(100, 5500),
     st.floats(0, 2),

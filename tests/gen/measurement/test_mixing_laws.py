@@ -2,12 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.measurement.mixing import BLOCK, Lines, mix
-
-law = settings(deadline=None, max_examples=25)
 
 
 def line(parts, angle):
@@ -30,7 +28,6 @@ def mixed(fault, healthy, background, impulses, angles, lines, first, stop):
     return added, healthy[:, first:stop] * gain[1:], background[:, first:stop] * gain[0] + machine + hits
 
 
-@law
 @given(
     st.integers(0, 2**32 - 1), st.integers(1, 3), st.integers(0, 3), st.integers(0, 3),
     st.booleans(), st.booleans(), st.booleans(),

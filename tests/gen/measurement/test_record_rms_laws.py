@@ -56,7 +56,7 @@ def lines_of_the_shaft(recipe, scenarios, orders, seed):
     return sum(waves).astype(np.float32)
 
 
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=10)
 @given(
     st.integers(0, 2**32 - 1), st.sets(st.integers(1, 6), min_size=1).map(sorted), st.sampled_from(["adc", "float32"])
 )

@@ -4,19 +4,17 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
 from gen.mechanisms.rattle import rattling
 
-law = settings(deadline=None, max_examples=50)
 FS = 12_000.0
 REST = np.zeros(100_000)  # eight seconds: bounces of the hardest throw below take five
 
 
-@law
 @given(
     arrays(np.float64, 200, elements=st.floats(-100, 100, width=32)),
     st.floats(5, 80),
@@ -33,7 +31,6 @@ def test_a_rattling_sensor_is_never_pulled_harder_than_it_is_held_and_comes_back
     assert np.abs(found[-1000:]).max() < 1e-6 * holding
 
 
-@law
 @given(arrays(np.float64, 200, elements=st.floats(-100, 100, width=32)), st.floats(100, 1000))
 def test_a_sensor_that_is_held_hard_enough_keeps_every_bit(shaken, holding):
     found, impacts = rattling(shaken, 1500.0, 0.05, holding, FS)
@@ -41,7 +38,6 @@ def test_a_sensor_that_is_held_hard_enough_keeps_every_bit(shaken, holding):
     np.testing.assert_array_equal(found, shaken)
 
 
-@law
 @given(st.floats(20, 90), st.integers(24, 240))
 def test_a_flight_takes_the_time_of_a_thrown_body(fall, samples):
     """The machine falls away faster than the sensor follows, which then closes the gap with the holding acceleration of 10 m/s2."""

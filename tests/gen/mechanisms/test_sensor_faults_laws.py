@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -21,7 +21,6 @@ from gen.mechanisms.saturation import Saturation
 from gen.scenarios import Purpose, draw_scenarios
 from tests.sensor_faults import SENSOR_FAULTS, rarely
 
-law = settings(deadline=None, max_examples=50)
 FS, N = 12_000.0, 12_000
 TIME = np.arange(N) / FS
 MOUNT = {"frequency": 1500.0, "damping": 0.05, "holding": 1e6}
@@ -101,7 +100,6 @@ def test_a_loose_sensor_shows_the_impacts_that_are_counted():
 LINEAR = {"limit": 20.0, "knee": 0.0, "recovery": 0.0}
 
 
-@law
 @given(signals, st.floats(1, 90), st.sampled_from([0.0, 0.1, 0.5, 1.0]))
 def test_an_amplifier_never_exceeds_its_limit_and_is_linear_below_its_knee(signal, limit, knee):
     drawn, half_knee = {"limit": limit, "knee": knee, "recovery": 0.0}, knee * limit
@@ -151,7 +149,6 @@ def test_a_wandering_baseline_has_its_rms_from_the_first_sample_on_and_forgets_a
     assert np.mean(found[:, 0] * found[:, 399]) / 9 == pytest.approx(math.exp(-2 * np.pi * 5 * 399 / FS), abs=0.07)
 
 
-@law
 @given(st.integers(0, 2**32 - 1), st.integers(1, 12), st.floats(1e-5, 0.01), st.sampled_from([0.0, 0.5, 1.0]))
 def test_gaps_are_held_or_zero_at_the_same_times_in_all_channels_and_counted(seed, count, length, held):
     signal = 1 + rng(seed).random((3, 300))
@@ -181,7 +178,6 @@ def test_gaps_before_the_converter_are_gaps_behind_it():
     np.testing.assert_array_equal(np.clip(np.rint(before * 60), -32767, 32767), after)
 
 
-@law
 @given(st.lists(st.tuples(st.floats(0, 0.999), st.floats(0.01, 100)), min_size=1, max_size=6))
 def test_gain_steps_multiply_and_the_first_sample_has_a_gain_of_one(pairs):
     steps = tuple({"share": share, "gain": gain} for share, gain in sorted(pairs))

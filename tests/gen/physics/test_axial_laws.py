@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import root
 
@@ -15,7 +15,6 @@ from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
 from tests.strategies import RIG
 
-law = settings(deadline=None, max_examples=40)
 N_BALLS = 9
 slants = st.floats(math.radians(5), math.radians(40))
 clearances = st.floats(-5e-6, 20e-6)
@@ -43,7 +42,6 @@ def ball_forces(machine, approach, displacement, angles):
     return machine.load_deflection_factor * np.maximum(squeeze, 0.0) ** machine.contact_exponent
 
 
-@law
 @given(slants, clearances, rolling, places, st.floats(10, 3000), st.floats(-math.pi, math.pi), st.floats(1.05, 20))
 def test_balls_squeezed_by_the_approach_carry_radial_and_axial_load_at_once(
     angle, clearance, rolling, places, load, direction, times
@@ -64,7 +62,6 @@ def test_balls_squeezed_by_the_approach_carry_radial_and_axial_load_at_once(
     assert math.sin(angle) * forces.sum() == pytest.approx(axial, rel=1e-4)
 
 
-@law
 @given(slants, clearances, rolling, places, st.floats(1, 1e4))
 def test_without_a_radial_load_all_balls_share_the_axial_one(angle, clearance, rolling, places, axial):
     factor, exponent = rolling
@@ -73,7 +70,6 @@ def test_without_a_radial_load_all_balls_share_the_axial_one(angle, clearance, r
     assert found == pytest.approx(each + clearance, rel=1e-5, abs=1e-11)
 
 
-@law
 @given(
     st.lists(
         st.tuples(slants, clearances, st.integers(5, 20), st.floats(10, 3000), st.floats(1.05, 20)),

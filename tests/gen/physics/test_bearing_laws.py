@@ -5,17 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.physics.bearing import ball_spacing, free_contact_angle, orders, slipping_orders
 from tests.strategies import bearings
 
-law = settings(deadline=None, max_examples=100)
 slips = st.floats(-0.1, 0.2)
 
 
-@law
 @given(bearings(), slips)
 def test_slip_takes_from_the_outer_race_what_it_gives_to_the_inner_one(bearing, slip):
     rolling, slipping = orders(bearing), slipping_orders(bearing, slip)
@@ -23,14 +21,12 @@ def test_slip_takes_from_the_outer_race_what_it_gives_to_the_inner_one(bearing, 
     assert slipping.bpfo + slipping.bpfi == pytest.approx(bearing.n_balls, rel=1e-12)
 
 
-@law
 @given(bearings())
 def test_the_cage_turns_at_less_than_half_the_shaft_rate(bearing):
     assert 0 < orders(bearing).ftf < 0.5
     assert slipping_orders(bearing, 0.0) == orders(bearing)
 
 
-@law
 @given(bearings())
 def test_balls_roll_without_sliding_on_both_races(bearing):
     """Surface speeds in the frame of the cage, in which ball centres are at rest [pitch diameters times shaft rate]."""
@@ -40,7 +36,6 @@ def test_balls_roll_without_sliding_on_both_races(bearing):
     assert ball == pytest.approx(found.ftf * 2 * bearing.outer_radius, rel=1e-12)
 
 
-@law
 @given(bearings(), slips)
 def test_balls_counted_over_a_mark_on_either_race_come_at_the_ball_pass_orders(bearing, slip):
     found = slipping_orders(bearing, slip)
@@ -52,7 +47,6 @@ def test_balls_counted_over_a_mark_on_either_race_come_at_the_ball_pass_orders(b
     assert over_inner.sum() == pytest.approx(turns * found.bpfi, abs=1.01)
 
 
-@law
 @given(bearings())
 def test_the_contact_angle_moves_the_orders_as_its_cosine_shrinks_the_ball(bearing):
     flat = replace(bearing, contact_angle=0.0)
@@ -60,7 +54,6 @@ def test_the_contact_angle_moves_the_orders_as_its_cosine_shrinks_the_ball(beari
     assert orders(bearing).bpfo >= orders(flat).bpfo
 
 
-@law
 @given(bearings(), st.floats(0, 1e-4))
 def test_a_bearing_moved_along_its_axis_to_the_free_angle_closes_its_clearance(bearing, clearance):
     """The centres of the grooves, apart by A less half the clearance in the radial direction, are then apart by A."""
@@ -72,7 +65,6 @@ def test_a_bearing_moved_along_its_axis_to_the_free_angle_closes_its_clearance(b
     assert free_contact_angle(replace(bearing, rolling_element="roller", roller_length=0.01), clearance) == 0
 
 
-@law
 @given(bearings())
 def test_the_arcs_between_the_balls_make_a_whole_turn(bearing):
     for site in ("inner", "outer"):

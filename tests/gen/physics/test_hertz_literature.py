@@ -10,7 +10,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
@@ -18,12 +18,10 @@ from gen.physics.hertz import contact_factor, effective_modulus, load_deflection
 from tests.paths import GOLDEN
 from tests.strategies import bearings
 
-law = settings(deadline=None, max_examples=100)
 STEEL = effective_modulus(207e9, 0.3)
 FACTORS = json.loads((GOLDEN / "model.json").read_text())["load_deflection_factors"]
 
 
-@law
 @given(st.floats(1e-4, 1.0))
 def test_a_sphere_on_a_flat_of_the_same_metal_has_the_closed_form_of_hertz(radius):
     combined = STEEL / 2  # both bodies give, each as much
@@ -31,14 +29,12 @@ def test_a_sphere_on_a_flat_of_the_same_metal_has_the_closed_form_of_hertz(radiu
     assert contact_factor(1 / radius, 1 / radius, STEEL) == pytest.approx(expected, rel=1e-6)
 
 
-@law
 @given(st.floats(1e-4, 1.0), st.floats(1e-9, 1e-2))
 def test_a_nearly_round_contact_joins_the_round_one_without_a_step(radius, excess):
     round_one = contact_factor(1 / radius, 1 / radius, STEEL)
     assert contact_factor((1 + excess) / radius, 1 / radius, STEEL) == pytest.approx(round_one, rel=0.5 * excess + 1e-5)
 
 
-@law
 @given(st.floats(3.0, 45.0), st.floats(1e-3, 1e-1))
 def test_a_contact_as_in_ball_bearings_is_within_three_percent_of_brewe_and_hamrock(ratio, radius):
     """Ratios of curvature in the catalogue lie between 14 and 45; nearer to the sphere their three fits add up to 8 percent."""
@@ -59,7 +55,6 @@ def test_the_factors_of_catalogue_bearings_are_those_of_the_model_study(row):
     assert load_deflection_factor(bearing) == pytest.approx(row["both"], rel=digits)
 
 
-@law
 @given(bearings())
 def test_two_contacts_in_series_share_one_force_and_add_their_deflections(bearing):
     inner, outer = race_factors(bearing)

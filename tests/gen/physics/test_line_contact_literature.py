@@ -10,20 +10,18 @@ from dataclasses import replace
 from itertools import product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import LINE_EXPONENT, line_contact_factor, load_deflection_factor, series_factor
 from tests.cases import for_each
 
-law = settings(deadline=None, max_examples=100)
 any_length = st.floats(1e-3, 0.2)
 MILLIMETRES = 1e3**LINE_EXPONENT * 1e3 ** (8 / 9)  # N m^-10/9 per m^8/9 in N mm^-10/9 per mm^8/9
 lengths = pytest.mark.parametrize("length", [0.005, 0.010, 0.025, 0.050])
 
 
-@law
 @given(any_length, any_length, st.floats(10.0, 1e4))
 def test_two_line_contacts_in_series_share_one_force_and_add_their_deflections(inner, outer, force):
     first, second = line_contact_factor(inner), line_contact_factor(outer)
@@ -32,7 +30,6 @@ def test_two_line_contacts_in_series_share_one_force_and_add_their_deflections(i
     assert both * deflection**LINE_EXPONENT == pytest.approx(force, rel=1e-12)
 
 
-@law
 @given(any_length)
 def test_a_roller_bearing_has_both_contacts_of_one_roller_in_series(length):
     bearing = replace(CATALOGUE["NU206"], roller_length=length)

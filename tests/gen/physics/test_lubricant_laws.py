@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
@@ -26,7 +26,6 @@ from gen.physics.lubricant import (
 )
 from tests.strategies import bearings
 
-law = settings(deadline=None, max_examples=100)
 ROLLERS = CATALOGUE["NU206"]
 temperatures = st.floats(-20, 120)
 rates = st.floats(5, 200)
@@ -45,7 +44,6 @@ def oils(draw):
 either = st.one_of(bearings(), st.just(ROLLERS))
 
 
-@law
 @given(oils())
 def test_viscosity_passes_through_both_of_its_points(oil):
     assert kinematic_viscosity(oil, 40) == pytest.approx(oil.viscosity_40, rel=1e-10)
@@ -53,14 +51,12 @@ def test_viscosity_passes_through_both_of_its_points(oil):
     assert dynamic_viscosity(oil, 15) == pytest.approx(oil.density_15 * kinematic_viscosity(oil, 15), rel=1e-12)
 
 
-@law
 @given(oils(), temperatures, st.floats(0.1, 30))
 def test_warmer_oil_is_thinner_and_dynamic_viscosity_falls_faster_than_kinematic(oil, celsius, warmer):
     kinematic = kinematic_viscosity(oil, celsius + warmer) / kinematic_viscosity(oil, celsius)
     assert dynamic_viscosity(oil, celsius + warmer) / dynamic_viscosity(oil, celsius) < kinematic < 1
 
 
-@law
 @given(either, st.floats(-20, 40))
 def test_clearance_is_what_the_grown_inner_ring_and_two_grown_balls_leave_free(bearing, hotter):
     bearing = replace(bearing, contact_angle=0.0)
@@ -69,7 +65,6 @@ def test_clearance_is_what_the_grown_inner_ring_and_two_grown_balls_leave_free(b
     assert warm_clearance(bearing, 0, hotter) == pytest.approx(free, abs=1e-12 * stack)
 
 
-@law
 @given(bearings(), rates)
 def test_both_races_pass_the_cage_at_the_speed_of_entrainment(bearing, rate):
     cage = orders(bearing).ftf
@@ -79,7 +74,6 @@ def test_both_races_pass_the_cage_at_the_speed_of_entrainment(bearing, rate):
     assert entrainment_speed(bearing, rate) == pytest.approx(outer, rel=1e-12)
 
 
-@law
 @given(either, oils(), temperatures, rates, loads, ratios)
 def test_the_film_follows_the_powers_of_speed_and_load(bearing, oil, celsius, rate, load, ratio):
     faster, heavier = (0.67, -0.067) if bearing.rolling_element == "ball" else (0.7, -0.13)
@@ -88,7 +82,6 @@ def test_the_film_follows_the_powers_of_speed_and_load(bearing, oil, celsius, ra
     assert film(bearing, oil, celsius, rate, ratio * load).thickness == pytest.approx(ratio**heavier * thickness)
 
 
-@law
 @given(either, oils(), temperatures, st.floats(1, 30), rates, loads)
 def test_the_film_thins_with_the_power_of_viscosity_as_its_oil_warms(bearing, oil, celsius, warmer, rate, load):
     cold, warm = film(bearing, oil, celsius, rate, load), film(bearing, oil, celsius + warmer, rate, load)
@@ -98,7 +91,6 @@ def test_the_film_thins_with_the_power_of_viscosity_as_its_oil_warms(bearing, oi
     assert warm.thickness < cold.thickness
 
 
-@law
 @given(either, oils(), temperatures, rates, loads)
 def test_the_stiffness_of_the_film_is_its_load_over_thickness_tangent(bearing, oil, celsius, rate, load):
     step = 1e-4 * load
@@ -106,7 +98,6 @@ def test_the_stiffness_of_the_film_is_its_load_over_thickness_tangent(bearing, o
     assert here.stiffness == pytest.approx(2 * step / (below.thickness - above.thickness), rel=1e-6)
 
 
-@law
 @given(oils(), temperatures, rates, loads, ratios)
 def test_the_film_of_a_roller_damps_nearly_alike_in_any_oil(oil, celsius, rate, load, ratio):
     """Film thickness grows with the 0.7th power of viscosity, and damping falls with its -1.5th power: the total power is -0.05."""
@@ -116,7 +107,6 @@ def test_the_film_of_a_roller_damps_nearly_alike_in_any_oil(oil, celsius, rate, 
     assert dampings[1] / dampings[0] == pytest.approx(change**-0.05, rel=1e-9)
 
 
-@law
 @given(bearings(), oils(), temperatures, rates, loads)
 def test_both_contacts_in_series_add_their_films_and_damp_less_than_either(bearing, oil, celsius, rate, load):
     modulus, viscosity = (
@@ -133,7 +123,6 @@ def test_both_contacts_in_series_add_their_films_and_damp_less_than_either(beari
     assert whole.damping < min(inner, outer)
 
 
-@law
 @given(st.floats(50, 2000), st.floats(1, 50), st.floats(0.05e-6, 3e-6))
 def test_the_squeeze_pressure_adds_up_to_the_damping(along, ratio, thickness):
     """Summed over ellipses of one gap each, the one at ``r`` of area ``pi * sqrt(ratio) * r**2``."""
@@ -146,7 +135,6 @@ def test_the_squeeze_pressure_adds_up_to_the_damping(along, ratio, thickness):
     assert damping == pytest.approx(force / (along**2 * thickness), rel=1e-6)
 
 
-@law
 @given(st.floats(50, 2000), st.floats(1e-3, 0.1), st.floats(0.05e-6, 3e-6))
 def test_a_roller_is_damped_by_the_same_pressure_without_curvature_across(curvature, length, thickness):
     per_length = quad(lambda x: 6 / (1 + x**2 / 2) ** 2, -math.inf, math.inf)[0]
@@ -154,7 +142,6 @@ def test_a_roller_is_damped_by_the_same_pressure_without_curvature_across(curvat
     assert line_squeeze_damping(curvature, length, 1.0, thickness) == pytest.approx(expected, rel=1e-6)
 
 
-@law
 @given(either, loads, st.floats(1e6, 1e11))
 def test_the_lubricated_tangent_is_that_of_contact_and_film_in_series(bearing, load, stiffness):
     factor, exponent = load_deflection_factor(bearing), contact_exponent(bearing)

@@ -4,12 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.physics.profile import Profile, mean_share, share_at
 
-law = settings(deadline=None, max_examples=60)
 both = pytest.mark.parametrize("smooth", [False, True], ids=["straight", "smooth"])
 shares = st.floats(0.01, 10)
 
@@ -30,7 +29,6 @@ def integral(profile, start, end):
 
 
 @both
-@law
 @given(points())
 def test_a_profile_goes_through_its_points(smooth, given_points):
     times, found = given_points
@@ -38,7 +36,6 @@ def test_a_profile_goes_through_its_points(smooth, given_points):
 
 
 @both
-@law
 @given(points(), st.floats(0, 100))
 def test_a_profile_is_constant_before_its_first_point_and_after_its_last(smooth, given_points, beyond):
     times, found = given_points
@@ -47,7 +44,6 @@ def test_a_profile_is_constant_before_its_first_point_and_after_its_last(smooth,
 
 
 @both
-@law
 @given(points(least=2))
 def test_a_profile_stays_between_neighbouring_points_and_turns_nowhere_else(smooth, given_points):
     profile = Profile(given_points[0], given_points[1], smooth)
@@ -56,7 +52,6 @@ def test_a_profile_stays_between_neighbouring_points_and_turns_nowhere_else(smoo
         assert (steps * np.sign(high - low) >= -1e-12).all()
 
 
-@law
 @given(points(least=2))
 def test_a_smooth_profile_has_continuous_first_and_second_derivatives(given_points):
     """No third derivative beyond that of its polynomials, 60 times rise over time cubed, so no corner and no jump of the acceleration."""
@@ -70,7 +65,6 @@ def test_a_smooth_profile_has_continuous_first_and_second_derivatives(given_poin
 
 
 @both
-@law
 @given(points(), st.floats(0.5, 5))
 def test_the_mean_share_is_the_integral_over_the_record(smooth, given_points, duration):
     profile = Profile(given_points[0], given_points[1], smooth)

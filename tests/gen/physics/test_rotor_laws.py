@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.physics import rotor
@@ -20,7 +20,6 @@ from gen.physics.rotor import (
 )
 from tests.strategies import angles, machines
 
-law = settings(deadline=None, max_examples=50)
 N_BALLS = 9
 
 
@@ -44,7 +43,6 @@ def stiffness(machine, at_rest, places):
     ])  # fmt: skip
 
 
-@law
 @given(st.lists(machines(), min_size=1, max_size=8), angles)
 def test_at_rest_every_force_has_its_counterforce(some, cage):
     machine, places = as_columns(some), ball_angles(cage, len(some))
@@ -61,7 +59,6 @@ def test_at_rest_every_force_has_its_counterforce(some, cage):
     np.testing.assert_allclose((pushed - support * q[:, 2:]) / weight, 0, atol=1e-8)
 
 
-@law
 @given(st.lists(machines(), min_size=2, max_size=9), angles, st.data())
 def test_a_machine_rests_alone_where_it_rests_beside_bearings_with_more_balls(some, cage, data):
     counts = data.draw(st.lists(st.integers(4, 20), min_size=len(some), max_size=len(some)))
@@ -71,7 +68,6 @@ def test_a_machine_rests_alone_where_it_rests_beside_bearings_with_more_balls(so
         np.testing.assert_array_equal(alone[0], together[place])
 
 
-@law
 @given(machines(contact_damping=0.0), angles)
 def test_no_mode_at_rest_is_faster_than_the_bound_on_all_modes(machine, cage):
     places = ball_angles(cage)
@@ -81,7 +77,6 @@ def test_no_mode_at_rest_is_faster_than_the_bound_on_all_modes(machine, cage):
     assert math.sqrt(squares.max()) <= highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS))
 
 
-@law
 @given(machines(half_clearance=0.0), angles, st.floats(0, 10e-6), st.integers(7, 40))
 def test_the_rollers_of_a_machine_at_rest_are_together_no_stiffer_than_is_assumed(machine, cage, half_clearance, count):
     contact = line_contact_factor(0.01)
@@ -96,7 +91,6 @@ def test_the_rollers_of_a_machine_at_rest_are_together_no_stiffer_than_is_assume
     assert of_each.sum() <= likely_stiffness(rollers, count)
 
 
-@law
 @given(machines(), angles)
 def test_no_damping_rate_exceeds_its_bound_nor_is_it_below_a_third_of_it(machine, cage):
     """The bound is the sum of the rates of shaft, housing and sensor; the largest of three is at least a third of their sum."""
@@ -115,7 +109,6 @@ def test_no_damping_rate_exceeds_its_bound_nor_is_it_below_a_third_of_it(machine
     assert bound <= 3 * largest * (1 + 1e-12)
 
 
-@law
 @given(st.floats(0.01, 1), st.floats(100, 1e4), st.floats(0.001, 0.3))
 def test_sensor_springs_ring_at_their_frequency_and_die_at_their_damping(mass, frequency, damping):
     spring, damper = sensor_springs(mass, frequency, damping)
@@ -124,7 +117,6 @@ def test_sensor_springs_ring_at_their_frequency_and_die_at_their_damping(mass, f
     assert -poles[0].real / abs(poles[0]) == pytest.approx(damping, rel=1e-9)
 
 
-@law
 @given(machines(), angles, st.floats(0, 1))
 def test_a_ball_force_is_the_slope_of_its_energy_and_its_stiffness_the_slope_of_its_force(machine, cage, share):
     columns, places = as_columns([machine]), ball_angles(cage)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
@@ -12,7 +12,6 @@ from gen.physics.extent import TABLE_POINTS
 from gen.physics.kernel.drop import GEOMETRIC, drop, sagitta
 from gen.physics.trace import ball_path, contact_mean, spall_positions, with_roughness
 
-law = settings(deadline=None, max_examples=40)
 BEARING = CATALOGUE["6205"]
 BALL = BEARING.ball_diameter / 2
 RACES = {"inner": BEARING.inner_radius, "outer": -BEARING.outer_radius}
@@ -22,7 +21,6 @@ depths = st.floats(1e-6, 3e-4)
 surfaces = st.lists(st.floats(0, 1e-4), min_size=3, max_size=40)
 
 
-@law
 @given(st.floats(0.15e-3, 1e-3), depths, races)
 def test_over_sound_edges_and_a_flat_floor_a_ball_follows_the_geometric_path(width, depth, race):
     """A spall this narrow is as good as flat: chord and arc differ by 2e-4, and the sagitta by twice that."""
@@ -32,7 +30,6 @@ def test_over_sound_edges_and_a_flat_floor_a_ball_follows_the_geometric_path(wid
     np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-15)
 
 
-@law
 @given(surfaces, st.floats(0.15e-3, 12e-3), races)
 def test_a_ball_goes_no_deeper_than_the_surface_under_it_and_never_above_a_sound_one(surface, width, race):
     path = ball_path(np.array(surface), width, BALL, race)
@@ -43,7 +40,6 @@ def test_a_ball_goes_no_deeper_than_the_surface_under_it_and_never_above_a_sound
     assert (path <= under + 1e-18).all()
 
 
-@law
 @given(st.integers(3, 40), races)
 def test_a_wide_ball_bridges_a_narrow_scratch(half, race):
     """Between its lips the path is that over a spall as wide as the scratch, however deep it is."""
@@ -57,7 +53,6 @@ def test_a_wide_ball_bridges_a_narrow_scratch(half, race):
     assert not path[np.abs(spall_positions(width)) >= lip].any()
 
 
-@law
 @given(surfaces, widths, races, st.floats(5e-6, 2e-4), st.floats(0, 1e-4))
 def test_a_contact_feels_the_area_of_the_path_and_nothing_higher(surface, width, race, footprint, more):
     path, margin = ball_path(np.array(surface), width, BALL, race), footprint + more
@@ -89,7 +84,6 @@ def test_under_a_contact_the_pressure_weighs_as_half_an_ellipse():
     np.testing.assert_allclose(found[across], 0.5 + (u * np.sqrt(1 - u**2) + np.arcsin(u)) / math.pi, atol=0.05)
 
 
-@law
 @given(st.integers(0, 2**32), st.floats(1e-8, 5e-5))
 def test_a_rough_floor_has_the_asked_rms_about_its_depth(seed, rms):
     floor = np.full(TABLE_POINTS, 1e-3)

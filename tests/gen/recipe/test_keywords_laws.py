@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import gen
@@ -14,7 +14,6 @@ from gen.recipe.keywords import _places
 from gen.support.errors import RecipeError
 
 OUTER = gen.outer(width_mm=0.5)
-law = settings(deadline=None, max_examples=40)
 text = st.text(st.characters(codec="utf-8", exclude_characters="\0"), min_size=1, max_size=30)
 
 
@@ -88,7 +87,6 @@ def test_a_wrong_key_is_one_sentence_that_says_what_to_do(keys, sentence):
     assert sentence in sentences_of(lambda: gen.make_recipe(OUTER, **keys))
 
 
-@law
 @given(st.integers(1, 12), st.integers(1, 3), st.integers(1, 4), st.integers(1, 3), st.sampled_from([None, [0, 1]]))
 def test_each_fault_has_n_records_or_the_error_is_about_n(n, n_faults, rigs, per_specimen, rungs):
     faults = [gen.outer(width_mm=0.1 * (place + 1)) for place in range(n_faults)]
@@ -180,7 +178,6 @@ def test_a_recipe_survives_its_text_and_its_dict(name, tmp_path):
         assert recipe_hash(same) == recipe_hash(recipe)
 
 
-@law
 @given(text, st.from_regex(r"[A-Za-z0-9_.-]{1,12}", fullmatch=True))
 def test_any_title_and_name_survive_the_text_of_a_recipe(tmp_path_factory, title, name):
     path = tmp_path_factory.getbasetemp() / "any.yaml"

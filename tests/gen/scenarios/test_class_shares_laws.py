@@ -4,14 +4,13 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_records, first_specimens
 from gen.scenarios.classes import class_shares, other_fault_of_each_specimen
 
-law = settings(deadline=None, max_examples=25)
 CLASSES = ("healthy", "inner", "outer", "ball")
 seeds = st.integers(0, 2**31)
 weights_of_all = st.tuples(*[st.floats(0.05, 10)] * 4)
@@ -30,7 +29,6 @@ def counted(recipe, rigs):
     return np.array([[counts[kind] for kind in CLASSES] for counts in found])
 
 
-@law
 @given(seeds, st.integers(1, 9), weights_of_all, st.integers(0, 3))
 def test_every_rig_has_of_each_kind_what_the_weights_give_it(recipe_with, seed, specimens, weights, absent):
     weights = (*weights[: 4 - absent], *[0.0] * absent)
@@ -46,7 +44,6 @@ def test_every_rig_has_of_each_kind_what_the_weights_give_it(recipe_with, seed, 
     assert not counts[:, 4 - absent :].any()
 
 
-@law
 @given(seeds, st.integers(1, 9), weights_of_all)
 def test_over_the_rigs_the_classes_have_the_shares_of_their_weights(recipe_with, seed, specimens, weights):
     recipe = recipe_with({"seed": seed, "corpus.specimens_per_rig": specimens, "faults": faults(weights)})
@@ -85,7 +82,6 @@ def with_other(probability, weights, **changes):
     return {"other_bearing": other, "faults": faults(weights), **changes}
 
 
-@law
 @given(seeds, st.integers(1, 9), weights_of_all, st.floats(0.01, 0.99))
 def test_the_classes_of_two_bearings_are_independent_whatever_their_weights(
     recipe_with, seed, specimens, weights, probability
@@ -96,7 +92,6 @@ def test_the_classes_of_two_bearings_are_independent_whatever_their_weights(
     assert np.abs(pairs - product).max() < 20  # of up to 900 specimens
 
 
-@law
 @given(seeds, st.integers(1, 3), st.floats(0.01, 0.99))
 def test_pairs_of_classes_have_their_product_within_three_where_all_rigs_have_the_same_classes(
     recipe_with, seed, of_each, probability
@@ -138,7 +133,6 @@ def test_rigs_of_a_single_specimen_have_every_class_on_both_sides_of_the_split(r
         assert sides[kind, "train"] == pytest.approx(3 * 300 / 16, abs=12)
 
 
-@law
 @given(seeds, st.integers(1, 5), weights_of_all, st.sampled_from([(0, 1), (0, 0.25, 0.5, 1), (0.5, 1)]))
 def test_with_rungs_the_records_have_the_shares_of_the_weights(recipe_with, seed, specimens, weights, rungs):
     weights = (weights[0] + sum(weights[1:]) / (len(rungs) - 1), *weights[1:])

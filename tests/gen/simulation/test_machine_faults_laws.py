@@ -20,7 +20,7 @@ from tests.lanes import march_lanes
 from tests.reference import knock_scatter
 from tests.strategies import RIG, angles, record
 
-law = settings(deadline=None, max_examples=15)
+law = settings(max_examples=15)
 KNOT = 1 / 12_000
 TIGHT = RIG._replace(looseness=1e-30)
 STANDING, CONSTANT = Turning(0.0), np.ones((1, 2))

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.generation.labels import part_dataset
@@ -194,7 +194,6 @@ def test_a_wandering_load_has_its_rms_and_never_pulls_the_other_way(record_of):
     assert wild.min() == 0
 
 
-@settings(deadline=None, max_examples=60)
 @given(st.integers(2, 3000), st.integers(0, 12), st.floats(-1, 60), st.floats(1e-5, 1e-3), st.integers(0, 2**32 - 1))
 def test_a_sum_of_cosines_is_the_sum_of_its_cosines(n, terms, start, step, seed):
     rng = np.random.default_rng(seed)

@@ -6,7 +6,7 @@ Closed forms are those of K. L. Johnson, *Contact Mechanics*, Cambridge Universi
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import ellipk
 
@@ -14,7 +14,6 @@ from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import effective_modulus, ellipticity, footprints, race_curvatures, race_factors
 from tests.strategies import bearings
 
-law = settings(deadline=None, max_examples=60)
 LOAD = 200.0  # of one ball of a 6205 [N]
 # half the length and half the width of the ellipse [m], largest pressure [Pa], approach [m]; model study, three figures at most
 STUDY = {"inner": (0.77e-3, 0.083e-3, 1.50e9, 3.95e-6), "outer": (0.75e-3, 0.103e-3, 1.25e9, 3.80e-6)}
@@ -33,7 +32,6 @@ def test_the_ellipse_of_a_6205_is_that_of_the_model_study(race):
     assert (LOAD / race_factors(bearing)[race]) ** (2 / 3) == pytest.approx(approach, abs=0.5e-8)
 
 
-@law
 @given(bearings(), st.floats(1, 1e4))
 def test_half_widths_and_load_deflection_factors_belong_to_one_ellipse(bearing, load):
     """Approach of the bodies 3 Q K(m) / (2 pi a E*), a the long semi-axis: two ways through the elliptic integrals, one contact."""

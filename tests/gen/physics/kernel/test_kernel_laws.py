@@ -10,7 +10,7 @@ from gen.physics.kernel.compiling import LANES
 from tests.lanes import march_lanes
 from tests.strategies import RIG, machines, record, steady_turnings, wandering_records
 
-law = settings(deadline=None, max_examples=20)
+law = settings(max_examples=20)
 KNOT = 1 / 12_000
 STANDING = Turning(0.0)
 SHARED = 1e-16  # waviness [m]: too small to matter, so that the kernel is that of the wandering records

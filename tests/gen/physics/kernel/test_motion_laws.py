@@ -14,7 +14,7 @@ from tests.strategies import RIG, record, wandering_records
 KNOT = 1 / 12_000
 
 
-@settings(deadline=None, max_examples=3)
+@settings(max_examples=3)
 @given(wandering_records())
 def test_angles_and_directions_are_still_exact_after_ten_thousand_knots(drawn):
     trip = march_lanes([drawn], 10_000, 1, KNOT)[0]
@@ -41,7 +41,7 @@ def test_the_distances_between_successive_balls_at_the_outer_race_are_independen
         assert abs(follower) < 0.15
 
 
-@settings(deadline=None, max_examples=15)
+@settings(max_examples=15)
 @given(wandering_records())
 def test_the_processes_have_the_rms_they_were_drawn_with(drawn):
     far_apart = np.random.default_rng(0).uniform(0, 1e5, 20_000)

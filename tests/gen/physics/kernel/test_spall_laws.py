@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
@@ -15,7 +15,6 @@ from gen.simulation.damage import cached_drop
 from tests.reference import rigid_path
 from tests.strategies import depths
 
-law = settings(deadline=None, max_examples=100)
 every_profile = pytest.mark.parametrize("profile", range(TABLE), ids=PROFILES[:TABLE])  # that :func:`drop` knows
 BEARING = CATALOGUE["6205"]
 BALL = BEARING.ball_diameter / 2
@@ -30,7 +29,6 @@ def fall(profile, offset, half, race, depth=1.0):
 
 
 @every_profile
-@law
 @given(st.floats(1.0, 100.0), halves, races, depths)
 def test_off_the_spall_nothing_drops(profile, beyond, half, race, depth):
     for offset in (beyond * half, -beyond * half):
@@ -38,7 +36,6 @@ def test_off_the_spall_nothing_drops(profile, beyond, half, race, depth):
 
 
 @every_profile
-@law
 @given(shares, halves, races, depths)
 def test_a_ball_drops_no_deeper_than_the_spall_and_alike_on_both_sides(profile, share, half, race, depth):
     found = fall(profile, share * half, half, race, depth)
@@ -46,7 +43,6 @@ def test_a_ball_drops_no_deeper_than_the_spall_and_alike_on_both_sides(profile, 
     assert fall(profile, -share * half, half, race, depth) == found
 
 
-@law
 @given(shares, st.floats(1e-3, 0.16), races, depths)
 def test_the_geometric_drop_is_the_path_of_a_rigid_ball_over_two_edges(share, half, race, depth):
     expected = rigid_path(share * half, half, abs(race), BALL, race, depth)
@@ -54,7 +50,6 @@ def test_the_geometric_drop_is_the_path_of_a_rigid_ball_over_two_edges(share, ha
 
 
 @every_profile
-@law
 @given(st.floats(-1.2, 1.2), halves, races, depths)
 def test_drops_have_no_jump_but_those_of_the_rectangular_profile(profile, share, half, race, depth):
     if profile == RECTANGULAR:
@@ -68,7 +63,6 @@ def test_drops_have_no_jump_but_those_of_the_rectangular_profile(profile, share,
     assert abs(there - here) < step * steepest
 
 
-@law
 @given(st.floats(-1.2, 1.2), halves, st.integers(0, 2**32 - 1))
 def test_a_tabulated_drop_runs_straight_between_its_points_and_is_none_off_the_spall(share, half, seed):
     tables = np.random.default_rng(seed).uniform(0, 1e-4, (2, TABLE_POINTS))
@@ -80,20 +74,17 @@ def test_a_tabulated_drop_runs_straight_between_its_points_and_is_none_off_the_s
 
 
 @every_profile
-@law
 @given(st.floats(-1, 1), halves, races, depths)
 def test_the_drop_in_the_cache_has_the_bits_of_that_in_the_kernel(profile, share, half, race, depth):
     given = profile, share * half, half, abs(race), BALL, race, depth
     assert cached_drop(*given) == drop(*given)
 
 
-@law
 @given(st.floats(1.0, 2.5), st.floats(0, 0.25), races, st.floats(1e-6, 1e-4))
 def test_far_inside_a_spall_as_wide_as_several_balls_a_ball_lies_on_the_floor(half, share, race, depth):
     assert fall(GEOMETRIC, share * half, half, race, depth) == depth
 
 
-@law
 @given(shares, halves, races)
 def test_a_ball_on_an_edge_keeps_its_distance_from_that_edge(share, half, race):
     """The triangle of ring centre, edge and ball centre, without a sagitta in it."""

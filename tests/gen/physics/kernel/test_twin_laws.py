@@ -17,7 +17,7 @@ from tests.lanes import march_lanes
 from tests.reference import contact_stiffness, contacts, march_twin, right_hand_side, slow_motion
 from tests.strategies import extended_records, steady_records, troubled_records, wandering_records
 
-law = settings(deadline=None, max_examples=20)
+law = settings(max_examples=20)
 KNOT = 1 / 12_000
 
 
