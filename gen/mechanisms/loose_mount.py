@@ -3,13 +3,11 @@
 import math
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
 
 from gen.corpus.schema import Variable
 from gen.drawing.distributions import Distribution, within
 from gen.drawing.draws import Drawn, Draws
 from gen.drawing.section import Probability
-from gen.mechanisms.rattle import rattling
 from gen.mechanisms.sensor_fault import Faulty, FloatArray, Found, SensorFault
 from gen.physics.resonance import base_excited
 
@@ -42,6 +40,8 @@ class LooseMount(SensorFault):
     @staticmethod
     def disturb(drawn: Faulty, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG004
         """Signal of sensors that resonate and rattle."""
+        from gen.mechanisms.rattle import rattling  # compiled: a recipe is read without numba
+
         loose, impacts = signal.copy(), 0
         for channel, mount in enumerate(drawn):
             if isinstance(mount, dict):
@@ -53,6 +53,8 @@ class LooseMount(SensorFault):
     @staticmethod
     def compile() -> None:
         """Compile the rattling."""
+        from gen.mechanisms.rattle import rattling
+
         rattling(np.zeros(2), 1000.0, 0.1, 1.0, 10_000.0)
 
 
@@ -62,6 +64,8 @@ def through_mount(signal: FloatArray, mount: Drawn, fs: float) -> FloatArray:
     The record is continued backwards by its mirror image while the filter settles; the end of the response, which the circular
     convolution wraps around, falls into that time.
     """
+    from scipy.fft import irfft, next_fast_len, rfft  # loads for half a second, and few recipes need it
+
     settling = math.ceil(DECAYED * fs / (2 * math.pi * mount["damping"] * mount["frequency"]))
     lead = signal[1 : min(settling, len(signal) - 1) + 1][::-1]
     n = next_fast_len(len(signal) + max(settling, len(lead)), real=True)
