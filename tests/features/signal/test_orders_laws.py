@@ -44,12 +44,6 @@ def test_a_tone_at_an_order_is_the_same_tone_over_the_angle(order, shaft_rate, f
     np.testing.assert_allclose(found[EDGE:-EDGE], expected[EDGE:-EDGE], atol=1e-3)
 
 
-@pytest.mark.parametrize("order", [7, 23, 50])
-def test_the_spectrum_has_its_line_at_the_order(order):
-    found = resampled(tone(order, 11.3, 12_000.0), 11.3, 12_000.0)
-    assert np.abs(np.fft.rfft(found)).argmax() == order * TURNS
-
-
 @given(order=st.floats(66.0, 250.0))
 @settings(deadline=None, max_examples=30)
 def test_orders_above_half_the_samples_per_turn_are_removed(order):

@@ -6,7 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import uniform_filter1d
 from scipy.signal import welch
-from scipy.signal.windows import hann
 
 from features.signal.demodulation import (
     analytic_band,
@@ -24,24 +23,6 @@ seeds = st.integers(0, 2**32 - 1)
 
 def noise(seed, records=3, n=4096):
     return np.random.default_rng(seed).standard_normal((records, n))
-
-
-@law
-@given(seeds, st.integers(16, 4000), st.floats(1e3, 1e5))
-def test_the_psd_of_one_window_has_the_energy_of_the_windowed_record(seed, n, fs):
-    x = noise(seed, n=n)
-    frequencies, density = psd(x, fs, segment=n / fs)
-    window = hann(n, sym=False)
-    energy = np.sum((window * (x - x.mean(axis=1, keepdims=True))) ** 2, axis=1) / np.sum(window**2)
-    np.testing.assert_allclose(density.sum(axis=1) * frequencies[1], energy, rtol=1e-9)
-
-
-@law
-@given(seeds, st.floats(1e3, 1e5))
-def test_the_psd_of_a_long_record_has_its_variance(seed, fs):
-    x = noise(seed, n=65536)
-    frequencies, density = psd(x, fs, segment=512 / fs)
-    np.testing.assert_allclose(density.sum(axis=1) * frequencies[1], x.var(axis=1), rtol=0.03)
 
 
 @law
@@ -73,12 +54,6 @@ def test_energies_of_adjoining_bands_add_up(seed, edges):
     whole = band_energies(density, frequencies, [edges[0], edges[-1]])
     np.testing.assert_allclose(parts.sum(axis=1), whole[:, 0], rtol=1e-9, atol=1e-9)
     assert (parts >= -1e-9).all()
-
-
-@law
-@given(seeds)
-def test_a_band_around_all_frequencies_has_the_whole_energy(seed):
-    frequencies, density = psd(noise(seed), 12_000.0)
     total = band_energies(density, frequencies, [-1e9, 1e9])[:, 0]
     np.testing.assert_allclose(total, density.sum(axis=1) * frequencies[1])
 
