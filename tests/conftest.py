@@ -3,8 +3,10 @@
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from hypothesis import settings
 
+from features import feature_table
 from gen import generate
 
 # `make test` passes or fails on the same examples each time, so few of them are enough; `make thorough` tries a hundred fresh ones.
@@ -45,3 +47,9 @@ def tiny_recipe(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def tiny_corpus(tiny_recipe: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder of the corpus of ``tiny_recipe``; copy it before changing anything in it."""
     return generate(tiny_recipe, tmp_path_factory.mktemp("tiny") / "corpus").path
+
+
+@pytest.fixture(scope="session")
+def tiny_table(tiny_corpus: Path) -> xr.Dataset:
+    """Feature table of ``tiny_corpus``; copy it before changing anything in it."""
+    return feature_table(tiny_corpus)

@@ -80,6 +80,12 @@ def start(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
         process.communicate()
 
 
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures on data cards take no time: they are not what is tested."""
+    monkeypatch.setattr("features.report.card_pictures.small_png", lambda _figure: b"picture" * 10_000)
+
+
 @pytest.fixture(scope="session")
 def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Model file for recordings of `tests.diagnoses`."""

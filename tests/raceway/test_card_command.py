@@ -27,12 +27,6 @@ def corpus(request, tmp_path_factory):
 
 
 @pytest.fixture
-def undrawn(monkeypatch):
-    """Pictures that take no time: other files are tested, and most kills meet a file that is being written."""
-    monkeypatch.setattr(card_pictures, "small_png", lambda _figure: b"picture" * 10_000)
-
-
-@pytest.fixture
 def copied(corpus, tmp_path):
     (tmp_path / "place").mkdir()
     target = tmp_path / "place" / corpus.name

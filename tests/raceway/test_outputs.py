@@ -6,23 +6,20 @@ import sys
 import zipfile
 from pathlib import Path
 
-import click
 import h5py
 import numpy as np
 import pytest
 import xarray as xr
 
 from features.baselines import Model
-from features.report.pictures import draw_record, write_picture
-from features.report.shown import shown_record
-from features.table.band import DEFAULT_BAND
 from features.table.corpora import feature_table
 from features.table.files import write_table
 from gen import copy, generate, write_corpus
 from gen.corpus import card_folder, corpus_files, read_manifest, result_folder
 from gen.corpus.files import _HOST
 from gen.support.errors import CorpusError
-from raceway.cli import cli
+from tests.command_tree import COMMANDS
+from tests.pulses import write_pulses
 
 # every command with -o by the line that comes before it, and the name of its result; a folder has no suffix
 RESULTS = {
@@ -44,12 +41,12 @@ RESULTS = {
 
 
 @pytest.fixture(scope="module")
-def originals(tiny_recipe, tiny_corpus, tmp_path_factory):
-    """A copy of a corpus, and files of other kinds."""
+def originals(tiny_recipe, tmp_path_factory):
+    """A corpus of eight records, and files of other kinds."""
     folder = tmp_path_factory.mktemp("originals")
-    shutil.copytree(tiny_corpus, folder / "corpus")
+    corpus = write_pulses(folder / "corpus", records=2, identity=[f"pulses/0/{n}/{n}/-1" for n in range(8)])
     shutil.copy(tiny_recipe, folder / "recipe.yaml")
-    Model("majority").fit(tiny_corpus).save(folder / "model.skops")
+    Model("majority").fit(corpus).save(folder / "model.skops")
     np.save(folder / "recording.npy", np.random.default_rng(0).standard_normal(12_000))
     (folder / "raw").mkdir()
     return folder
@@ -64,16 +61,6 @@ def places(originals, tmp_path):
 
 def contents(folder: Path) -> dict[Path, bytes]:
     return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
-
-
-def all_commands(group: click.Group, *before: str) -> list[str]:
-    found = []
-    for name, command in group.commands.items():
-        if isinstance(command, click.Group):
-            found += all_commands(command, *before, name)
-        elif any("-o" in option.opts for option in command.params):
-            found.append(" ".join([*before, name]))
-    return found
 
 
 def of_the_user(corpus: Path, folder: Path) -> list[Path]:
@@ -93,17 +80,41 @@ def of_the_user(corpus: Path, folder: Path) -> list[Path]:
 
 def test_every_command_with_an_output_is_tried():
     tried = {line.partition(" {")[0] for line in RESULTS}
-    assert set(all_commands(cli)) <= tried
+    assert {
+        " ".join(words) for words, command in COMMANDS.items() if any("-o" in one.opts for one in command.params)
+    } <= tried
 
 
 @pytest.mark.parametrize("line", RESULTS)
 def test_nothing_is_written_into_a_corpus(run, places, line, tmp_path):
-    name, before = RESULTS[line], contents(tmp_path)
-    (tmp_path / "link").symlink_to(places["corpus"] / "parts")
-    for place in (places["corpus"], places["corpus"] / "parts", tmp_path / "link"):
-        result = run(*line.format(**places).split(), "-o", place / name)
+    corpus, name, before = places["corpus"], Path(RESULTS[line]), contents(tmp_path)
+    (tmp_path / "link").symlink_to(corpus / "parts")
+    link = tmp_path / f"into{name.suffix}"
+    link.symlink_to(corpus / f"new{name.suffix}")
+    for place in (corpus / name, corpus / "parts" / name, tmp_path / "link" / name, *([link] if name.suffix else ())):
+        result = run(*line.format(**places).split(), "-o", place)
         assert result.exit_code == 2, result.output
-        assert f"is in the corpus {places['corpus'].resolve()}; choose a place outside it." in result.stderr
+        assert f"is in the corpus {corpus.resolve()}; choose a place outside it." in result.stderr
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if name != "new"])
+def test_a_place_that_cannot_hold_the_result_is_refused(run, places, line, tmp_path):
+    name, before = Path(RESULTS[line]), contents(tmp_path)
+    if not name.suffix:
+        refused = {places["recipe"]: "is a file; give a folder"}
+    else:
+        (tmp_path / "folder").mkdir()
+        (tmp_path / f"folder{name.suffix}").mkdir()
+        refused = {
+            tmp_path / f"folder{name.suffix}": "is a folder; give a file",
+            tmp_path / "none" / name: "there is no folder",
+        }
+        refused |= {} if line.startswith("train") else {tmp_path / "result.bmp": "does not end in "}
+    for place, sentence in refused.items():
+        result = run(*line.format(**places).split(), "-o", place)
+        assert (result.exit_code, result.stderr.count("\n")) == (2, 1), result.output
+        assert sentence in result.stderr
     assert contents(tmp_path) == before
 
 
@@ -126,12 +137,6 @@ def test_a_folder_with_pages_of_the_user_is_refused(run, places, line, name, tmp
     assert (tmp_path / "mine" / name).read_text() == "Raceway and I"
 
 
-@pytest.mark.parametrize("name", ["result.png", "result.svg", "result.pdf"])
-def test_pictures_of_all_formats_are_recognised(places, name, tmp_path):
-    for _ in range(2):
-        write_picture(draw_record(shown_record(places["corpus"], 1, 0, DEFAULT_BAND)), tmp_path / name)
-
-
 @pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if "." in name])
 def test_a_file_of_another_kind_is_not_replaced(run, places, line, tmp_path):
     corpus, suffix = places["corpus"], Path(RESULTS[line]).suffix
@@ -151,13 +156,6 @@ def test_a_file_of_another_kind_is_not_replaced(run, places, line, tmp_path):
         assert result.exit_code == 2, result.output
         assert "; give another name, or remove it first." in result.stderr
     assert contents(tmp_path) == before
-
-
-@pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if "." in name and name != "record.nc"])
-def test_a_result_of_the_same_kind_is_replaced(run, places, line, tmp_path):
-    for _ in range(2):
-        result = run(*line.format(**places).split(), "-o", tmp_path / RESULTS[line])
-        assert result.exit_code == 0, result.output
 
 
 def test_the_python_writers_keep_the_same_rule(places, tmp_path):
@@ -211,15 +209,6 @@ def test_a_result_is_written_to_the_target_of_a_link_and_what_a_killed_command_l
     assert target.read_text() == "mine"
 
 
-@pytest.mark.parametrize("line", FILES)
-def test_a_link_into_a_corpus_is_refused(run, places, line, tmp_path):
-    link = tmp_path / f"link{Path(RESULTS[line]).suffix}"
-    link.symlink_to(places["corpus"] / f"new{link.suffix}")
-    result = run(*line.format(**places).split(), "-o", link)
-    assert result.exit_code == 2
-    assert f"{link}: is in the corpus" in result.stderr
-
-
 def test_a_circle_of_links_is_replaced_or_refused_in_one_sentence(run, places, tmp_path):
     link, other = tmp_path / "a.nc", tmp_path / "b.nc"
     link.symlink_to(other)
@@ -228,6 +217,7 @@ def test_a_circle_of_links_is_replaced_or_refused_in_one_sentence(run, places, t
     assert result.exit_code in (0, 2), result.output
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("form", ["folder", "file"])
 def test_links_in_a_corpus_of_a_stranger_lead_no_command_out_of_it(run, places, form, tmp_path):
     corpus = places["corpus"]
