@@ -16,38 +16,22 @@ from features.baselines import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.table.files import read_table
 from features.table.indicators import feature_names
 from gen.corpus import FAULTS, SIGNAL, open_corpus
+from gen.exporting import FORMS
 from gen.simulation.simulate import response_of
 from gen.support.limits import VARIABLE
 from raceway.cli import GROUPS, cli
-from raceway.commands import models
+from tests.command_tree import commands
 from tests.labels import write_labels
 
 
-def leaves(command, path=("raceway",)):
-    """Every command with its path; the commands of groups too."""
-    for name, inner in getattr(command, "commands", {}).items():
-        yield (*path, name), inner
-        yield from leaves(inner, (*path, name))
-
-
-@pytest.fixture(scope="module")
-def model(tiny_corpus, tmp_path_factory):
-    from features import feature_table
-    from features.baselines import Model
-
-    path = tmp_path_factory.mktemp("model") / "model.skops"
-    Model("logistic_regression").fit(feature_table(tiny_corpus)).save(path)
-    return path
-
-
 @pytest.mark.parametrize(
-    ("path", "command"), list(leaves(cli)), ids=lambda value: " ".join(value) if isinstance(value, tuple) else ""
+    ("path", "command"), list(commands()), ids=lambda value: " ".join(value) if isinstance(value, tuple) else ""
 )
 def test_help_shows_how_a_command_is_called(run, path, command):
-    result = run(*path[1:], "--help")
+    result = run(*path, "--help")
     assert result.exit_code == 0
-    assert " ".join(path) in result.stdout.replace("Usage: ", "", 1)
-    assert f"\n    {' '.join(path)}" in result.stdout  # an example on a line of its own
+    assert result.stdout.startswith(f"Usage: raceway {' '.join(path)} ")
+    assert f"\n    raceway {' '.join(path)}" in result.stdout  # an example on a line of its own
     assert len(command.get_short_help_str(60)) < 60
     assert "..." not in command.get_short_help_str(60)
 
@@ -111,9 +95,9 @@ def test_the_package_runs_as_the_command():
     assert run.stdout == f"raceway {version('raceway')}\n"
 
 
-def test_the_choices_of_train_are_the_estimators_of_the_registry(run):
-    assert tuple(ESTIMATORS) == models.ESTIMATORS
+def test_train_and_copy_tell_their_default_and_their_forms(run):
     assert f"default: {DEFAULT_ESTIMATOR}" in " ".join(run("train", "--help").stdout.split())
+    assert all(f"\n    {form} " in run("copy", "--help").stdout for form in FORMS)
 
 
 def test_recipes_are_listed_with_their_purpose(run, told):

@@ -3,8 +3,6 @@
 import pytest
 
 from gen.corpus import validate_corpus
-from gen.exporting import FORMS
-from raceway.commands import copying
 from raceway.console.ending import BAD_INPUT
 from tests import corpora, tone_corpora
 
@@ -16,11 +14,6 @@ def tones(tmp_path):
     for seed, folder in enumerate(folders):
         tone_corpora.write_corpus(folder, specimens=4, parts=1, seed=seed)
     return folders
-
-
-def test_the_command_offers_every_form():
-    assert tuple(FORMS) == copying.FORMS
-    assert all(f"\n  {form} " in copying.copy.help for form in FORMS)
 
 
 def test_a_choice_is_copied_and_described(run, tones, tmp_path):
@@ -71,20 +64,16 @@ def test_a_form_for_another_program_says_where_to_read_on(run, tones, tmp_path):
         ),
         ("{one} --split tets -o {out}", "there is no split 'tets'"),
         ("{one} --channels a,b -o {out}", "there is no channel 'a'"),
-        ("{one} --channels a, -o {out}", "'a,' has an empty name"),
         ("{one} --split train -o {other}", "exists and is not an empty folder"),
         ("{one} {one} -o {out}", "has the same samples as record 0"),
         ("{one} -o {one}/parts/part-00000.nc", "choose a place outside it"),
-        ("{one} --to xls -o {out}", "'xls' is not one of"),
         ("{one} --rename-channel housing -o {out}", "give OLD=NEW, once for each channel"),
         ("{one} --rename-channel house=a -o {out}", "there is no channel 'house'; the nearest is housing."),
-        ("{one}/README.md -o {out}", "README.md"),
-        ("{none} -o {out}", "no such folder or file"),
         ("-o {out}", "Missing argument"),
     ],
 )
 def test_what_cannot_be_done_is_one_sentence_and_leaves_nothing(run, tones, tmp_path, words, sentence):
-    places = {"one": tones[0], "other": tones[1], "out": tmp_path / "out", "none": tmp_path / "none"}
+    places = {"one": tones[0], "other": tones[1], "out": tmp_path / "out"}
     result = run("copy", *(word.format(**places) for word in words.split(" ")))
     assert result.exit_code == BAD_INPUT
     assert sentence in result.stderr

@@ -8,23 +8,23 @@ import h5py
 import pytest
 
 from features.baselines import Model
-from features.table.corpora import feature_table
 from features.table.files import write_table
 from raceway.console import ending, show
+from raceway.console.options import _Corpus
+from tests.command_tree import COMMANDS
 from tests.tampering import edit_manifest, edited, seal
 
 
 @pytest.fixture(scope="module")
-def places(tiny_recipe, tiny_corpus, tmp_path_factory):
+def places(tiny_recipe, tiny_corpus, tiny_table, tmp_path_factory):
     """Sound, damaged and absent files and folders, by their names in the table below."""
     here = tmp_path_factory.mktemp("places")
     (here / "file.txt").write_text("not what is wanted\n")
     (here / "folder").mkdir()
     (here / "folder" / "something").write_text("of another kind\n")
     (here / "binary.yaml").write_bytes(bytes(range(256)))
-    table = feature_table(tiny_corpus)
-    Model("majority").fit(table).save(here / "model.skops")
-    write_table(table, here / "table.nc")
+    Model("majority").fit(tiny_table).save(here / "model.skops")
+    write_table(tiny_table, here / "table.nc")
     whole = (here / "model.skops").read_bytes()
     (here / "cut.skops").write_bytes(whole[: len(whole) // 2])
     for name, (whole, broken) in RECIPES.items():
@@ -71,11 +71,6 @@ DAMAGES = {
 }
 
 RECIPES = {
-    "unknown_bearing": ('"6205"', "NU205"),
-    "crowded": ('["6205"]', "[mine], entries: {mine: {n_balls: 20, pitch_diameter_mm: 50, ball_diameter_mm: 9}}"),
-    "untraced": ("{kind: outer,", "{kind: outer, profile: trace,"),
-    "hasty": ("operation: {", "operation: {load_profile: {kind: steps, levels_percent: [50, 99]}, "),
-    "twice": ("{kind: healthy}", "{kind: compound, parts: [{kind: cage}, {kind: cage}]}"),
     "straight": ("operation: {", "operation: {axial_load_n: 100, "),
     "coming_loose": ("20}\noperation: {", "20, contact_angle_deg: 10}\noperation: {axial_load_n: 10, "),
     "wide": ("{kind: healthy}", "{kind: ball, width_mm: 6}"),
@@ -87,30 +82,15 @@ TABLE = [
     ("generate {recipe}", "raceway generate: Missing option '-o' / '--output'; see raceway generate --help."),
     ("info", "raceway info: Missing argument 'DIR'"),
     ("info {corpus} --colour", "raceway info: No such option '--colour'"),
-    ("generate {recipe} -o {new} --workers 0", "'--workers': 0 is not in the range x>=1"),
-    ("features {corpus} -o {new}.nc --workers 0", "'--workers': 0 is not in the range x>=1"),
     ("train {recipe} -o {new} --scheduler tcp://a:1", "--scheduler is for DIR: generate the corpus of the RECIPE with it first"),
-    ("generate {recipe} -o {new} --records some", "'--records': 'some' is not a valid integer"),
-    ("replay {corpus} --record first", "'--record': 'first' is not a valid integer"),
-    ("train {corpus} -o {new} --estimator oracle", "'--estimator': 'oracle' is not one of 'majority', 'envelope_rule'"),
-    ("import cwru {folder} -o {new} --subset some", "'--subset': 'some' is not one of 'all', 'wang'"),
     ("import skf {folder} -o {new}", "raceway import: No such command 'skf'"),
-    ("benchmark {corpus} -o {new} --folds 1", "'--folds': 1 is not in the range x>=2"),
     # where results go
     ("generate {recipe} -o {file}", "file.txt: is a file; give a folder, or a file that ends in .nc, for the corpus."),
     ("generate {recipe} -o {folder}", "folder: is not empty and holds no corpus; choose another folder."),
     ("generate {recipe} -o {corpus} --seed 8", "holds a corpus of another recipe, seed or size; choose another name."),
     ("generate {recipe} -o /proc/corpus", "/proc/corpus: could not be written"),
-    ("features {corpus} -o {new}.csv", "new.csv does not end in .nc or .parquet"),
-    ("explore {corpus} -o {new}.png", "new.png does not end in .html"),
-    ("explore {corpus} -o {new}.html --records 0", "'--records': 0 is not in the range x>=1"),
     ("explore {corpus} -o {new}.html --features {model}", "not a readable netCDF file"),
     ("explore {corpus} -o {new}.html --channel nose", "no channel 'nose'; give one of"),
-    ("plot {corpus} --record 0 -o {new}.bmp", "new.bmp does not end in .png or .svg or .pdf"),
-    ("replay {corpus} --record 0 -o {new}.txt", "new.txt does not end in .nc"),
-    ("train {corpus} -o {folder}", "folder is a folder; give a file"),
-    ("train {corpus} -o {nowhere}/model", "there is no folder"),
-    ("benchmark {corpus} -o {file}", "file.txt is a file; give a folder"),
     # recipes
     ("plan {nowhere}", "nowhere: neither a file nor one of the recipes dirty_sensors, domain_randomised"),
     ("plan quikstart", "did you mean quickstart?"),
@@ -121,31 +101,14 @@ TABLE = [
     ("generate {recipe} -o {new} --records 0", "records: 0 is not allowed here; it must be greater than or equal to 1."),
     ("features {corpus} -o {new}.nc --scheduler nowhere", "scheduler nowhere: does not answer (missing port number"),
     ("generate {recipe} -o {begun} --scheduler nowhere", "scheduler nowhere: does not answer (missing port number"),
-    ("plan {unknown_bearing}", "bearing.designations: 'NU205' is neither in the catalogue nor in entries; did you mean NU206"),
-    ("plan {crowded}", "bearing.entries.mine: 20 of 9 mm do not fit a pitch circle of 50 mm; keep ball_diameter_mm below 7.461."),
-    ("plan {untraced}", "faults[2].profile: trace and trace_um belong together; give both or neither."),
-    ("generate {hasty} -o {new}", "operation.load_profile.step_s: 0.1 s is longer than a level; keep it below 0.05."),
-    ("generate {twice} -o {new}", "faults[0].parts: cage, cage are not all different; several spalls of one part need no compound."),
-    ("plan {straight}", "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."),
     ("generate {straight} -o {begun}", "operation.axial_load_n: needs a contact angle; "),
     ("plan {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; give at least 66.12 N."),
     ("doctor --speed {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; give at least 66.12 N."),
     ("generate {wide} -o {begun}", "a spall of 6 mm does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     # corpora
-    ("info {nowhere}", "nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file."),
-    ("info {file}", "file.txt: has no checksum of Raceway at its end"),
-    ("info {table}", "table.nc: has no checksum of Raceway at its end: it is another file, such as a feature table"),
-    ("info {corpus}/manifest.json", "manifest.json: has no checksum of Raceway at its end"),
-    ("features {file} -o {new}.nc", "file.txt: has no checksum of Raceway at its end"),
     ("generate {recipe} -o {table}", "table.nc: has no checksum of Raceway at its end"),
     ("benchmark {corpus} -o {new} --test {table}", "table.nc: has no checksum of Raceway at its end"),
-    ("validate {folder}", "folder: has no manifest.json, so it is not a corpus; make one with raceway generate."),
-    ("features {no_json} -o {new}.nc", "manifest.json: not the manifest of a corpus"),
-    ("info {a_list}", "manifest.json: not the manifest of a corpus"),
-    ("info {vague}", "manifest.json: not the manifest of a corpus (complete: input should be a valid boolean)"),
-    ("info {later_format}", "manifest.json: corpus format 99, this version of raceway reads format 3; make the corpus again."),
     ("features {unfinished} -o {new}.nc", "is unfinished; run the raceway generate command that began it again."),
-    ("info {leading_out}", "manifest.json: not the manifest of a corpus (parts.0.name: string should match pattern"),
     ("plot {missing_part} --record 0 -o {new}.png", "part-00001.nc: is missing; copy it again"),
     ("features {altered_part} -o {new}.nc", "part-00002.nc: is altered, cut off or rewritten by another program: its bytes do not have"),
     ("train {altered_part} -o {new}", "part-00002.nc: is altered, cut off"),
@@ -158,7 +121,6 @@ TABLE = [
     ("evaluate {corpus} --model {nowhere}", "nowhere: no such file; give a model made with raceway train."),
     ("evaluate {corpus} --model {file}", "file.txt: not a readable model"),
     ("evaluate {corpus} --model {cut}", "cut.skops: not a readable model"),
-    ("evaluate {nowhere} --model {model}", "nowhere: no such folder or file"),
     ("benchmark {corpus} -o {new} --track rig --folds 3", "2 rig(s) cannot fill 3 folds; use at most 2 folds."),
     ("benchmark {corpus} -o {new} --folds 3 --test {corpus}", "48 of its records are in the training corpus too"),
     # recordings
@@ -181,6 +143,45 @@ def test_bad_usage_or_input_ends_in_one_sentence_and_exit_code_2(run, places, li
     assert sentence.format(**places) in said[0]
     assert said[0].endswith((".", "?"))
     assert not [path for path in places["new"].parent.iterdir() if path.name.startswith((".", "new"))]
+
+
+# commands that read a corpus, and what they say of places that hold none
+READERS = {
+    "info": "info {}", "validate": "validate {}", "replay": "replay {} --record 0", "plot": "plot {} --record 0 -o {new}.png",
+    "explore": "explore {} -o {new}.html", "features": "features {} -o {new}.nc", "train": "train {} -o {new}",
+    "evaluate": "evaluate {} --model {model}", "benchmark": "benchmark {} -o {new}", "compare": "compare {} {corpus} -o {new}",
+    "copy": "copy {} -o {new}", "card": "card {} --license MIT",
+}  # fmt: skip
+NO_CORPORA = {
+    "nowhere": "nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file.",
+    "file": "file.txt: has no checksum of Raceway at its end",
+    "table": "table.nc: has no checksum of Raceway at its end: it is another file, such as a feature table",
+    "folder": "folder: has no manifest.json, so it is not a corpus; make one with raceway generate.",
+    "no_json": "manifest.json: not the manifest of a corpus",
+    "a_list": "manifest.json: not the manifest of a corpus",
+    "vague": "manifest.json: not the manifest of a corpus (complete: input should be a valid boolean)",
+    "later_format": "manifest.json: corpus format 99, this version of raceway reads format 3; make the corpus again.",
+    "leading_out": "manifest.json: not the manifest of a corpus (parts.0.name: string should match pattern",
+}
+
+
+@pytest.mark.parametrize("command", READERS)
+def test_every_command_that_reads_a_corpus_refuses_what_is_none_in_one_sentence(run, places, command):
+    for place, sentence in NO_CORPORA.items():
+        if command == "validate" and place not in ("nowhere", "folder"):  # tells of a damaged corpus as its result
+            continue
+        result = run(*READERS[command].replace("{}", f"{{{place}}}").format(**places).split())
+        assert (result.exit_code, result.stdout) == (2, ""), result.output
+        if command in ("plot", "train", "replay"):  # take recordings or recipes too, or read no more than a part
+            sentence = places[place].name
+        assert sentence in result.stderr
+        assert len(result.stderr.splitlines()) == 1
+
+
+def test_every_command_with_a_corpus_is_among_these():
+    assert {
+        words[0] for words, command in COMMANDS.items() if any(isinstance(one.type, _Corpus) for one in command.params)
+    } <= {*READERS}
 
 
 def test_a_scheduler_that_does_not_answer_leaves_no_folder(run, tiny_recipe, tmp_path):

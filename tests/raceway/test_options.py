@@ -1,13 +1,74 @@
-"""Options reach the functions that they set, and keys of the JSON objects have the right values."""
+"""Options refuse values of other types, reach the functions that they set, and keys of the JSON objects have the right values."""
 
 import re
 from types import SimpleNamespace
 
+import click
 import pytest
+from click.types import FloatParamType, IntParamType
 
+from features.baselines import ESTIMATORS, TRACKS
+from features.report.views import VIEWS
 from features.table.band import DEFAULT_BAND
+from features.table.recording_speeds import SPEEDS
+from gen.exporting import FORMS
 from gen.support.errors import CorpusError
 from gen.support.workers import cores
+from raceway.commands import benchmarking, copying, models, plotting
+from raceway.commands.recordings import _speeds
+from raceway.console.options import names, speed_option
+from tests.command_tree import COMMANDS
+
+
+def refused_values(option):
+    """Values that an option refuses by its type, its range or its form, each a tuple of words."""
+    kind, least = option.type, getattr(option.type, "min", None)
+    if option.callback is names:
+        return [("x,",)]
+    if option.callback is _speeds:
+        return [("-3",), ("nan",), ("1900-1400",), ("1400-",), ("",)]
+    if isinstance(kind, click.Tuple):
+        return [("low", "high"), ("5000", "300")]
+    if isinstance(kind, click.Choice | IntParamType | FloatParamType):
+        return [("some",), *([] if least is None else [(str(least - 1),)])]
+    return []
+
+
+REFUSING = {
+    f"{' '.join(words)} {option.opts[0]}": (words, option)
+    for words, command in COMMANDS.items()
+    for option in command.params
+    if isinstance(option, click.Option) and not option.is_flag and refused_values(option)
+}
+
+
+@pytest.mark.parametrize("line", REFUSING)
+def test_an_option_refuses_what_is_no_value_of_it_in_one_sentence(run, line):
+    words, option = REFUSING[line]
+    for wrong in refused_values(option):
+        result = run(
+            *words,
+            *("x" for one in COMMANDS[words].params if one.is_eager and one.name == "recording"),
+            option.opts[0],
+            *wrong,
+        )
+        assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1), result.output
+        assert f"'{option.opts[0]}'" in result.stderr or f" '{option.opts[0]}' /" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("choices", "registry"),
+    [
+        (models.ESTIMATORS, ESTIMATORS),
+        (benchmarking.TRACKS, TRACKS),
+        (copying.FORMS, FORMS),
+        (plotting.VIEWS, VIEWS),
+        (speed_option(lambda: None).__click_params__[0].type.choices, SPEEDS),
+    ],
+)
+def test_the_choices_of_an_option_are_those_of_its_registry(choices, registry):
+    """The help loads none of the registries."""
+    assert tuple(choices) == tuple(registry)
 
 
 @pytest.fixture

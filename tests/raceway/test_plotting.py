@@ -28,7 +28,6 @@ def test_a_record_is_drawn_over_another_one_of_the_corpus(run, tiny_corpus, tmp_
     ("given", "sentence"),
     [
         ((), "give --bearing and --rpm"),
-        ((*MACHINE, "--view", "spectrogram"), "is not one of 'waveform'"),
         ((*MACHINE, "--channel", "0,1"), "a picture shows one channel"),
         ((*MACHINE, "--band", 6000, 9000), "lies above half the sample rate"),
         ((*MACHINE, "--healthy", "none.npy"), "none.npy"),

@@ -7,8 +7,7 @@ import pytest
 
 from features.table.band import DEFAULT_BAND
 from features.table.files import read_table
-from features.table.recording_speeds import ESTIMATE, SPEEDS
-from raceway.console.options import speed_option
+from features.table.recording_speeds import ESTIMATE
 from tests.features.table.test_recording_speeds import write_machines
 
 WARNING = "warning: inner.csv: labelled 1500 rpm, but its BPFI lines fit"
@@ -54,8 +53,3 @@ def test_recordings_that_are_tested_are_checked_and_others_are_not(run, monkeypa
 def test_a_simulated_corpus_is_not_checked(run, tiny_corpus, tmp_path):
     result = run("features", tiny_corpus, "-o", tmp_path / "a.nc", "--json")
     assert json.loads(result.stdout)["recordings_with_other_speed"] is None
-
-
-def test_the_option_has_the_treatments_of_the_feature_table():
-    option = speed_option(lambda: None).__click_params__[0]
-    assert tuple(option.type.choices) == SPEEDS

@@ -121,45 +121,12 @@ def test_no_more_than_a_block_of_signals_is_read_at_once(dark, monkeypatch):
     assert sum(sizes) == 48
 
 
-def refused(*folders, **options):
-    with pytest.raises(CorpusError) as error:
-        compare(folders[0], folders[1:], **options)
-    sentence = str(error.value)
-    assert sentence.endswith(".")
-    assert "\n" not in sentence
-    return sentence
-
-
-def test_a_folder_that_is_no_corpus_is_named(dark, tmp_path):
-    assert str(tmp_path / "nowhere") in refused(dark, tmp_path / "nowhere")
-
-
-def test_corpora_without_a_common_class_are_refused(tmp_path):
-    inner = write_pulses(tmp_path / "inner", classes=("inner",))
-    outer = write_pulses(tmp_path / "outer", classes=("outer",))
-    assert "inner here, outer there" in refused(inner, outer)
-
-
-def test_too_few_windows_are_refused(dark, tmp_path):
-    few = write_pulses(tmp_path / "few", records=4)
-    assert "no class has 10 usable windows" in refused(dark, few)
-
-
-def test_a_corpus_without_shaft_rates_is_refused(dark, tmp_path):
-    still = write_pulses(tmp_path / "still", classes=("outer",), shaft_rate=np.zeros(12))
-    assert f"{still}: no record has a shaft rate" in refused(dark, still)
-
-
 def test_a_sample_rate_too_low_for_the_band_is_refused(dark, tmp_path):
     slow = write_pulses(tmp_path / "slow", fs=8000.0)
-    assert "at most 4000 Hz" in refused(dark, slow)
+    with pytest.raises(CorpusError, match="at most 4000 Hz"):
+        compare(dark, [slow])
     assert compare(dark, [slow], top=4000.0).common.rate == 8000.0
-    assert "energy_above_3500_hz" in compare(dark, [slow], top=3000.0).auc["outer"]
     assert compare(dark, [slow], top=3000.0).auc["outer"]["energy_above_3500_hz"] is None
-
-
-def test_a_window_longer_than_the_records_is_refused(dark, bright):
-    assert "shorter than the window of 0.7 s" in refused(dark, bright, window=0.7)
 
 
 def test_records_without_a_signal_or_a_shaft_rate_are_left_out(tmp_path, dark):

@@ -8,7 +8,6 @@ from features.report.shown import shown_recording
 from features.report.views import MAPS, VIEWS, band_by, draw_view
 from features.table.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
-from raceway.commands import plotting
 from tests.pulses import pulse_train
 
 FS = 12_000.0
@@ -48,10 +47,6 @@ def test_every_view_is_drawn_at_constant_and_at_varying_speed_and_over_another_r
         figure = draw_view(view, shown, under)
         assert bool(figure.legends) == (under is not None and view not in MAPS)
         assert picture(figure, "png").startswith(b"\x89PNG")
-
-
-def test_the_command_offers_every_view():
-    assert tuple(VIEWS) == plotting.VIEWS
 
 
 def test_the_envelope_of_a_run_up_has_its_line_within_half_a_bin_of_its_order(run_up):
