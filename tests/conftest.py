@@ -1,10 +1,13 @@
 """The examples of laws, a recipe whose corpus takes one or two seconds, and that corpus."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any, BinaryIO
 
 import pytest
 import xarray as xr
 from hypothesis import settings
+from matplotlib.figure import Figure
 
 from features import feature_table
 from gen import generate
@@ -33,6 +36,24 @@ faults:
   - {kind: outer, width_mm: 'uniform(0.5, 1)'}
   - {kind: ball, width_mm: 'uniform(0.5, 1)'}
 """
+
+
+@pytest.fixture
+def unpainted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures are drawn but not painted: most of the time of a page, in tests of its text, of scores and of files."""
+
+    def save(_figure: Figure, stream: BinaryIO, **options: Any) -> None:
+        stream.write(f"a picture as {options['format']}".encode())
+
+    monkeypatch.setattr(Figure, "savefig", save)
+
+
+@pytest.fixture(scope="module")
+def few_trees() -> Iterator[None]:
+    """Forests of ten trees: what is tested is true for those of any size."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("features.baselines.estimators.TREES", 10)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -7,6 +7,8 @@ import pytest
 from features.baselines import TRACKS
 from raceway.commands import benchmarking
 
+pytestmark = pytest.mark.usefixtures("unpainted")
+
 MINE = """
 import numpy as np
 from sklearn.impute import SimpleImputer

@@ -7,6 +7,8 @@ import pytest
 
 from tests.pulses import write_pulses
 
+pytestmark = pytest.mark.usefixtures("unpainted")
+
 
 @pytest.fixture(scope="module")
 def sets(tmp_path_factory):

@@ -12,6 +12,8 @@ import pytest
 
 from tests.diagnoses import FS, call, told, write_csv, write_wav
 
+pytestmark = pytest.mark.usefixtures("unpainted")
+
 
 def test_a_folder_of_recordings_becomes_a_table_and_pages(model, recordings, tmp_path):
     folder, pages = tmp_path / "campaign", tmp_path / "pages"

@@ -22,14 +22,15 @@ from raceway.cli import cli
 from raceway.commands.models import warn_of_durations
 from tests.model_files import make_table
 
+pytestmark = pytest.mark.usefixtures("unpainted")
+
 
 @pytest.fixture
-def trainings(tiny_corpus, tmp_path, monkeypatch):
+def trainings(tiny_table, few_trees, tmp_path, monkeypatch):  # noqa: ARG001
     """List that grows with each training; the table of the tiny corpus replaces that of every recipe."""
-    table, made = feature_table(tiny_corpus), []
+    made = []
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr("features.baselines.estimators.TREES", 2)
-    monkeypatch.setattr(kept_models, "recipe_tables", lambda recipe, _: made.append(recipe) or [table])
+    monkeypatch.setattr(kept_models, "recipe_tables", lambda recipe, _: made.append(recipe) or [tiny_table])
     return made
 
 

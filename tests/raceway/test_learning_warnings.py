@@ -62,8 +62,8 @@ def test_train_warns_of_widths_that_only_the_test_split_has(run, folder, tmp_pat
     assert SENTENCE in result.stderr
 
 
+@pytest.mark.usefixtures("few_trees")
 def test_benchmark_warns_of_widths_that_a_fold_or_the_other_corpus_adds(run, folder, tmp_path, monkeypatch):
-    monkeypatch.setattr("features.baselines.estimators.TREES", 2)
     monkeypatch.setattr("features.baselines.estimators.ROUNDS", 2)
     monkeypatch.setattr("features.report.page.write_report", lambda *_: tmp_path / "report.html")
     corpus = folder(table((2e-3,) + (1e-3,) * 15))

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from features.baselines import Model, benchmark
+from features.baselines import Model, benchmark, predict
 from features.table.definitions import feature_coordinates
+
+pytestmark = pytest.mark.usefixtures("few_trees")
 
 
 @pytest.fixture(scope="module")
@@ -25,20 +27,14 @@ def table():
     )
 
 
-@pytest.fixture(autouse=True)
-def small_forests(monkeypatch):
-    monkeypatch.setattr("features.baselines.estimators.TREES", 5)
-
-
 @pytest.mark.parametrize("name", ["ensemble", "random_forest", "svm"])
-def test_a_model_file_does_not_depend_on_the_number_of_workers(table, tmp_path, name):
-    written = set()
-    for workers in (1, 2, 4):
-        model = Model(name).fit(table, workers=workers)
-        assert model.relative is not None
-        model.save(tmp_path / "m.skops")
-        written.add((tmp_path / "m.skops").read_bytes())
-    assert len(written) == 1
+def test_predictions_do_not_depend_on_the_number_of_workers(table, name):
+    models = [Model(name).fit(table, workers=workers) for workers in (1, 2, 4)]
+    for reference in (None, table):
+        first, *others = (predict(table, model, reference) for model in models)
+        for other in others:
+            np.testing.assert_array_equal(other.probabilities, first.probabilities)
+            assert other.answers == first.answers
 
 
 def test_scores_do_not_depend_on_the_number_of_workers(table):

@@ -1,4 +1,4 @@
-"""Laws of predictions: the same from tables in any order, from a model and its file, and calibrated on groups outside the training."""
+"""Laws of predictions: the same from tables in any order, and calibrated on groups outside the training."""
 
 from dataclasses import replace
 
@@ -15,13 +15,7 @@ from features.baselines.records import features_of, labelled_records
 from gen.support.errors import CorpusError
 from tests.model_files import make_table
 
-
-@pytest.fixture(scope="module", autouse=True)
-def few_trees():
-    """The laws are true for forests of any size, and small ones are trained faster."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("features.baselines.estimators.TREES", 10)
-        yield
+pytestmark = pytest.mark.usefixtures("few_trees")
 
 
 def windowed(records: int = 96, windows: int = 4, seed: int = 0, rigs: int = 6) -> xr.Dataset:
@@ -32,20 +26,6 @@ def windowed(records: int = 96, windows: int = 4, seed: int = 0, rigs: int = 6) 
     table = table.assign({name: ("record", values) for name, values in known.items()})
     shift = known["fault"] - np.arange(records) % 3
     return table.assign(features=table.features + xr.DataArray(shift, dims="record"))
-
-
-@pytest.mark.parametrize("name", ["ensemble", "svm", "envelope_rule"])
-def test_a_model_and_its_file_give_the_same_predictions(tmp_path, name):
-    model, other = Model(name).fit(windowed()), windowed(seed=1)
-    model.save(tmp_path / "m")
-    loaded = Model.load(tmp_path / "m")
-    assert loaded.calibration == model.calibration
-    one, again = predict(other, model), predict(other, loaded)
-    np.testing.assert_array_equal(one.probabilities, again.probabilities)
-    assert one.answers == again.answers
-    assert one.by_recording is not None
-    assert again.by_recording is not None
-    assert one.by_recording.answers == again.by_recording.answers
 
 
 def test_the_order_of_the_records_of_a_table_does_not_matter():

@@ -108,12 +108,10 @@ def test_a_cross_validation_that_leaves_a_severity_out_of_training_says_so(seed)
     assert cross_validate(alone, "majority", folds=4, seed=seed).uncovered_widths == {"inner": (3e-3,)}
 
 
-def test_the_results_of_a_benchmark_contain_the_severities_of_both_tests(table, tmp_path, monkeypatch):
-    monkeypatch.setattr("features.baselines.estimators.TREES", 2)
-    monkeypatch.setattr("features.baselines.estimators.ROUNDS", 2)
+def test_the_results_of_a_benchmark_contain_the_severities_of_both_tests(table, tmp_path):
     other = with_widths(make_table(records=48, seed=1), [2e-3])
     alone = with_widths(table, [3e-3] + [1e-3] * 15)
-    results = benchmark(alone, other, folds=4)
+    results = benchmark(alone, other, folds=4, estimators={"majority": "majority"})
     assert results.uncovered_widths == {"inner": (3e-3,)}
     assert results.baselines["majority"].tests[0].uncovered_widths == {"inner": (2e-3,)}
     write_results(results, tmp_path / "results.json")
