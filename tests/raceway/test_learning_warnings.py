@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from features.baselines import Model
+from features.table.files import write_table
+from gen.support.errors import CorpusError
 from raceway.commands import benchmarking, feature_tables, models
 from tests.model_files import make_table
 
@@ -49,6 +51,9 @@ def test_parquet_without_pyarrow_is_refused_before_any_feature_is_computed(run, 
     assert result.exit_code != 0
     sentence = str(result.exception) + result.output
     assert "x.parquet: Parquet needs pyarrow; pip install 'raceway[parquet]'" in sentence
+    with pytest.raises(CorpusError, match="Parquet needs pyarrow"):
+        write_table(table(), tmp_path / "x.parquet")
+    assert not (tmp_path / "x.parquet").exists()
 
 
 def test_evaluate_warns_of_widths_that_the_model_was_not_trained_on(run, folder, model):

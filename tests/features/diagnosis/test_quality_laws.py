@@ -1,9 +1,14 @@
-"""Laws of the checks of a recording: what counts as clipped."""
+"""Laws of the checks of a recording: which signals tell nothing, which are read with care, and what counts as clipped."""
 
 import numpy as np
 import pytest
 
-from features.diagnosis.quality import clipped_share
+from features.diagnosis.quality import clipped_share, quality_of
+from features.table.indicators import Orders
+
+FS, RATE = 12_000.0, 29.5
+ORDERS = Orders(0.3983, 3.5848, 5.4152, 2.3567)
+X = np.random.default_rng(0).standard_normal(36_000)
 
 
 def test_a_sine_whose_peaks_are_single_samples_is_not_clipped():
@@ -15,3 +20,38 @@ def test_the_share_of_clipped_samples_is_told(limit):
     x = np.random.default_rng(0).standard_normal(4000)
     assert clipped_share(np.clip(x, -limit, limit)) == np.mean(np.abs(x) >= limit)
     assert clipped_share(x) == 0
+
+
+@pytest.mark.parametrize(
+    ("x", "fs", "rate", "sentence", "advice"),
+    [
+        (X[:600], FS, RATE, "the recording lasts 0.05 s", "record 10 s"),
+        (X, FS, 10 / 60, "the recording lasts 3 s", "record 120 s"),
+        (0 * X, FS, RATE, "the signal is constant", "check sensor"),
+        (0 * X + 3.7, FS, RATE, "the signal is constant", "check sensor"),
+        (-np.arange(X.size) / FS, FS, RATE, "only rise or only fall, as in a column of times", "another column"),
+        (1e-30 * X, FS, RATE, "is no vibration", "check unit"),
+        (1e30 * X, FS, RATE, "is no vibration", "check unit"),
+        (X, FS, 1500.0, "a fault line lies at 8,123 Hz, and the signal is used up to 5,000 Hz", "check speed"),
+    ],
+)
+def test_a_signal_that_tells_nothing_is_useless_for_a_reason_and_with_advice(x, fs, rate, sentence, advice):
+    found = quality_of(x, fs, rate, ORDERS)
+    assert sentence in found.useless
+    assert advice in found.advice
+    assert found.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("x", "fs", "sentence"),
+    [
+        (np.clip(X, -0.5, 0.5), FS, "clipped"),
+        (1e-4 * X, FS, "implausible"),
+        (X[:6000], FS, "The recording is short"),
+        (X, 8000.0, "leaves out part of the band"),
+    ],
+)
+def test_a_signal_to_be_read_with_care_has_one_warning_and_others_have_none(x, fs, sentence):
+    (warning,) = quality_of(x, fs, RATE, ORDERS).warnings
+    assert sentence in warning
+    assert quality_of(X, FS, RATE, ORDERS) == ("", "", ())

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import xarray as xr
-from distributed import Client
 
 from features import feature_table, shaft_speed
 from features.table.files import read_table, write_table
@@ -151,10 +150,7 @@ def test_blocks_of_records_may_come_in_any_order(corpus, checked):
 
 def test_two_workers_give_the_same_table(corpus, corrected):
     done = []
-    with Client(n_workers=2, threads_per_worker=1, processes=False, dashboard_address=":0") as client:
-        parallel = feature_table(
-            corpus, GROUPS, speed="correct", scheduler=client, progress=lambda *counts: done.append(counts)
-        )
+    parallel = feature_table(corpus, GROUPS, speed="correct", workers=2, progress=lambda *counts: done.append(counts))
     xr.testing.assert_identical(parallel, corrected)
     assert done == [(number, 6) for number in range(1, 7)]  # three parts, twice
 

@@ -16,12 +16,19 @@ from gen.support.errors import CorpusError
 @pytest.fixture(scope="module")
 def records():
     faults = [gen.healthy(), gen.outer(width_mm=0.8)]
-    return gen.records(bearing="6206", fault=faults, n=6, duration_s=0.5, seed=4)
+    return gen.records(
+        bearing="6206", fault=faults, n=6, duration_s=0.5, seed=4, waviness_nm=20
+    )  # the kernel of the tiny corpus
 
 
 @pytest.fixture(scope="module")
 def corpus(records, tmp_path_factory):
     return gen.write_corpus(records, tmp_path_factory.mktemp("memory") / "corpus")
+
+
+@pytest.fixture(scope="module")
+def model(records, few_trees):  # noqa: ARG001
+    return Model("random_forest").fit(records)
 
 
 def test_a_table_of_records_in_memory_is_that_of_their_corpus(records, corpus):
@@ -40,8 +47,7 @@ def test_one_record_is_a_table_of_one_row(records):
     )
 
 
-def test_a_model_takes_records_in_memory(records, corpus):
-    model = Model("random_forest").fit(records)
+def test_a_model_takes_records_in_memory(records, corpus, model):
     probabilities = Model("random_forest").fit(corpus).predict_proba(corpus)
     np.testing.assert_array_equal(model.predict_proba(records), probabilities)
     np.testing.assert_array_equal(model.predict(corpus, reference=records), model.predict(records, reference=corpus))
@@ -58,14 +64,13 @@ def test_waveforms_pictures_and_pages_take_records_in_memory(records, corpus, tm
     assert audit_splits(records) == [s.replace(str(corpus), records.attrs["title"]) for s in audit_splits(corpus)]
 
 
-@pytest.mark.parametrize("wrong", [None, 3, [1, 2], {"a": 1}, xr.Dataset()], ids=str)
-def test_what_is_no_corpus_and_no_table_is_refused_in_one_sentence(wrong, records):
-    model = Model("random_forest").fit(records)
+def test_what_is_no_corpus_and_no_table_is_refused_in_one_sentence(model):
     calls = [feature_table, open_waveforms, audit_splits, rank_features, model.score, model.predict, Model().fit]
     calls += [benchmark, lambda x: cross_validate(x, "random_forest"), lambda x: learning_curve(x, "random_forest")]
-    for call in calls:
-        with pytest.raises(CorpusError, match=r"; (give|make) .*\.$|needs it\.$"):
-            call(wrong)
+    for wrong in (None, 3, [1, 2], {"a": 1}, xr.Dataset()):
+        for call in calls:
+            with pytest.raises(CorpusError, match=r"; (give|make) .*\.$|needs it\.$"):
+                call(wrong)
 
 
 def test_records_without_a_usable_rate_are_refused(records):
