@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.io import savemat
-from scipy.stats import kurtosis
 
 import features
 from features.signal import velocity_rms
@@ -190,8 +189,6 @@ def test_levels_are_told_and_those_of_a_wav_file_without_a_unit_tell_no_velocity
         "levels"
     ][:1]
     assert levels["mean"] == pytest.approx(8.7 + signal.mean(), abs=1e-3)
-    assert levels["rms"] == pytest.approx(signal.std(), rel=1e-4)
-    assert levels["kurtosis"] == pytest.approx(kurtosis(signal, fisher=False), rel=1e-4)
     assert levels["velocity_rms_mm_s"] == pytest.approx(1e3 * velocity_rms(signal[None], FS, rpm / 60)[0], rel=1e-4)
     assert (without["velocity_rms_mm_s"], without["unit"]) == (None, "unit of the file")
     assert re.search(r"<th scope=.row.>h.wav</th><td>\d", page.read_text(encoding="utf-8"))

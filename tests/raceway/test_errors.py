@@ -94,6 +94,8 @@ TABLE = [
     # recipes
     ("plan {nowhere}", "nowhere: neither a file nor one of the recipes dirty_sensors, domain_randomised"),
     ("plan quikstart", "did you mean quickstart?"),
+    ("train domain_randomized", "did you mean domain_randomised?"),
+    ("train {corpus}", "Missing option '-o'"),
     ("plan {folder}", "folder: is a folder; give a recipe file, or the name of one of"),
     ("plan {binary}", "binary.yaml: cannot be read"),
     ("plan {file}", "file.txt: a recipe is a mapping"),

@@ -199,11 +199,16 @@ def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_p
     assert "features of 48 records; some are missing in 1 record." in shown
 
 
-def test_bench_names_the_machine_and_the_number_of_runs(run, told, tiny_recipe, monkeypatch):
+def test_doctor_times_every_stage_and_names_the_machine_and_the_number_of_runs(run, told, tiny_recipe, monkeypatch):
     monkeypatch.setattr("raceway.timing.REPEATS", 1)
-    found = told("doctor", "--speed", tiny_recipe, "--records", 1)
-    assert (found["records"], found["repeats"]) == (1, 1)
-    assert found["features_records_per_second"] == pytest.approx(1 / found["stage_seconds"]["features"])
+    found = told("doctor", "--speed", tiny_recipe, "--records", 6)
+    assert (found["records"], found["repeats"]) == (6, 1)
+    seconds = found["stage_seconds"]
+    assert set(seconds) == {"draw", "lay_out", "integrate", "measure", "write", "features"}
+    assert found["kernel_record_steps_per_second"] == pytest.approx(found["record_steps"] / seconds["integrate"])
+    assert found["features_records_per_second"] == pytest.approx(6 / seconds["features"])
+    assert found["record_steps"] % 6 == 0
+    assert found["records_per_second"] > 0
     assert found["machine"].keys() == {"processor", "cores", "python", "raceway", "numba", "numpy", "scipy"}
     shown = run("doctor", "--speed", tiny_recipe, "--records", 1).stdout
     assert shown.startswith(f"tiny: 1 record, median of 1 run on {found['machine']['processor']}\n")

@@ -63,8 +63,8 @@ def test_a_notebook_renews_one_line(clock, lines, monkeypatch):
 
 
 def test_quiet_prints_results_alone(run, tiny_recipe, tmp_path):
-    loud = run("generate", tiny_recipe, "-o", tmp_path / "loud")
-    quiet = run("--quiet", "generate", tiny_recipe, "-o", tmp_path / "quiet")
+    loud = run("generate", tiny_recipe, "-o", tmp_path / "loud", "--records", 2)
+    quiet = run("--quiet", "generate", tiny_recipe, "-o", tmp_path / "quiet", "--records", 2)
     assert "generating:" in loud.stderr
     assert quiet.stderr == ""
     assert quiet.stdout == loud.stdout.replace("loud", "quiet")

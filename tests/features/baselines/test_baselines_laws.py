@@ -167,13 +167,6 @@ def test_cross_validation_refuses_a_fold_that_trains_no_record_of_a_class(monkey
         cross_validate(table, "majority")
 
 
-def test_cross_validation_by_rig_keeps_rigs_together():
-    table = make_table(40, 2, rigs=5)
-    assert cross_validate(table, "logistic_regression", track="rig").balanced_accuracy > 0.95
-    with pytest.raises(CorpusError, match=r"5 rig\(s\) cannot fill 6 folds; use at most 5 folds"):
-        cross_validate(table, "logistic_regression", track="rig", folds=6)
-
-
 @pytest.mark.parametrize("name", list(ESTIMATORS))
 def test_probabilities_sum_to_one_and_their_largest_is_the_prediction(name):
     for classes in (2, 4, 6):

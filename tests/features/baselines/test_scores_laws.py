@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from sklearn.metrics import f1_score, log_loss, recall_score, roc_auc_score
+from sklearn.metrics import confusion_matrix, f1_score, log_loss, recall_score, roc_auc_score
 
 from features.baselines.calibration import UNCALIBRATED
 from features.baselines.predictions import predictions
@@ -48,7 +48,7 @@ def scores_of(fault, predicted, specimen):
 
 @given(labelled())
 @settings(deadline=None)
-def test_figures_agree_with_those_of_scikit_learn_over_the_classes_present(case):
+def test_figures_agree_with_those_of_scikit_learn_over_the_classes_present_and_with_counts(case):
     fault, predicted, specimen = case
     found = scores_of(fault, predicted, specimen)
     present = np.unique(fault)
@@ -58,16 +58,10 @@ def test_figures_agree_with_those_of_scikit_learn_over_the_classes_present(case)
     assert found.macro_f1 == pytest.approx(f1)
     assert found.accuracy == pytest.approx(np.mean(fault == predicted))
     assert found.classes == tuple(FAULTS[c] for c in present)
-
-
-@given(labelled())
-@settings(deadline=None)
-def test_the_confusion_matrix_counts_each_record_once(case):
-    fault, predicted, specimen = case
-    found = scores_of(fault, predicted, specimen)
+    np.testing.assert_array_equal(found.confusion, confusion_matrix(fault, predicted, labels=range(4))[present])
     assert np.sum(found.confusion) == len(fault) == found.records
-    assert [sum(row) for row in found.confusion] == [np.sum(fault == c) for c in np.unique(fault)]
-    assert np.sum(found.confusion, axis=0).tolist() == np.bincount(predicted, minlength=4).tolist()
+    alarms = predicted[fault == 0] != 0
+    assert found.false_alarms == (pytest.approx(alarms.mean()) if len(alarms) else None)
 
 
 @given(labelled(), st.randoms(use_true_random=False))
@@ -148,19 +142,6 @@ def test_the_interval_is_as_wide_as_that_of_as_many_independent_specimens(specim
     width = 2 * 1.96 * np.sqrt(share * (1 - share) / specimens / 2)
     # 1000 resamples determine a quantile to about 5 %; half as many specimens would make it 41 % wider
     assert high - low == pytest.approx(width, rel=0.15)
-
-
-@given(labelled())
-@settings(deadline=None)
-def test_false_alarms_are_the_healthy_records_that_are_predicted_faulty(case):
-    fault, predicted, specimen = case
-    found = scores_of(fault, predicted, specimen).false_alarms
-    if 0 not in fault:
-        assert found is None
-    else:
-        assert found == pytest.approx(
-            sum(p != 0 for f, p in zip(fault, predicted, strict=True) if f == 0) / sum(fault == 0)
-        )
 
 
 @given(st.integers(0, 999), st.integers(2, 4))

@@ -45,9 +45,12 @@ def test_every_column_has_a_definition_of_its_group_in_full(band):
             assert feature.least < feature.most
 
 
-def test_different_features_have_different_meanings():
-    meanings = [feature.meaning for feature in define_features()]
-    assert len(set(meanings)) == len(meanings)
+def test_different_features_have_different_names_and_meanings_in_the_order_of_their_groups():
+    features = define_features()
+    assert (
+        len({feature.meaning for feature in features}) == len({feature.name for feature in features}) == len(features)
+    )
+    assert tuple(dict.fromkeys(feature.group for feature in features)) == GROUPS
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])

@@ -44,12 +44,6 @@ def impulse_train(order, shaft_rate, fs=12_000, duration=0.5, seed=0):
     return (impulses + 0.05 * noise(seed, 1, len(t))[0])[None]
 
 
-def test_names_are_unique_and_each_has_its_group():
-    names = feature_names()
-    assert len(set(names)) == len(names)
-    assert tuple(dict.fromkeys(feature.group for feature in define_features())) == GROUPS
-
-
 def test_each_group_has_one_function_that_computes_all_its_features():
     assert tuple(GROUP_FEATURES) == GROUPS
     for group, compute in GROUP_FEATURES.items():
