@@ -58,3 +58,14 @@ def write_pulses(
     with new_corpus(folder, title="pulses") as corpus:
         corpus.write(dataset)
     return folder
+
+
+def impulses_beside_a_shaft(order, seed, *, fs, rate, seconds, shaft=0.3):
+    """Noise, harmonics of a shaft at ``rate`` [Hz], and impulses at an order of it that excite a resonance; order 0 for none."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(round(seconds * fs)) / fs
+    x = rng.standard_normal(t.size) + sum(shaft * np.cos(2 * np.pi * k * rate * t + k) / k for k in range(1, 7))
+    if not order:
+        return x
+    since = np.mod(t + rng.uniform(), 1 / (order * rate))
+    return x + 8 * np.exp(-900 * since) * np.sin(2 * np.pi * 2800 * since)

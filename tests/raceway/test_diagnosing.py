@@ -14,6 +14,7 @@ from features.signal import velocity_rms
 from gen.importers.bearing_text import bearing_orders
 from gen.support.errors import CorpusError
 from tests.diagnoses import FS, call, told, write_csv, write_wav
+from tests.pulses import impulses_beside_a_shaft
 
 LINE_ORDERS = {"inner": 5.4152, "outer": 3.5848, "ball": 4.7135}
 
@@ -79,13 +80,8 @@ def test_a_speed_that_is_5_per_cent_off_is_corrected_and_told(model, recordings,
 RPM = 1770.0
 
 
-def impulses(order, seed=0):
-    """Noise, shaft harmonics, and impulses at an order of the shaft that excite a resonance."""
-    rng = np.random.default_rng(seed)
-    t = np.arange(3 * FS) / FS
-    since = np.mod(t + rng.uniform(), 60 / (order * RPM))
-    shaft = sum(np.cos(2 * np.pi * k * RPM / 60 * t + k) / k for k in range(1, 7))
-    return rng.standard_normal(t.size) + 0.3 * shaft + 8 * np.exp(-900 * since) * np.sin(2 * np.pi * 2800 * since)
+def impulses(order):
+    return impulses_beside_a_shaft(order, 0, fs=FS, rate=RPM / 60, seconds=3.0)
 
 
 @pytest.mark.usefixtures("unpainted")

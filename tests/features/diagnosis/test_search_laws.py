@@ -8,6 +8,7 @@ from features.diagnosis.evidence import Line
 from features.diagnosis.search import LevelSpectra, find_pairs, mean_spectra, strange_comb
 from features.diagnosis.wording import speed_warning
 from features.table.indicators import Orders
+from tests.pulses import impulses_beside_a_shaft
 
 FS, RATE = 12_000.0, 29.5
 NINE, EIGHT = Orders(0.3983, 3.5848, 5.4152, 2.3567), Orders(0.3821, 3.0530, 4.9470, 1.9940)
@@ -16,14 +17,7 @@ ORDER = {"bpfo": 3.5848, "bpfi": 5.4152, "2bsf": 4.7134}
 
 
 def recording(order, seed, shaft=0.3, seconds=5.0, rate=RATE):
-    """Noise, shaft harmonics, and impulses at an order of the shaft that excite a resonance; 0 for none."""
-    rng = np.random.default_rng(seed)
-    t = np.arange(round(seconds * FS)) / FS
-    x = rng.standard_normal(t.size) + sum(shaft * np.cos(2 * np.pi * k * rate * t + k) / k for k in range(1, 7))
-    if not order:
-        return x
-    since = np.mod(t + rng.uniform(), 1 / (order * rate))
-    return x + 8 * np.exp(-900 * since) * np.sin(2 * np.pi * 2800 * since)
+    return impulses_beside_a_shaft(order, seed, fs=FS, rate=rate, seconds=seconds, shaft=shaft)
 
 
 def found(x, given):
