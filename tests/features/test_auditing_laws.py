@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.signal
 from click.testing import CliRunner
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features import audit_splits
@@ -76,7 +76,6 @@ def test_a_copy_under_the_same_specimen_is_no_leak(tmp_path):
     assert audit_splits(corpus(tmp_path, [*sound_set(), ("copy", sound_set()[0][1], "healthy", "healthy0")])) == []
 
 
-@settings(deadline=None, max_examples=30)
 @given(seed=st.integers(0, 10_000), other=st.integers(10_001, 20_000))
 def test_different_recordings_of_one_machine_are_no_copies(seed, other):
     one, two = (_signature(machine(number))[0] for number in (seed, other))

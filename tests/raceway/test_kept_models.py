@@ -190,10 +190,7 @@ def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(tmp_path, monkeyp
 
 def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_path):
     """Other processors may round the signals otherwise by a count or two of the converter."""
-    tables, labels = (
-        kept_models.recipe_tables("domain_randomised"),
-        ["fault", "rig", "specimen", "split", "duration"],
-    )
+    tables, labels = (kept_models.recipe_tables("domain_randomised"), ["fault", "rig", "specimen", "split", "duration"])
     for table, recipe in zip(tables, kept_models.both_lengths(read_recipe("domain_randomised")), strict=True):
         seconds = recipe.recording.duration_s
         fresh = feature_table(generate(recipe, tmp_path / f"{seconds}", records=4).path)
@@ -210,10 +207,7 @@ def test_another_recipe_is_not_trained_on_the_shipped_table(tmp_path, monkeypatc
     text = shipped_recipes()["domain_randomised"].read_text(encoding="utf-8")
     (tmp_path / "same.yaml").write_text(f"# another comment\n{text}", encoding="utf-8")
     (tmp_path / "other.yaml").write_text(text.replace("seed: 20260", "seed: 20261"), encoding="utf-8")
-    assert [table.sizes["record"] > 2900 for table in kept_models.recipe_tables(tmp_path / "same.yaml")] == [
-        True,
-        True,
-    ]
+    assert [table.sizes["record"] > 2900 for table in kept_models.recipe_tables(tmp_path / "same.yaml")] == [True, True]
     assert kept_models.recipe_tables(tmp_path / "other.yaml") == ["made"]
 
 

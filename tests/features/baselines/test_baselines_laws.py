@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.baselines import ESTIMATORS, Model, benchmark, cross_validate, splits
@@ -82,7 +82,6 @@ def test_a_recording_of_a_specimen_that_became_faulty_is_another_recording():
 
 
 @given(seed=st.integers(0, 999))
-@settings(deadline=None)
 def test_labels_are_permuted_among_whole_specimens(seed):
     found = records_of(make_table(12, 3))
     labels = permuted_labels(found, seed)

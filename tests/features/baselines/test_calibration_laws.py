@@ -7,14 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.special import softmax
 
-from features.baselines.calibration import (
-    COVERAGE,
-    UNCALIBRATED,
-    answering,
-    calibrate,
-    combine,
-    fit_calibration,
-)
+from features.baselines.calibration import COVERAGE, UNCALIBRATED, answering, calibrate, combine, fit_calibration
 from features.baselines.predictions import UNSURE, predictions
 from gen.corpus import FAULTS
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binom, binomtest
 from sklearn.metrics import roc_auc_score
@@ -37,7 +37,6 @@ def test_records_without_a_width_are_left_out():
 
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(0, 5)), min_size=2, max_size=40))
-@settings(deadline=None)
 def test_the_area_is_that_of_scikit_learn_and_the_curve_rises_to_one(records):
     faulty, level = np.array(records).T
     faulty = faulty.astype(bool)

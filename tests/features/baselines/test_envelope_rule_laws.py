@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import softmax
 
@@ -85,7 +85,6 @@ def test_without_one_of_the_classes_cage_and_compound_its_trains_are_not_classif
 
 
 @given(rows)
-@settings(deadline=None)
 def test_without_cage_and_compound_the_rule_compares_only_combs_and_threshold(found):
     frame = table(found)
     combs = np.nan_to_num(frame[list(COMBS.values())].to_numpy(), nan=-np.inf)
@@ -97,7 +96,6 @@ def test_without_cage_and_compound_the_rule_compares_only_combs_and_threshold(fo
 
 
 @given(rows, st.sets(st.integers(0, 5), min_size=1))
-@settings(deadline=None)
 def test_cage_and_compound_are_predicted_only_if_the_corpus_has_them(found, known):
     frame = table(found)
     rule = EnvelopeRule().fit(frame, np.array(sorted(known)))
@@ -107,7 +105,6 @@ def test_cage_and_compound_are_predicted_only_if_the_corpus_has_them(found, know
 
 
 @given(rows)
-@settings(deadline=None)
 def test_the_classes_cage_and_compound_change_no_prediction_to_healthy_or_another_spall(found):
     frame = table(found)
     old = EnvelopeRule().fit(frame, FOUR).predict(frame)
@@ -121,7 +118,6 @@ def test_a_record_without_features_is_healthy():
 
 
 @given(st.floats(1.1, 3), st.floats(1.1, 3), st.floats(-1, 0.5))
-@settings(deadline=None)
 def test_two_race_combs_are_a_compound_fault_if_neither_exceeds_twice_the_other(inner, outer, ball):
     frame = table([[inner, outer, ball, 0.0, 0.0]])
     compound = EnvelopeRule().fit(frame, SIX).predict(frame)[0] == FAULTS.index("compound")
@@ -129,7 +125,6 @@ def test_two_race_combs_are_a_compound_fault_if_neither_exceeds_twice_the_other(
 
 
 @given(st.floats(1.1, 3), st.floats(0.1, 3))
-@settings(deadline=None)
 def test_the_lines_of_the_cage_count_as_a_ball_spall_if_the_ball_comb_is_at_least_half_as_high(series, ball):
     frame = table([[0.0, 0.0, ball, series, series]])
     cage = EnvelopeRule().fit(frame, SIX).predict(frame)[0] == FAULTS.index("cage")
@@ -137,7 +132,6 @@ def test_the_lines_of_the_cage_count_as_a_ball_spall_if_the_ball_comb_is_at_leas
 
 
 @given(st.floats(0, 3))
-@settings(deadline=None)
 def test_beside_a_race_comb_the_ball_comb_counts_only_up_to_the_lines_of_the_cage(series):
     frame = table([[3.0, 0.0, 2.0, series, series]])
     compound = EnvelopeRule().fit(frame, SIX).predict(frame)[0] == FAULTS.index("compound")
@@ -145,7 +139,6 @@ def test_beside_a_race_comb_the_ball_comb_counts_only_up_to_the_lines_of_the_cag
 
 
 @given(st.floats(1.1, 3), st.floats(0.0, 0.99), st.floats(0.0, 0.99))
-@settings(deadline=None)
 def test_lines_at_all_multiples_of_the_cage_order_are_a_cage_fault(series, outer, ball):
     frame = table([[0.0, outer * series, ball * outer * series, series, series]])
     assert FAULTS[EnvelopeRule().fit(frame, SIX).predict(frame)[0]] == "cage"

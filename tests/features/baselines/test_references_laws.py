@@ -77,7 +77,7 @@ def test_a_record_that_is_its_own_reference_has_no_change(table):
 
 
 @given(gain=st.floats(1e-3, 1e3), seed=st.integers(0, 99))
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=10)
 def test_gains_of_record_and_reference_have_no_effect(gain, seed):
     x = np.random.default_rng(seed).standard_normal((4, 6000))
     one = np.array([[gain], [1.0]])  # of the first of two records alone

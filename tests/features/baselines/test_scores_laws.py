@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from sklearn.metrics import confusion_matrix, f1_score, log_loss, recall_score, roc_auc_score
@@ -47,7 +47,6 @@ def scores_of(fault, predicted, specimen):
 
 
 @given(labelled())
-@settings(deadline=None)
 def test_figures_agree_with_those_of_scikit_learn_over_the_classes_present_and_with_counts(case):
     fault, predicted, specimen = case
     found = scores_of(fault, predicted, specimen)
@@ -65,7 +64,6 @@ def test_figures_agree_with_those_of_scikit_learn_over_the_classes_present_and_w
 
 
 @given(labelled(), st.randoms(use_true_random=False))
-@settings(deadline=None)
 def test_scores_do_not_depend_on_the_order_of_the_records(case, random):
     order = list(range(len(case[0])))
     random.shuffle(order)
@@ -73,7 +71,6 @@ def test_scores_do_not_depend_on_the_order_of_the_records(case, random):
 
 
 @given(labelled())
-@settings(deadline=None)
 def test_recordings_of_one_record_score_like_records(case):
     found = scores_of(*case)
     whole = found.by_recording
@@ -97,7 +94,6 @@ def test_a_recording_is_decided_by_the_geometric_mean_of_its_windows():
 
 
 @given(labelled())
-@settings(deadline=None)
 def test_more_records_of_the_same_specimens_do_not_narrow_the_interval(case):
     fault, predicted, specimen = (np.concatenate([values, values]) for values in case)
     specimen = specimen + 10 * (np.arange(len(specimen)) // len(case[0]))  # at least two specimens of each class
@@ -108,7 +104,6 @@ def test_more_records_of_the_same_specimens_do_not_narrow_the_interval(case):
 
 
 @given(labelled())
-@settings(deadline=None)
 def test_the_interval_is_not_known_exactly_where_a_class_has_one_specimen(case):
     fault, predicted, specimen = case
     alone = any(len(np.unique(specimen[fault == c])) == 1 for c in np.unique(fault))
@@ -145,7 +140,6 @@ def test_the_interval_is_as_wide_as_that_of_as_many_independent_specimens(specim
 
 
 @given(st.integers(0, 999), st.integers(2, 4))
-@settings(deadline=None)
 def test_area_and_log_loss_agree_with_those_of_scikit_learn(seed, classes):
     rng = np.random.default_rng(seed)
     fault = np.concatenate([np.arange(classes), rng.integers(classes, size=40)])

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.baselines import Model, benchmark, cross_validate
@@ -101,7 +101,6 @@ def test_a_model_knows_its_widths_after_it_was_saved_and_says_which_others_it_is
     assert model.score(other).uncovered_widths == {"inner": (0.7e-3, 2e-3)}
 
 
-@settings(deadline=None)
 @given(st.integers(0, 5))
 def test_a_cross_validation_that_leaves_a_severity_out_of_training_says_so(seed):
     alone = with_widths(make_table(records=48), [3e-3] + [1e-3] * 15)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.baselines import TRACKS, benchmark, controls, cross_validate, learning_curve
@@ -62,7 +62,6 @@ def group_of(found, track):
 
 @pytest.mark.parametrize("track", TRACKS)
 @given(options=tables, folds=st.integers(2, 5))
-@settings(deadline=None, max_examples=25)
 def test_no_specimen_is_on_both_sides_no_record_is_tested_twice_and_tested_groups_were_not_trained(
     track, options, folds
 ):

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from sklearn.metrics import roc_auc_score
 
 from features.realism.contrast import auc, quantiles
 
-law = settings(deadline=None, max_examples=50)
 samples = st.lists(st.integers(-5, 5), min_size=1, max_size=30).map(lambda values: np.array(values, dtype=float))
 
 
@@ -16,7 +15,6 @@ def plain(below, above):
     return auc(below, above, np.ones(len(below)), np.ones(len(above)))
 
 
-@law
 @given(samples, samples)
 def test_the_auc_is_the_probability_of_a_higher_value_with_ties_counted_half(below, above):
     pairs = (above[:, None] > below) + 0.5 * (above[:, None] == below)
@@ -25,14 +23,12 @@ def test_the_auc_is_the_probability_of_a_higher_value_with_ties_counted_half(bel
     assert plain(below, above) == pytest.approx(roc_auc_score(labels, np.concatenate([below, above])))
 
 
-@law
 @given(samples, samples)
 def test_the_auc_turns_over_with_the_sides_and_does_not_change_with_a_rising_function(below, above):
     assert plain(below, above) + plain(above, below) == pytest.approx(1)
     assert plain(np.exp(below), np.exp(above)) == pytest.approx(plain(below, above))
 
 
-@law
 @given(samples, samples, st.integers(2, 4))
 def test_a_weight_counts_as_that_many_equal_values(below, above, weight):
     weights = np.ones(len(below))
@@ -42,7 +38,6 @@ def test_a_weight_counts_as_that_many_equal_values(below, above, weight):
     assert quantiles(below, weights, (0.3, 0.5)) == quantiles(repeated, np.ones(len(repeated)), (0.3, 0.5))
 
 
-@law
 @given(samples, st.floats(0.01, 0.99))
 def test_a_quantile_is_a_value_that_the_share_does_not_exceed(values, share):
     (found,) = quantiles(values, np.ones(len(values)), (share,))

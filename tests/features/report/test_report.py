@@ -8,7 +8,7 @@ from unicodedata import category
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.baselines import ESTIMATORS, Model, benchmark
@@ -16,14 +16,7 @@ from features.baselines.detection import detection
 from features.report import examples
 from features.report.curves import draw_detection, draw_reliability, draw_roc
 from features.report.page import QUANTITIES, _findings, _of_faults, write_report
-from features.report.pictures import (
-    DrawnRecord,
-    draw_record,
-    fault_lines,
-    squared_envelope,
-    thin,
-    write_picture,
-)
+from features.report.pictures import DrawnRecord, draw_record, fault_lines, squared_envelope, thin, write_picture
 from features.report.shown import shown_record
 from features.report.summaries import draw_scores
 from features.table.band import DEFAULT_BAND
@@ -313,7 +306,6 @@ def test_the_lines_of_a_class_have_its_orders_and_others_those_of_the_other_part
 
 
 @given(length=st.integers(2, 40_000), place=st.floats(0, 0.99), seed=st.integers(0, 99))
-@settings(deadline=None)
 def test_a_thinned_waveform_keeps_its_highest_peak(length, place, seed):
     values = np.random.default_rng(seed).standard_normal(length)
     values[int(place * length * 0.9)] = 20.0

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from features.signal.colour import centroid, roll_off, tonality
 from features.signal.spectra import psd
 
-law = settings(deadline=None, max_examples=20)
+law = settings(max_examples=20)
 FREQUENCIES = np.arange(1001) * 4.0
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.signal import comb_bands, kurtogram, spectral_kurtosis
@@ -10,7 +10,6 @@ from features.signal.impulsive import band_kurtosis, equal_bands
 from features.signal.spectra import fourier_coefficients
 
 FS = 20_000.0
-law = settings(deadline=None, max_examples=25)
 
 
 def impacts(rng, n, resonance, rate, decibels, slip=0.01):
@@ -35,7 +34,6 @@ def test_the_kurtogram_picks_the_planted_band(resonance):
     assert picked.sum() >= 95
 
 
-@law
 @given(st.integers(0, 2**32 - 1), st.floats(1e-3, 1e3))
 def test_the_kurtogram_finds_impulses_hidden_in_louder_noise_of_another_band(seed, gain):
     rng = np.random.default_rng(seed)

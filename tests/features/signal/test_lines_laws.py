@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.signal.lines import FAMILIES, Orders, combs, families, fitted_combs, read_lines, single_lines
 from features.table.definitions import LINES
 
-law = settings(deadline=None, max_examples=40)
 ORDERS = Orders(*(np.array([order]) for order in (0.3983, 3.5848, 5.4152, 2.3567)))
 BINS_PER_ORDER = 60.0
 
@@ -25,19 +24,16 @@ def read(level):
     )
 
 
-@law
 @given(st.floats(-0.015, 0.015), st.floats(50.0, 390.0))
 def test_a_line_within_the_tolerance_is_read_at_its_full_level(error, place):
     assert single_lines(level_with(place * (1 + error)), np.array([[place]]))[0, 0] == 2.0
 
 
-@law
 @given(st.floats(0.03, 0.1), st.sampled_from([-1, 1]), st.floats(100.0, 390.0))
 def test_a_line_outside_the_tolerance_is_not_read(error, side, place):
     assert single_lines(level_with(place * (1 + side * error)), np.array([[place]]))[0, 0] == 0.0
 
 
-@law
 @given(st.floats(-0.018, 0.018), st.floats(50.0, 390.0))
 def test_a_comb_tolerates_a_speed_error_shared_by_its_harmonics(error, base):
     harmonics = np.arange(1, 4) * base * (1 + error)
@@ -45,7 +41,6 @@ def test_a_comb_tolerates_a_speed_error_shared_by_its_harmonics(error, base):
     assert combs(wide, np.array([[base]]))[0, 0] == pytest.approx(2.0)
 
 
-@law
 @given(st.floats(200.0, 390.0))
 def test_a_comb_does_not_combine_harmonics_of_different_speeds(base):
     disagreeing = level_with(base * 1.018, 2 * base * 0.982, 3 * base)
@@ -98,7 +93,6 @@ def harmonics_of(family, error):
     return np.concatenate([middle - 1, middle, middle + 1])
 
 
-@law
 @given(st.integers(0, 2), st.floats(-0.055, 0.055))
 def test_the_combs_at_the_fitted_speed_find_a_family_beside_a_wrong_label(family, error):
     """Beyond 5.5 % BPFI of this bearing is at the place of 2 BSF at another speed, and no comb tells the two apart."""
@@ -107,7 +101,6 @@ def test_the_combs_at_the_fitted_speed_find_a_family_beside_a_wrong_label(family
     assert found[-1] == pytest.approx(abs(error), abs=0.01)
 
 
-@law
 @given(st.integers(0, 2), st.sampled_from([-1, 1]))
 def test_all_families_are_read_at_one_speed(first, sign):
     """The second family alone would be found: its lines stand at another speed, where no line of the first stands."""
@@ -124,7 +117,6 @@ def test_of_two_speeds_with_equal_combs_the_one_nearer_to_the_label_is_fitted():
     assert fitted_combs(level, PLACES)[0, -1] < 0.02
 
 
-@law
 @given(st.integers(0, 2), st.sampled_from([-1, 1]), st.floats(-0.015, 0.015))
 def test_families_may_differ_by_the_slip_at_the_fitted_speed(first, sign, error):
     second, fine = (first + 1) % len(FAMILIES), 8 * PLACES  # bins so narrow that rounding is far below the slip

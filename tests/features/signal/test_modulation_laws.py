@@ -9,7 +9,7 @@ from scipy.signal.windows import tukey
 from features.signal.demodulation import fine_amplitudes, weight_by_hann
 from features.signal.modulation import TAPERED, cyclostationarity, highest_place, phase_wander, sideband_ratio
 
-law = settings(deadline=None, max_examples=20)
+law = settings(max_examples=20)
 RATE, N = 5000.0, 10_000
 TIME = np.arange(N) / RATE
 

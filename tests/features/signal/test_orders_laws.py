@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.signal import (
@@ -36,7 +36,6 @@ def resampled(x, shaft_rate, fs):
     fs=st.sampled_from([8000.0, 12_000.0, 48_000.0]),
     phase=st.floats(0, 6),
 )
-@settings(deadline=None, max_examples=40)
 def test_a_tone_at_an_order_is_the_same_tone_over_the_angle(order, shaft_rate, fs, phase):
     found = resampled(tone(order, shaft_rate, fs, phase), shaft_rate, fs)
     angle = np.arange(PER_TURN * TURNS) / PER_TURN
@@ -45,7 +44,6 @@ def test_a_tone_at_an_order_is_the_same_tone_over_the_angle(order, shaft_rate, f
 
 
 @given(order=st.floats(66.0, 250.0))
-@settings(deadline=None, max_examples=30)
 def test_orders_above_half_the_samples_per_turn_are_removed(order):
     found = resampled(tone(order, 20.0, 12_000.0), 20.0, 12_000.0)
     assert np.abs(found[EDGE:-EDGE]).max() < 2e-4 if order > 67 else np.abs(found[EDGE:-EDGE]).max() < 1e-2

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.signal.refinement import _smoothed
@@ -25,7 +25,6 @@ def smoothed_densely(time, y, information, change):
 
 
 @given(seed=st.integers(0, 1000), change=st.floats(1e-3, 1e2))
-@settings(deadline=None)
 def test_the_spline_is_the_mean_of_an_integrated_random_walk(seed, change):
     rng = np.random.default_rng(seed)
     time, y = np.cumsum(rng.uniform(0.1, 0.5, 20)), rng.standard_normal(20)

@@ -1,16 +1,13 @@
 """Laws of the shape of an envelope, against the definitions of its values."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.signal.demodulation import fine_amplitudes, weight_by_hann
 from features.signal.shape import envelope_shape
 
-law = settings(deadline=None, max_examples=25)
 
-
-@law
 @given(st.integers(0, 2**32 - 1), st.integers(400, 5000), st.floats(9.0, 60.0))
 def test_the_shape_of_an_envelope_follows_its_definitions(seed, n, shaft_rate):
     rate = 2000.0

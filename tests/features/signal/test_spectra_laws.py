@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import uniform_filter1d
 from scipy.signal import welch
@@ -17,7 +17,6 @@ from features.signal.demodulation import (
 )
 from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd, whiten_cepstrally
 
-law = settings(deadline=None, max_examples=25)
 seeds = st.integers(0, 2**32 - 1)
 
 
@@ -25,7 +24,6 @@ def noise(seed, records=3, n=4096):
     return np.random.default_rng(seed).standard_normal((records, n))
 
 
-@law
 @given(seeds, st.integers(16, 4000), st.integers(8, 4000))
 def test_the_psd_is_that_of_welch(seed, n, length):
     x = noise(seed, n=n)
@@ -33,7 +31,6 @@ def test_the_psd_is_that_of_welch(seed, n, length):
         np.testing.assert_allclose(ours, expected, rtol=1e-9, atol=1e-12)
 
 
-@law
 @given(st.floats(0.1, 10.0), st.floats(200.0, 4000.0))
 def test_a_tone_has_half_its_squared_amplitude_in_its_band(amplitude, tone):
     fs = 12_000.0
@@ -44,7 +41,6 @@ def test_a_tone_has_half_its_squared_amplitude_in_its_band(amplitude, tone):
     assert outside < 1e-3 * inside
 
 
-@law
 @given(seeds, st.lists(st.floats(0.0, 600.0), min_size=2, max_size=8, unique=True))
 def test_energies_of_adjoining_bands_add_up(seed, edges):
     frequencies = np.linspace(0, 500, 101)
@@ -58,7 +54,6 @@ def test_energies_of_adjoining_bands_add_up(seed, edges):
     np.testing.assert_allclose(total, density.sum(axis=1) * frequencies[1])
 
 
-@law
 @given(seeds, st.lists(st.floats(5.0, 60.0), min_size=3, max_size=3))
 def test_bands_in_orders_are_bands_at_the_speed_of_each_record(seed, rates):
     frequencies, density = psd(noise(seed), 12_000.0)
@@ -84,7 +79,6 @@ FS = st.sampled_from([12_000, 25_600, 48_828])
 DEPTHS, LENGTHS = st.floats(0.05, 0.9), st.floats(0.5, 4.0)
 
 
-@law
 @given(DEPTHS, st.integers(80, 1000), FS, LENGTHS)
 def test_a_modulation_at_a_frequency_of_the_grid_is_read_as_its_depth(depth, place, fs, seconds):
     n = round(seconds * fs)
@@ -94,7 +88,6 @@ def test_a_modulation_at_a_frequency_of_the_grid_is_read_as_its_depth(depth, pla
     assert squared[place] == pytest.approx(2 * depth, rel=1e-3)
 
 
-@law
 @given(DEPTHS, st.floats(40.0, 250.0), FS, LENGTHS)
 def test_between_frequencies_of_the_grid_a_modulation_is_read_with_the_loss_of_a_hann_window(
     depth, frequency, fs, seconds
@@ -105,7 +98,6 @@ def test_between_frequencies_of_the_grid_a_modulation_is_read_with_the_loss_of_a
     assert lines.max() == pytest.approx(depth * np.sinc(beside) / (1 - beside**2), rel=1e-3)
 
 
-@law
 @given(st.floats(0.1, 10.0), st.floats(600.0, 1400.0))
 def test_the_modulus_of_an_analytic_band_is_the_amplitude_of_a_tone_in_it(amplitude, tone):
     x = amplitude * np.sin(2 * np.pi * tone * np.arange(12_000) / 12_000)
@@ -115,7 +107,6 @@ def test_the_modulus_of_an_analytic_band_is_the_amplitude_of_a_tone_in_it(amplit
     assert middle.mean() == pytest.approx(amplitude, rel=1e-3)
 
 
-@law
 @given(seeds)
 def test_a_band_does_not_depend_on_the_sample_rate(seed):
     rng = np.random.default_rng(seed)
@@ -128,7 +119,6 @@ def test_a_band_does_not_depend_on_the_sample_rate(seed):
     np.testing.assert_allclose(*bands, atol=0.02)
 
 
-@law
 @given(seeds)
 def test_cepstral_whitening_keeps_all_phases_and_makes_all_moduli_one(seed):
     coefficients = fourier_coefficients(noise(seed), 12_000.0, 5000.0)
@@ -137,7 +127,6 @@ def test_cepstral_whitening_keeps_all_phases_and_makes_all_moduli_one(seed):
     np.testing.assert_allclose(np.angle(white), np.angle(coefficients[:, 1:]))
 
 
-@law
 @given(seeds, st.floats(-2.0, 2.0))
 def test_a_psd_whitened_spectrum_has_the_same_power_in_every_band(seed, colour):
     coefficients = fourier_coefficients(noise(seed, n=12_000), 12_000.0, 5000.0)
@@ -146,7 +135,6 @@ def test_a_psd_whitened_spectrum_has_the_same_power_in_every_band(seed, colour):
     np.testing.assert_allclose(power.reshape(3, 4, 1000).mean(axis=2), 1.0, atol=0.1)
 
 
-@law
 @given(seeds, st.integers(3, 500), st.integers(1, 200))
 def test_a_spectrum_is_whitened_by_its_running_mean_mirrored_at_its_ends(seed, bins, width):
     coefficients = noise(seed, n=bins) * np.exp(1j * noise(seed + 1, n=bins))
@@ -154,7 +142,6 @@ def test_a_spectrum_is_whitened_by_its_running_mean_mirrored_at_its_ends(seed, b
     np.testing.assert_allclose(whiten_by_psd(coefficients, width), coefficients / np.sqrt(mean), rtol=1e-6)
 
 
-@law
 @given(seeds, st.integers(50, 6000), st.sampled_from([np.float32, np.float64]), st.floats(0.0, 1.0))
 def test_an_interpolated_spectrum_is_that_of_the_padded_signal(seed, n, precision, part):
     weighted = weight_by_hann(np.abs(noise(seed, n=n)).astype(precision))
@@ -169,7 +156,6 @@ def test_a_signal_of_zeros_is_whitened_to_zeros(whiten):
     assert not whiten(np.zeros((2, 100), complex)).any()
 
 
-@law
 @given(st.floats(-5, 5), st.floats(-1, 1), st.floats(8.0, 300.0))
 def test_the_running_median_follows_a_straight_line(height, slope, width):
     line = height + slope * np.arange(1000.0)
@@ -178,7 +164,6 @@ def test_the_running_median_follows_a_straight_line(height, slope, width):
     np.testing.assert_allclose(median[half:], line[half:800], atol=2 * abs(slope) + 1e-9)
 
 
-@law
 @given(seeds, st.integers(60, 900))
 def test_a_narrow_line_does_not_change_the_running_median(seed, place):
     floor = 1 + 0.01 * noise(seed, records=1, n=1000)
@@ -186,7 +171,6 @@ def test_a_narrow_line_does_not_change_the_running_median(seed, place):
     assert running_median(floor, np.array([100.0]), 1000).max() < 1.1
 
 
-@law
 @given(seeds)
 def test_a_record_does_not_depend_on_the_records_beside_it(seed):
     x = noise(seed, records=5, n=6000)

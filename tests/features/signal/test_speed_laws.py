@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.signal.lines import FAMILIES, Orders
@@ -20,7 +20,6 @@ from features.signal.speed import (
     near_label,
 )
 
-law = settings(deadline=None, max_examples=50)
 HARMONICS = 3  # of each comb
 COMB_LINES = len(COMBS) * HARMONICS
 LINES = COMB_LINES + 2 * SHAFT_HARMONICS
@@ -47,7 +46,6 @@ def test_candidates_are_symmetric_and_hold_the_label():
     assert error[-1] == pytest.approx(0.08)
 
 
-@law
 @given(st.floats(1.0, 8.0), st.floats(-0.07, 0.07), st.floats(10.0, 40.0))
 def test_the_level_of_a_line_is_read_at_the_candidate_that_hits_it(order, error, bins_per_order):
     place = order * bins_per_order * (1 + error)
@@ -69,7 +67,6 @@ def test_line_orders_are_those_of_combs_and_shaft():
     np.testing.assert_array_equal(envelope[0, 12:], signal)
 
 
-@law
 @given(st.integers(0, len(FAMILIES) - 1), errors, st.integers(-SHAFT_SHIFT, SHAFT_SHIFT), st.floats(8.0, 50.0))
 def test_a_comb_and_a_shaft_within_the_slip_of_each_other_are_clear_evidence(family, place, slip, label):
     found = find_speed(levels_with((family, place), place + slip), 10, label)
@@ -80,7 +77,6 @@ def test_a_comb_and_a_shaft_within_the_slip_of_each_other_are_clear_evidence(fam
     assert found.agrees == (abs(found.rate - label) <= 2 * found.uncertainty)
 
 
-@law
 @given(errors)
 def test_the_shaft_alone_is_named_where_no_comb_is(place):
     found = find_speed(levels_with(shaft=place), 10, 25.0)
@@ -88,7 +84,6 @@ def test_the_shaft_alone_is_named_where_no_comb_is(place):
     assert abs(found.rate / 25.0 - 1 - place * 0.001) <= SHAFT_SHIFT * 0.001 + 1e-9
 
 
-@law
 @given(st.integers(0, 2), errors, st.sampled_from([-60, -40, 40, 60]))
 def test_a_comb_that_contradicts_the_shaft_is_not_clear(family, place, apart):
     other = place + apart
@@ -96,7 +91,6 @@ def test_a_comb_that_contradicts_the_shaft_is_not_clear(family, place, apart):
         assert not find_speed(levels_with((family, place), other), 10, 25.0).clear
 
 
-@law
 @given(st.integers(0, 1), st.integers(-75, -10), st.integers(1, 2))
 def test_two_families_that_fit_two_speeds_equally_are_not_clear(family, place, step):
     levels = np.maximum(levels_with((family, place)), levels_with(((family + step) % 3, place + 60)))
@@ -106,7 +100,6 @@ def test_two_families_that_fit_two_speeds_equally_are_not_clear(family, place, s
     assert found.evidence == EVIDENCE[0]
 
 
-@law
 @given(errors, st.integers(0, 8))
 def test_one_line_alone_is_no_clear_comb(place, line):
     levels = np.full((LINES, CANDIDATES), FLOOR)

@@ -1,6 +1,6 @@
 """Laws of the durations of records, and of the model that suits them."""
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features.baselines import Model
@@ -9,7 +9,6 @@ from tests.model_files import make_table
 
 
 @given(st.lists(st.floats(0.01, 100), max_size=4))
-@settings(deadline=None)
 def test_shorter_records_are_for_the_model_of_these(durations):
     short = Model(durations=(0.5, 0.5))
     model = Model(durations=(2.0, 2.0), shorter=short)

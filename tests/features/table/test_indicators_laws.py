@@ -12,7 +12,7 @@ from features.table.band import DEFAULT_BAND
 from features.table.definitions import GROUPS, define_features
 from features.table.indicators import GROUP_FEATURES, Orders, feature_names, indicators
 
-law = settings(deadline=None, max_examples=12)
+law = settings(max_examples=12)
 seeds = st.integers(0, 2**32 - 1)
 FTF, BPFO, BPFI, BSF = 0.3983, 3.5848, 5.4152, 2.3567
 TRANSFER = ("lines", "shape")

@@ -59,8 +59,7 @@ def half_second_features(path, load):
 @real_recordings
 @pytest.mark.parametrize("load", range(4))
 @pytest.mark.parametrize(
-    ("folder", "family"),
-    [("IR/007", "bpfi"), ("IR/021", "bpfi"), ("OR/007/@6", "bpfo"), ("OR/021/@6", "bpfo")],
+    ("folder", "family"), [("IR/007", "bpfi"), ("IR/021", "bpfi"), ("OR/007/@6", "bpfo"), ("OR/021/@6", "bpfo")]
 )
 def test_the_comb_of_a_race_fault_stands_out_in_real_recordings(folder, family, load):
     (path,) = (CWRU / folder).glob(f"*_{load}.mat")

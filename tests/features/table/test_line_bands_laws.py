@@ -3,7 +3,7 @@
 import hypothesis.strategies as st
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 import gen
 from features.signal import order_spectrum
@@ -62,7 +62,6 @@ def test_metrics_of_several_records_are_a_dataset_with_those_of_each_and_orders_
     np.testing.assert_allclose(again.peak_at * RATE, alone.peak_at)
 
 
-@settings(deadline=None)
 @given(
     seconds=st.floats(0.5, 10),
     place=st.floats(-1, 1),

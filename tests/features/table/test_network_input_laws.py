@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from features import envelope_orders, open_waveforms
@@ -24,7 +24,6 @@ def modulated(order, fs=12_000.0, shaft_rate=25.0, duration=1.0, seed=0):
     return ((1 + 3 * np.exp(30 * (np.cos(2 * np.pi * order * turns) - 1))) * noise)[None]
 
 
-@settings(deadline=None, max_examples=40)
 @given(st.integers(0, 2), st.floats(15, 45), st.sampled_from([12_000.0, 20_480.0]), st.floats(0.9, 1.1))
 def test_a_comb_stands_at_whole_multiples_of_its_family(family, shaft_rate, fs, other):
     orders = Orders(*(other * order for order in ORDERS))

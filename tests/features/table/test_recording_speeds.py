@@ -18,15 +18,7 @@ from features.table.recording_speeds import (
     recording_speeds,
     speed_warnings,
 )
-from gen.corpus import (
-    FAULTS,
-    SCHEMA,
-    Variable,
-    make_dataset,
-    new_corpus,
-    open_corpus,
-    record_blocks,
-)
+from gen.corpus import FAULTS, SCHEMA, Variable, make_dataset, new_corpus, open_corpus, record_blocks
 from tests.pulses import LINES, ORDERS, pulse_train
 
 FS, SECONDS, WINDOWS = 12_000.0, 0.4, 5
