@@ -51,6 +51,25 @@ def write_parts(target, parts, codec="zlib"):
     return parts
 
 
+def write_records(folder, signal, fs, columns, *, title, text=None, per_part=None, extra=(), **facts):
+    """Write signals of one channel, shape (record, time), in parts of so many records; return the path of the corpus.
+
+    Variables that ``columns`` lacks are 0, or ``text`` (the title, if it is not given).
+    """
+    count, variables = len(signal), (*SCHEMA, *extra)
+    other = {
+        v.name: [title if text is None else text] * count if v.dtype == "str" else np.zeros(count) for v in variables
+    }
+    attributes = {"title": title, "source": title, "history": ""}
+    with new_corpus(folder, title=title, **facts) as corpus:
+        for start in range(0, count, per_part or count):
+            rows = slice(start, start + (per_part or count))
+            part = {name: column[rows] for name, column in (other | columns).items()}
+            accelerations = np.asarray(signal[rows], np.float32)[:, None]
+            corpus.write(make_dataset(accelerations, fs, ("housing",), part, extra=extra, attributes=attributes))
+    return folder
+
+
 def physical(part):
     scale = part[SIGNAL].attrs.get("scale_factor", 1.0)
     return part[SIGNAL].values * scale

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus
+from gen.corpus import FAULTS
+from tests.corpora import write_records
 
 ORDERS = {"ftf": 0.4, "bpfo": 3.6, "bpfi": 5.4, "bsf": 2.35}
 LINES = {"healthy": None, "inner": 5.4, "outer": 3.6, "ball": 4.7}
@@ -32,8 +33,7 @@ def write_pulses(
     rng = np.random.default_rng(seed)
     fault = np.repeat([FAULTS.index(name) for name in classes], records)
     count = len(fault)
-    columns = {v.name: np.array(["a"] * count, object) if v.dtype == "str" else np.zeros(count) for v in SCHEMA}
-    columns |= {name: np.full(count, order) for name, order in ORDERS.items()}
+    columns = {name: np.full(count, order) for name, order in ORDERS.items()}
     columns |= {
         "shaft_rate": rng.uniform(25, 30, count),
         "sample_rate": np.full(count, fs),
@@ -48,16 +48,7 @@ def write_pulses(
         signal.append(pulse_train(fs, duration, None if line is None else line * rate, ringing, rng))
     for number in silent:
         signal[number][:] = 0.0
-    dataset = make_dataset(
-        np.array(signal, dtype=np.float32)[:, None],
-        fs,
-        ("housing",),
-        columns,
-        attributes={"title": "pulses", "history": ""},
-    )
-    with new_corpus(folder, title="pulses") as corpus:
-        corpus.write(dataset)
-    return folder
+    return write_records(folder, signal, fs, columns, title="pulses", text="a")
 
 
 def impulses_beside_a_shaft(order, seed, *, fs, rate, seconds, shaft=0.3):

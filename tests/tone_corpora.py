@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gen.corpus import SCHEMA, make_dataset, new_corpus
+from tests.corpora import write_records
 
 FS = 4000.0
 TONES = (4.0, 9.0, 14.0, 19.0)  # orders of the classes
@@ -13,8 +13,7 @@ def write_corpus(folder, *, specimens=16, records=3, parts=2, noise=0.5, seed=0,
     rng = np.random.default_rng(seed)
     specimen = np.repeat(np.arange(specimens), records)
     count, fault = len(specimen), specimen % 4
-    columns = {v.name: np.array(["made up"] * count, object) if v.dtype == "str" else np.zeros(count) for v in SCHEMA}
-    columns |= {
+    columns = {
         "shaft_rate": rng.uniform(20, 40, count),
         "sample_rate": np.full(count, FS),
         "fault": fault,
@@ -28,9 +27,5 @@ def write_corpus(folder, *, specimens=16, records=3, parts=2, noise=0.5, seed=0,
     turns = columns["shaft_rate"][:, None] * np.arange(1000) / FS
     tone = np.sin(2 * np.pi * (np.array(TONES)[fault][:, None] * turns + rng.uniform(size=(count, 1))))
     signal = (rng.uniform(0.5, 2, (count, 1)) * (tone + noise * rng.standard_normal(tone.shape))).astype(np.float32)
-    attributes = {"title": "tones", "source": "made up", "history": ""}
-    with new_corpus(folder, title="tones") as corpus:
-        for block in np.array_split(np.arange(count), parts):
-            part = {name: np.asarray(values)[block] for name, values in columns.items()}
-            corpus.write(make_dataset(signal[block][:, None], FS, ("housing",), part, attributes=attributes))
+    write_records(folder, signal, FS, columns, title="tones", text="made up", per_part=-(-count // parts))
     return signal

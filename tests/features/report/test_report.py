@@ -22,9 +22,10 @@ from features.report.summaries import draw_scores
 from features.table.band import DEFAULT_BAND
 from features.table.corpora import feature_table
 from features.table.indicators import Orders
-from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus, open_corpus
+from gen.corpus import FAULTS, open_corpus
 from gen.support.errors import CorpusError
 from tests.browser import CHROMIUM, browser
+from tests.corpora import write_records
 
 FS = 10_000.0
 ORDERS = {"ftf": 0.4, "bpfo": 3.6, "bpfi": 5.4, "bsf": 2.35}
@@ -47,8 +48,7 @@ def write_corpus(directory, title="a made-up corpus", specimens=8, records=3, cl
     rng = np.random.default_rng(0)
     specimen = np.repeat(np.arange(specimens), records)
     count = len(specimen)
-    columns = {v.name: np.array([title] * count, object) if v.dtype == "str" else np.zeros(count) for v in SCHEMA}
-    columns |= {name: np.full(count, order) for name, order in ORDERS.items()}
+    columns = {name: np.full(count, order) for name, order in ORDERS.items()}
     columns |= {
         "shaft_rate": rng.uniform(20, 40, count),
         "sample_rate": np.full(count, FS),
@@ -60,17 +60,8 @@ def write_corpus(directory, title="a made-up corpus", specimens=8, records=3, cl
         "recording": np.arange(count),
     }
     signal = [signal_of(FAULTS[fault], columns["shaft_rate"][n], rng) for n, fault in enumerate(columns["fault"])]
-    dataset = make_dataset(
-        np.array(signal, dtype=np.float32)[:, None],
-        FS,
-        ("housing",),
-        columns | changed,
-        attributes={"title": title, "source": title, "history": ""},
-    )
-    with new_corpus(directory, title=title, versions={title: title}, warnings=(title,)) as corpus:
-        corpus.facts["recipe"] = title
-        corpus.write(dataset)
-    return directory
+    told = {"recipe": title, "versions": {title: title}, "warnings": (title,)}
+    return write_records(directory, signal, FS, columns | changed, title=title, **told)
 
 
 @pytest.fixture(scope="module")
@@ -196,6 +187,7 @@ def test_quantities_are_drawn_in_the_unit_of_their_label():
     )  # fmt: skip
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_the_example_of_a_class_is_the_record_of_median_level(corpus, monkeypatch):
     """The healthy records are 0 to 2 of specimen 0 and 12 to 14 of specimen 4; their levels are their numbers here."""
     monkeypatch.setattr(examples, "_line_level", lambda shown: float(shown.title.split(":")[0].split()[1]))

@@ -18,7 +18,8 @@ from features.table.recording_speeds import (
     recording_speeds,
     speed_warnings,
 )
-from gen.corpus import FAULTS, SCHEMA, Variable, make_dataset, new_corpus, open_corpus, record_blocks
+from gen.corpus import FAULTS, Variable, open_corpus, record_blocks
+from tests.corpora import write_records
 from tests.pulses import LINES, ORDERS, pulse_train
 
 FS, SECONDS, WINDOWS = 12_000.0, 0.4, 5
@@ -36,7 +37,7 @@ def write_machines(folder, *, per_part=7, extra=(), spoiled=(), speeds=None):
     """Write one recording of each class, cut into windows that follow each other through parts of ``per_part`` records."""
     rng = np.random.default_rng(0)
     speeds = SPEEDS if speeds is None else speeds
-    signal, columns = [], {v.name: [] for v in (*SCHEMA, *extra)}
+    signal, rows = [], []
     for number, (fault, (label, true)) in enumerate(speeds.items()):
         line = LINES[fault.split()[0]]
         whole = pulse_train(FS, WINDOWS * SECONDS, None if line is None else line * true, 3000.0, rng)
@@ -44,25 +45,13 @@ def write_machines(folder, *, per_part=7, extra=(), spoiled=(), speeds=None):
         whole += sum(0.3 * np.cos(2 * np.pi * k * true * time) / k for k in range(1, 7))
         for window in whole.reshape(WINDOWS, -1):
             known = {"shaft_rate": label, "sample_rate": FS, "specimen": number, "recording": number, **ORDERS}
-            known |= {"fault": FAULTS.index(fault.split()[0]), "true_shaft_rate": true}
-            for name, column in columns.items():
-                column.append(known.get(name, f"{fault}.csv" if name in {"bearing", "source", "identity"} else 0))
+            known |= {"fault": FAULTS.index(fault.split()[0])} | ({"true_shaft_rate": true} if extra else {})
+            rows.append(known | dict.fromkeys(("bearing", "source", "identity"), f"{fault}.csv"))
             signal.append(window)
     for number in spoiled:
         signal[number] = np.zeros_like(signal[number])
-    with new_corpus(folder, title="machines") as corpus:
-        for start in range(0, len(signal), per_part):
-            rows_of = slice(start, start + per_part)
-            dataset = make_dataset(
-                np.array(signal[rows_of], np.float32)[:, None],
-                FS,
-                ("housing",),
-                {name: column[rows_of] for name, column in columns.items()},
-                extra=extra,
-                attributes={"title": "machines", "history": ""},
-            )
-            corpus.write(dataset)
-    return folder
+    columns = {name: [row[name] for row in rows] for name in rows[0]}
+    return write_records(folder, signal, FS, columns, title="machines", per_part=per_part, extra=extra)
 
 
 @pytest.fixture(scope="module")
