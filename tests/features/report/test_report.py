@@ -11,12 +11,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from features.baselines import ESTIMATORS, Model, benchmark
+from features.baselines import ESTIMATORS, Model, benchmark, learning_curve
 from features.baselines.detection import detection
 from features.report import examples
-from features.report.curves import draw_detection, draw_reliability, draw_roc
+from features.report.curves import draw_curve, draw_detection, draw_reliability, draw_roc
 from features.report.page import QUANTITIES, _findings, _of_faults, write_report
-from features.report.pictures import DrawnRecord, draw_record, fault_lines, squared_envelope, thin, write_picture
+from features.report.pictures import (
+    DrawnRecord,
+    draw_record,
+    fault_lines,
+    picture,
+    squared_envelope,
+    thin,
+    write_picture,
+)
 from features.report.shown import shown_record
 from features.report.summaries import draw_scores
 from features.table.band import DEFAULT_BAND
@@ -331,6 +339,14 @@ def test_the_curve_of_false_alarms_has_the_points_of_the_results(results):
     found = results.baselines["ensemble"].grouped.roc
     (panel,) = draw_roc(found).axes
     np.testing.assert_allclose(panel.lines[0].get_ydata()[1:], found.detected)
+
+
+def test_the_learning_curve_has_the_points_of_the_results(corpus, results):
+    points = learning_curve(feature_table(corpus), "logistic_regression", folds=2)
+    figure = draw_curve(points, 0.25, results.baselines["envelope_rule"].grouped)
+    drawn = figure.axes[0].lines[0].get_xydata()
+    np.testing.assert_allclose(drawn, [(point.specimens, point.scores.balanced_accuracy) for point in points])
+    assert picture(figure, "svg").startswith(b"<?xml")
 
 
 @pytest.mark.usefixtures("page")
