@@ -29,6 +29,7 @@ def test_the_share_of_clipped_samples_is_told(limit):
         (X, FS, 10 / 60, "the recording lasts 3 s", "record 120 s"),
         (0 * X, FS, RATE, "the signal is constant", "check sensor"),
         (0 * X + 3.7, FS, RATE, "the signal is constant", "check sensor"),
+        (np.arange(X.size) / FS, FS, RATE, "only rise or only fall, as in a column of times", "another column"),
         (-np.arange(X.size) / FS, FS, RATE, "only rise or only fall, as in a column of times", "another column"),
         (1e-30 * X, FS, RATE, "is no vibration", "check unit"),
         (1e30 * X, FS, RATE, "is no vibration", "check unit"),
