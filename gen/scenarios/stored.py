@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _SCENARIO = TypeAdapter(Scenario)
 _LONGEST_PLACE = 100
-_NO_BALL_MASS = ', "ball_mass": false'  # of scenarios from before 0.1.0, when a ball could have a mass
+_EARLIER = '"ball_mass": false'  # in every scenario from before 0.1.0
 _ADVICE = "read the corpus with the version that wrote it."
 
 
@@ -75,7 +75,7 @@ def read_scenario(text: str) -> Scenario:
     CorpusError
         If the text is not a scenario.
     """
-    text = text.replace(_NO_BALL_MASS, "")
+    text = _of_today(text) if _EARLIER in text else text
     try:
         scenario = _SCENARIO.validate_json(text, strict=True)
     except ValidationError as error:
@@ -86,6 +86,24 @@ def read_scenario(text: str) -> Scenario:
     if not _holds_exactly(text, scenario):
         raise CorpusError(f"stored scenario: it has keys or numbers that no scenario has; {_ADVICE}")
     return scenario
+
+
+def _of_today(text: str) -> str:
+    """Text of a scenario from before 0.1.0, when a ball could have a mass and each fault of the measuring chain was a field."""
+    try:
+        values = json.loads(text)
+        rig, record = values["rig"], values["record"]
+        del rig["ball_mass"]
+        of_rig, of_record = rig["sensor_faults"] or {}, record["sensor_faults"] or {}
+        mounts = of_rig.pop("loose_mounts", [])
+        of_rig["loose_mount"] = mounts if any(mounts) else None
+        if of_record:
+            of_record["mains_hum"] = {"deviation": of_record.pop("mains_deviation")}
+        for part, faults in ((rig, of_rig), (record, of_record)):
+            part["sensor_faults"] = {fault: drawn for fault, drawn in faults.items() if drawn}
+    except (ValueError, LookupError, TypeError, AttributeError):
+        return text  # refused below
+    return json.dumps(values)
 
 
 def _holds_exactly(text: str, scenario: Scenario) -> bool:
