@@ -35,6 +35,11 @@ class GainSteps(SensorFault):
         return tuple(steps)
 
     @staticmethod
+    def has_form(drawn: Faulty, channels: int) -> bool:  # noqa: ARG004
+        """Any number of steps."""
+        return isinstance(drawn, tuple) and None not in drawn
+
+    @staticmethod
     def disturb(
         drawn: tuple[Drawn, ...],
         signal: FloatArray,

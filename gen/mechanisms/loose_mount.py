@@ -38,6 +38,11 @@ class LooseMount(SensorFault):
         return mounts if any(mounts) else None
 
     @staticmethod
+    def has_form(drawn: Faulty, channels: int) -> bool:
+        """One mount, or None, for each channel."""
+        return isinstance(drawn, tuple) and len(drawn) == channels
+
+    @staticmethod
     def disturb(drawn: Faulty, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG004
         """Signal of sensors that resonate and rattle."""
         from gen.mechanisms.rattle import rattling  # compiled: a recipe is read without numba

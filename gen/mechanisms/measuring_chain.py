@@ -80,6 +80,21 @@ def draw_for_record(section: Section, rng: np.random.Generator, record: int) -> 
     return {place: drawn for place, drawn in found.items() if drawn is not None}
 
 
+def foreign(of_rig: SensorFaultDraws, of_record: SensorFaultDraws, channels: int) -> str | None:
+    """Name of a drawn fault, which may come from a file, that is none of the chain, of its level or of its form; None without one."""
+    by_place = {fault.place: fault for fault in CHAIN}
+    for drawn, of_rigs in ((of_rig, True), (of_record, False)):
+        for place, values in drawn.items():
+            fault = by_place.get(place)
+            if fault is None:
+                return place
+            anew = not of_rigs and fault.rig_stream is not None and fault.record_stream is not None
+            its_level = of_rigs == (fault.rig_stream is not None)
+            if not (isinstance(values, dict) if anew else its_level and fault.has_form(values, channels)):
+                return place
+    return None
+
+
 def disturb(
     signal: FloatArray, of_rig: SensorFaultDraws, of_record: SensorFaultDraws, fs: float, rng: np.random.Generator
 ) -> tuple[FloatArray, dict[str, float]]:

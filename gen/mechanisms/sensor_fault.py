@@ -53,6 +53,11 @@ class SensorFault(Section):
         return None
 
     @staticmethod
+    def has_form(drawn: Faulty, channels: int) -> bool:  # noqa: ARG004 - of each channel, for some faults
+        """Whether drawn values, which may come from a file, have the form of those of this fault."""
+        return isinstance(drawn, dict)
+
+    @staticmethod
     def disturb(drawn: Any, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
         """New signal with the fault, of the shape (channel, time) of ``signal`` [m s-2], and the values of its labels."""
         raise NotImplementedError

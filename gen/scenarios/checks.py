@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from gen.mechanisms.measuring_chain import foreign
 from gen.physics.bearing import Bearing
 from gen.physics.extent import MAX_BALLS
 from gen.scenarios.faults import check_fits
@@ -27,6 +28,11 @@ def check_scenario(scenario: Scenario) -> None:
         raise RecipeError(f"rig.channels and rig.own_paths need one entry for each of {channels} settings.channels.")
     if (record.snr is None) != (record.rms is None):
         raise RecipeError("record.snr and record.rms must both be given, or both be None.")
+    strange = foreign(rig.sensor_faults, record.sensor_faults, channels)
+    if strange is not None:
+        raise RecipeError(
+            f"sensor_faults: {strange[:60]!r} is not as a recipe draws it; keep what was drawn, or leave it out."
+        )
     _check_damage(rig.bearing, scenario.specimen)
     if scenario.other is not None:
         _check_damage(scenario.other.bearing, scenario.other.specimen)

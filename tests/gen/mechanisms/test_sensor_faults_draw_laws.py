@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from gen.scenarios import draw_scenarios
+from gen.scenarios import check_scenario, draw_scenarios
 from gen.support.errors import RecipeError
 from tests.sensor_faults import GEAR_MESH, SENSOR_FAULTS, rarely
 
@@ -113,6 +113,19 @@ def test_gain_steps_are_in_order_of_time(recipe_with):
     for scenario in drawn(recipe_with, SENSOR_FAULTS):
         first, second = scenario.record.sensor_faults["gain_steps"]
         assert 0 <= first["share"] <= second["share"] < 1
+
+
+FOREIGN = [{"hum": {"rms": 1.0}}, {"saturation": ()}, {"loose_mount": {}}, {"loose_mount": ()}, {"gain_steps": (None,)}]
+
+
+@pytest.mark.parametrize("level", ["rig", "record"])
+@pytest.mark.parametrize("faults", FOREIGN, ids=str)
+def test_a_scenario_with_a_sensor_fault_that_no_recipe_draws_is_refused(recipe_with, level, faults):
+    for scenario in drawn(recipe_with, SENSOR_FAULTS)[:2]:
+        check_scenario(scenario)
+        changed = replace(getattr(scenario, level), sensor_faults=faults)
+        with pytest.raises(RecipeError, match=f"sensor_faults: '{next(iter(faults))}' is not as a recipe draws it"):
+            check_scenario(replace(scenario, **{level: changed}))
 
 
 @pytest.mark.parametrize(
