@@ -19,6 +19,7 @@ from features.signal.rows import FloatArray
 from features.signal.separation import cepstrum, prediction_residual, separate_random
 from features.signal.spectra import psd
 from features.table.band import DEFAULT_BAND
+from gen.corpus import class_counts, unit_counts
 from gen.support.shown import Shown
 
 TIME = "elapsed_time"
@@ -47,10 +48,9 @@ class CorpusAccessor(Shown):
 
     def _facts(self) -> Mapping[str, object]:
         records = self._records
-        names, counts = np.unique(np.atleast_1d(records["fault_name"].values), return_counts=True)
         return {
-            "classes": ", ".join(f"{name} {count:,}" for name, count in zip(names, counts, strict=True)),
-            "rigs": len(np.unique(records["rig"])),
+            "classes": ", ".join(f"{name} {count:,}" for name, count in class_counts(records["fault"]).items()),
+            "rigs": unit_counts(records).rigs,
             "signals": f"{len(records[TIME]) / float(records['sample_rate'].values.flat[0]):g} s of {', '.join(records['channel'].values)}",
             "choose": 'records.sel(record=records.fault_name == "inner")',
             "look": "records.acceleration[0].plot(), records.acceleration[0].raceway.envelope_spectrum().plot()",

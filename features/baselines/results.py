@@ -11,7 +11,6 @@ from hashlib import blake2b
 from importlib.metadata import version
 from typing import Literal
 
-import numpy as np
 import xarray as xr
 
 from features.baselines.curves import CurvePoint, curve_points, curve_sizes
@@ -34,7 +33,7 @@ from features.baselines.splits import Case, control_cases, grouped_case, score_s
 from features.baselines.tracks import TRACKS, Split, Track
 from features.table.definitions import measured_quantity
 from features.table.waveforms import Waveforms
-from gen.corpus import FAULTS
+from gen.corpus import class_counts, unit_counts
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
@@ -347,15 +346,11 @@ def _check_apart(records: Records, test: Records) -> None:
 
 
 def _content(records: Records, unknown: int) -> Content:
-    counts = np.bincount(records.fault, minlength=len(FAULTS))
     digests = record_digests(records.features.to_numpy())
     return Content(
         title=records.title,
         digest=blake2b(digests.tobytes() + records.fault.tobytes(), digest_size=16).hexdigest(),
-        records=len(records.fault),
-        recordings=len(np.unique(records.recording)),
-        specimens=len(np.unique(records.specimen)),
-        rigs=len(np.unique(records.rig)),
-        classes={fault: int(count) for fault, count in zip(FAULTS, counts, strict=True) if count},
+        **unit_counts(records._asdict())._asdict(),
+        classes=class_counts(records.fault),
         unknown=unknown,
     )

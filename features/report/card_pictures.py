@@ -22,8 +22,10 @@ from features.report.pictures import STYLE, WIDTH, DrawnRecord, draw_envelope_sp
 from features.report.summaries import draw_content
 from gen.corpus import (
     FAULT_NAMES,
+    UNKNOWN,
     card_folder,
     check_card,
+    class_counts,
     lock,
     open_corpus,
     read_manifest,
@@ -156,9 +158,9 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
         raise CorpusError(
             f"{path}: is not a file of scores ({reason}); give results.json of raceway benchmark."
         ) from None
-    codes, counts = np.unique(corpus["fault"].values, return_counts=True)
-    here = {FAULT_NAMES[int(code)]: int(count) for code, count in zip(codes, counts, strict=True)}
-    if title != corpus.attrs.get("title") or classes != {name: here[name] for name in here if name != "unknown"}:
+    here = class_counts(corpus["fault"])
+    here.pop(UNKNOWN, None)
+    if title != corpus.attrs.get("title") or classes != here:
         raise CorpusError(
             f"{path}: has scores of another corpus ({title!r}, {sum(classes.values())} records); run raceway benchmark on this one."
         )

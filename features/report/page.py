@@ -22,13 +22,16 @@ from features.report.pictures import picture
 from features.report.summaries import Quantity, draw_content, draw_scores
 from features.report.templates import template
 from gen.corpus import (
-    FAULT_NAMES,
     FAULTS,
     SPLITS,
+    UNITS,
     Manifest,
+    by_class,
     make_result_folder,
     open_corpus,
     read_manifest,
+    split_counts,
+    unit_counts,
     write_text_durably,
 )
 
@@ -51,17 +54,6 @@ class Panel(NamedTuple):
     alt: str
     image: bytes
     caption: str
-
-
-class ClassCount(NamedTuple):
-    """Row of the table of contents: a class with its numbers of records, specimens and rigs, and records by split."""
-
-    fault: str
-    colour: str
-    records: int
-    specimens: int
-    rigs: int
-    splits: dict[str, int]
 
 
 def write_report(corpus: Path | str, results: Results, output: Path | str) -> Path:
@@ -101,33 +93,20 @@ def write_report(corpus: Path | str, results: Results, output: Path | str) -> Pa
 
 def _content(corpus: xr.Dataset) -> dict[str, Any]:
     """Variables of the template that describe the records."""
-    fault, rig, specimen = (corpus[name].values for name in ("fault", "rig", "specimen"))
     duration = corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])
     return {
         "title": _text(corpus.attrs.get("title", "untitled corpus")),
         "origin": _text(corpus.attrs.get("source", "")),
-        "records": corpus.sizes["record"],
-        "specimens": np.unique(np.stack([rig, specimen]), axis=1).shape[1],
-        "rigs": len(np.unique(rig)),
+        "units": unit_counts(corpus),
         "duration": duration,
         "fs": float(corpus["sample_rate"][0]),
-        "counts": [_class_count(corpus, code) for code in np.unique(fault)],
+        "classes": [
+            (fault, LOOKS[fault].colour, unit_counts(columns), split_counts(columns["split"]))
+            for fault, columns in by_class(corpus, (*UNITS, "split")).items()
+        ],
         "splits": SPLITS,
-        "content": picture(draw_content(fault, rig, quantities(corpus)), "svg"),
+        "content": picture(draw_content(corpus["fault"].values, corpus["rig"].values, quantities(corpus)), "svg"),
     }
-
-
-def _class_count(corpus: xr.Dataset, code: int) -> ClassCount:
-    of_class = corpus["fault"].values == code
-    rig, specimen, split = (corpus[name].values[of_class] for name in ("rig", "specimen", "split"))
-    return ClassCount(
-        fault=FAULT_NAMES[code],
-        colour=LOOKS[FAULT_NAMES[code]].colour,
-        records=len(rig),
-        specimens=np.unique(np.stack([rig, specimen]), axis=1).shape[1],
-        rigs=len(np.unique(rig)),
-        splits=dict(zip(SPLITS, np.bincount(split, minlength=len(SPLITS)).tolist(), strict=True)),
-    )
 
 
 def quantities(corpus: xr.Dataset) -> list[Quantity]:

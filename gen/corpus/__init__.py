@@ -13,7 +13,7 @@ files           atomic writing, checksums
 locking         one call at a time writes into a folder
 outputs         places of results, none of them in a corpus
 signals         records that cannot be used
-step_errors     records whose step is too coarse
+facts           what a corpus holds, counted from its variables
 part            one file of records
 open_files      files that are open, a few at a time
 blocks          stored records of a file, some at a time
@@ -22,7 +22,6 @@ publication     licence, creators and references of a corpus
 manifest        files of a corpus with size and hash, and its facts
 acdd            global attributes of a published corpus
 index           the variables of all parts in one file; opening a corpus
-visible         faults that can be seen in their records
 card            data card of a corpus
 croissant       files, fields and licence for catalogues of data sets
 finishing       index, manifest and data card of finished parts

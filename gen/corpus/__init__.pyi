@@ -17,6 +17,20 @@ from .choice import operating_variables as operating_variables
 from .codecs import CODECS as CODECS, Codec as Codec
 from .croissant import write_croissant as write_croissant
 from .description import format_page as format_page
+from .facts import (
+    UNITS as UNITS,
+    FaultCounts as FaultCounts,
+    by_class as by_class,
+    class_counts as class_counts,
+    clipped_records as clipped_records,
+    extent as extent,
+    fault_counts as fault_counts,
+    split_counts as split_counts,
+    step_complaint as step_complaint,
+    text_counts as text_counts,
+    unit_counts as unit_counts,
+    units_in_several_splits as units_in_several_splits,
+)
 from .files import (
     check_name as check_name,
     plain_file as plain_file,
@@ -94,12 +108,9 @@ from .schema import (
 )
 from .signals import (
     SignalCounts as SignalCounts,
-    clipped_records as clipped_records,
     complaint as complaint,
     counts_in_words as counts_in_words,
     sum_counts as sum_counts,
 )
 from .simulated import OTHER_BEARING as OTHER_BEARING, SIMULATED as SIMULATED
-from .step_errors import step_complaint as step_complaint
 from .validation import validate_corpus as validate_corpus
-from .visible import FaultCounts as FaultCounts, fault_counts as fault_counts

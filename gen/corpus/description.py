@@ -70,6 +70,9 @@ variable has one value per record, and a `role`:
 `fault` is 127 (`unknown`) where the class of a recording is not known. That is no class: `raceway train`, `benchmark`
 and `compare` leave such records out.
 
+A specimen is numbered in its rig, and a recording in its specimen: specimens of two rigs may have the same number, and
+are two bearings wherever they are counted or split.
+
 Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a
 `long_name` and a `role`:
 

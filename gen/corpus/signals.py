@@ -4,14 +4,14 @@ A recipe with an unsuitable full scale, gain or load gives records that are clip
 other records, and counted when a part is written; the manifest holds the counts.
 """
 
-from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, NamedTuple
+from collections.abc import Iterable
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from gen.corpus.schema import FAULT_NAMES, MISSING_COUNT
+from gen.corpus.schema import MISSING_COUNT
 
 VERDICTS = ("sound", "clipped", "dead", "constant", "not_finite")
 
@@ -93,20 +93,6 @@ def counts_in_words(counts: SignalCounts) -> str:
     ('1,204 clipped, 2 not finite', 'none')
     """
     return ", ".join(f"{n:,} {kind.replace('_', ' ')}" for kind, n in counts._asdict().items() if n) or "none"
-
-
-def clipped_records(columns: Mapping[Any, Any]) -> dict[str, int] | None:
-    """Number of records with a clipped sample in each class that has one; None if clipped samples were not counted.
-
-    ``columns`` is an opened corpus, or its variables as arrays by name.
-
-    >>> clipped_records({"fault": [0, 1, 1, 2], "clipped": [0, 3, 7, 1]}), clipped_records({"fault": [0]})
-    ({'inner': 2, 'outer': 1}, None)
-    """
-    if "clipped" not in columns:
-        return None
-    fault = np.asarray(columns["fault"])[np.asarray(columns["clipped"]) > 0]
-    return {name: n for code, name in FAULT_NAMES.items() if (n := int((fault == code).sum()))}
 
 
 def complaint(counts: SignalCounts, records: int) -> str | None:

@@ -18,6 +18,10 @@ _CONDITIONS = ("sound", "unbalance", "bent_shaft", "misalignment", "looseness", 
 MACHINE_CONDITIONS: Mapping[int, str] = {**dict(enumerate(_CONDITIONS)), UNKNOWN_CODE: UNKNOWN}
 """Classes of ``machine_condition``."""
 
+UNJUDGED = 2
+"""Value of ``detectable`` of a fault that was not judged."""
+_SEEN = {0: "no", 1: "yes", UNJUDGED: "unjudged"}
+
 SIMULATED = (
     Variable("axial_load", "f8", "N", "operating", "axial load"),
     Variable("temperature", "f8", "degC", "operating", "temperature of the oil in the contacts, NaN without a lubricant"),
@@ -38,7 +42,7 @@ SIMULATED = (
     Variable("fault_snr", "f8", "1", "latent", _FAULT_SNR),
     Variable("fault_share", "f8", "1", "latent", "power of what the fault adds over its sum with that of all else, NaN if not known"),
     Variable("loaded_hits", "i4", "1", "latent", "expected number of passages of loaded balls over spalls, -1 if not known"),
-    Variable("detectable", "i1", "1", "latent", "whether the fault can be seen in the record", {0: "no", 1: "yes", 2: "unjudged"}),
+    Variable("detectable", "i1", "1", "latent", "whether the fault can be seen in the record", _SEEN),
     Variable("gain", "f8", "1", "operating", "factor of the sensor on the acceleration, NaN if unknown"),
     Variable("background_rms", "f8", "m s-2", "latent", "rms of the noise of the machine, before the gain; NaN if drawn per record"),
     Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance as built, negative if preloaded"),
@@ -72,7 +76,7 @@ OTHER_BEARING = (
     Variable("other_width", "f8", "m", "label", "width of its widest spall, 0 if healthy"),
     Variable("other_gain", "f8", "1", "latent", "factor of its vibration on the way to the sensors"),
     Variable("other_fault_snr", "f8", "1", "latent", "what its fault adds over all else of the record in decibels re 1, NaN as fault_snr"),
-    Variable("other_detectable", "i1", "1", "latent", "whether its fault can be seen in the record", {0: "no", 1: "yes", 2: "unjudged"}),
+    Variable("other_detectable", "i1", "1", "latent", "whether its fault can be seen in the record", _SEEN),
 )  # fmt: skip
 """Variables of corpora with a second bearing on the shaft."""
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
-from gen.corpus.visible import UNJUDGED
+from gen.corpus.simulated import UNJUDGED
 from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
 from gen.measurement.gear import gear_mesh
 from gen.measurement.judging import Judge, Parts, judges_of

@@ -4,7 +4,6 @@ They come from the manifest and from the per-record variables; no signal is read
 """
 
 import math
-from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,23 +12,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus import (
-    FAULT_NAMES,
     INDEX_NAME,
-    SPLITS,
     Manifest,
     SignalCounts,
+    by_class,
+    class_counts,
     clipped_records,
     counts_in_words,
+    extent,
     fault_counts,
     file_facts,
     file_problems,
     read_columns,
     read_manifest,
     read_texts,
+    split_counts,
     step_complaint,
+    text_counts,
+    unit_counts,
 )
+from gen.corpus.facts import OF_FAULTS
 from gen.corpus.schema import operating_problems
-from gen.corpus.visible import VARIABLES
 from gen.support.errors import CorpusError
 from raceway.console import show
 
@@ -86,7 +89,7 @@ def describe(directory: Path) -> dict[str, Any]:
 
 def _labels(files: Mapping[Path, int]) -> Columns:
     """Numbers that ``info`` shows; ``files`` are those that hold them, with their numbers of records."""
-    known = (*_SEVERITIES.keys() - {*_SHOWN}, *VARIABLES, "clipped", "step_error", "oversampling")
+    known = (*_SEVERITIES.keys() - {*_SHOWN}, *OF_FAULTS, "clipped", "step_error", "oversampling")
     parts = [read_columns(file, records, _SHOWN, known) for file, records in files.items()]
     labels = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     for problem in operating_problems(labels):
@@ -104,18 +107,20 @@ def _content(directory: Path, manifest: Manifest) -> dict[str, Any]:
     labels, first = _labels(files), next(iter(parts))
     _, (_, channels, samples) = file_facts(first)
     fs = float(labels["sample_rate"][0])
-    bearings = Counter(name for file, records in files.items() for name in read_texts(file, "bearing", records))
+    units = unit_counts(labels)
     return {
         "channels": read_texts(first, "channel", channels),
         "sample_rate": fs,
         "duration": samples / fs,
         "samples": samples,
-        "classes": _named_counts(labels["fault"], FAULT_NAMES),
-        "splits": _named_counts(labels["split"], dict(enumerate(SPLITS))),
-        "bearings": dict(sorted(bearings.items())),
-        "rigs": _distinct(labels["rig"]),
-        "specimens": _distinct(labels["rig"], labels["specimen"]),
-        "recordings": _distinct(labels["rig"], labels["specimen"], labels["recording"]),
+        "classes": class_counts(labels["fault"]),
+        "splits": split_counts(labels["split"]),
+        "bearings": text_counts(
+            name for file, records in files.items() for name in read_texts(file, "bearing", records)
+        ),
+        "rigs": units.rigs,
+        "specimens": units.specimens,
+        "recordings": units.recordings,
         "shaft_rate": _range(labels["shaft_rate"]),
         "load": _range(labels["load"]),
         "severities": _severities(labels),
@@ -127,29 +132,17 @@ def _content(directory: Path, manifest: Manifest) -> dict[str, Any]:
 
 def _severities(labels: Columns) -> dict[str, dict[str, list[float]]]:
     """Smallest and largest value of each severity that is known and not 0, by class, in SI units."""
-    by_class: dict[str, dict[str, list[float]]] = {}
-    for code, fault in FAULT_NAMES.items():
-        rows = labels["fault"] == code
-        values = {name: labels[name][rows] for name in _SEVERITIES if name in labels}
-        ranges = {name: _range(some[some != 0]) for name, some in values.items()}
-        known = {name: ends for name, ends in ranges.items() if ends is not None}
-        if known:
-            by_class[fault] = known
-    return by_class
+    ranges = {
+        fault: {name: ends for name, values in columns.items() if (ends := _range(values[values != 0])) is not None}
+        for fault, columns in by_class(labels, [name for name in _SEVERITIES if name in labels]).items()
+    }
+    return {fault: known for fault, known in ranges.items() if known}
 
 
-def _named_counts(codes: np.ndarray, names: Mapping[int, str]) -> dict[str, int]:
-    return {name: int((codes == code).sum()) for code, name in names.items() if (codes == code).any()}
-
-
-def _distinct(*keys: np.ndarray) -> int:
-    return np.unique(np.stack(keys), axis=1).shape[1]
-
-
-def _range(values: np.ndarray) -> list[float] | None:
+def _range(values: NDArray[Any]) -> list[float] | None:
     """Smallest and largest known value; None if no value is known."""
-    known = values[np.isfinite(values)]
-    return [float(known.min()), float(known.max())] if known.size else None
+    found = extent(values)
+    return None if found is None else [found.least, found.largest]
 
 
 def show_facts(facts: dict[str, Any]) -> None:

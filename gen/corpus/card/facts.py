@@ -1,20 +1,29 @@
 """Facts of a corpus for its data card: counts by class and split, ranges, meanings, the command that makes it again."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from gen.corpus.choice import per_record
+from gen.corpus.facts import (
+    UNITS,
+    Extent,
+    by_class,
+    clipped_records,
+    extent,
+    fault_counts,
+    split_counts,
+    text_counts,
+    unit_counts,
+    units_in_several_splits,
+)
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.manifest import RECIPE_NAME, Manifest
-from gen.corpus.schema import FAULT_NAMES, ROLES, SIGNAL, SPLITS
-from gen.corpus.signals import clipped_records, counts_in_words
-from gen.corpus.visible import fault_counts
+from gen.corpus.schema import ROLES, SIGNAL, SPLITS
+from gen.corpus.signals import counts_in_words
 
 MOST_NAMES = 12  # bearings named on the card; the others are counted
 _NEW = "../again"
@@ -23,8 +32,7 @@ _ZSTD = 32015  # number of the filter, registered with The HDF Group
 
 def card_facts(corpus: xr.Dataset, manifest: Manifest) -> dict[str, Any]:
     """Facts of an opened corpus by their names in the template ``card.md.jinja``; texts of strangers are as they are."""
-    split = corpus["split"].values
-    used = np.unique(split)
+    used = list(split_counts(corpus["split"]))
     fs = float(corpus["sample_rate"][0])
     pairs = np.unique(corpus["pair"].values) if "pair" in corpus else np.array([])
     history = corpus.attrs.get("history")
@@ -40,9 +48,9 @@ def card_facts(corpus: xr.Dataset, manifest: Manifest) -> dict[str, Any]:
         "clipped": clipped_records(corpus),
         "bearings": _bearings(corpus),
         "splits": SPLITS,
-        "classes": list(_classes(corpus)),
-        "one_split": SPLITS[int(used[0])] if len(used) == 1 else None,
-        "shared": [unit for unit in ("rig", "specimen") if _in_several(corpus[unit].values, split)],
+        "classes": _classes(corpus),
+        "one_split": used[0] if len(used) == 1 else None,
+        "shared": units_in_several_splits(corpus),
         "pairs": int((pairs >= 0).sum()),
         "ranges": ranges(corpus),
         "visible": fault_counts(corpus),
@@ -52,50 +60,38 @@ def card_facts(corpus: xr.Dataset, manifest: Manifest) -> dict[str, Any]:
 
 
 def _bearings(corpus: xr.Dataset) -> str:
-    names, counts = np.unique(corpus["bearing"].values.astype(str), return_counts=True)
-    shown = [f"{name} ({n})" for name, n in zip(names[:MOST_NAMES], counts[:MOST_NAMES], strict=True)]
-    more = len(names) - len(shown)
+    counts = text_counts(corpus["bearing"].values.tolist())
+    shown = [f"{name} ({n})" for name, n in counts.items()][:MOST_NAMES]
+    more = len(counts) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more else "")
 
 
-def _classes(corpus: xr.Dataset) -> Iterator[tuple[str | int, ...]]:
+def _classes(corpus: xr.Dataset) -> list[tuple[str | int, ...]]:
     """Name of each class and of all, with the number of its records, recordings, specimens and rigs, and of records by split."""
-    fault, split = corpus["fault"].values, corpus["split"].values
-    units = [corpus[unit].values for unit in ("recording", "specimen", "rig")]
-    groups = {name: fault == code for code, name in FAULT_NAMES.items()} | {"all": np.ones(len(fault), bool)}
-    for name, chosen in groups.items():
-        if chosen.any():
-            counts = (np.unique(numbers[chosen]).size for numbers in units)
-            yield name, int(chosen.sum()), *counts, *(int((chosen & (split == k)).sum()) for k in range(len(SPLITS)))
-
-
-def _in_several(units: np.ndarray, split: np.ndarray) -> bool:
-    """Whether some unit has records in two splits: then scores are too good."""
-    both = np.unique(np.stack([units, split]), axis=1)
-    return both.shape[1] > np.unique(units).size
+    names = (*UNITS, "split")
+    rows = by_class(corpus, names) | {"all": {name: corpus[name].values for name in names}}
+    splits = {name: split_counts(row["split"]) for name, row in rows.items()}
+    return [(name, *unit_counts(row), *(splits[name].get(one, 0) for one in SPLITS)) for name, row in rows.items()]
 
 
 def ranges(corpus: xr.Dataset) -> dict[str, Any]:
     """Names of the classes; unit, and extents in each class, of the quantities that vary; the value of each that does not."""
     chosen = {
-        name: variable[:].values.astype(float)  # of a copy, because the corpus would keep the values in memory
+        name: variable[:].values  # of a copy, because the corpus would keep the values in memory
         for name in per_record(corpus)
         if (variable := corpus[name].variable).dtype.kind in "fiu"
         and variable.attrs.get("role") != "provenance"
         and "flag_values" not in variable.attrs
     }
-    values = pd.DataFrame(chosen).replace([np.inf, -np.inf], np.nan).dropna(axis="columns", how="all")
-    units = {name: _unit(corpus[name].variable) for name in values}
-    vary = values.nunique() > 1
-    fault = corpus["fault"].values
-    by_class = values.groupby(fault)
-    extents = {name: by_class[name].agg(["min", "median", "max"]).to_numpy().tolist() for name in values.columns[vary]}
-    same = values.loc[:, ~vary].max()  # of equal values, some of which are not known
-    return {
-        "classes": [FAULT_NAMES.get(code, str(code)) for code in np.unique(fault).tolist()],
-        "vary": {name: (units[name], *map(_extent, of_one)) for name, of_one in extents.items()},
-        "same": {name: f"{value:.6g} {units[name]}".removesuffix(" 1") for name, value in same.items() if value},
-    }
+    classes = by_class({"fault": corpus["fault"], **chosen}, chosen)
+    vary, same = dict[str, tuple[str, ...]](), dict[str, str]()
+    for name, values in chosen.items():
+        found, unit = extent(values), _unit(corpus[name].variable)
+        if found is not None and found.least < found.largest:
+            vary[name] = unit, *(_cell(extent(columns[name])) for columns in classes.values())
+        elif found is not None and found.largest:
+            same[name] = f"{found.largest:.6g} {unit}".removesuffix(" 1")
+    return {"classes": list(classes), "vary": vary, "same": same}
 
 
 def _unit(variable: xr.Variable) -> str:
@@ -104,11 +100,11 @@ def _unit(variable: xr.Variable) -> str:
     return "dB" if in_decibels else str(variable.attrs.get("units", ""))
 
 
-def _extent(values: list[float]) -> str:
-    """Cell of a class, of its least, median and largest value."""
-    if np.isnan(values[0]):
+def _cell(found: Extent | None) -> str:
+    """Cell of a class: its least, median and largest value."""
+    if found is None:
         return ""
-    shown = [f"{value:.4g}" for value in values]
+    shown = [f"{value:.4g}" for value in found]
     return shown[0] if shown[0] == shown[-1] else " / ".join(shown)
 
 
