@@ -5,6 +5,7 @@
 ================= ==================================================================================
 module            responsibility
 ================= ==================================================================================
+names             names of baselines and tracks
 records           labelled rows of a feature table, and the groups that they belong to
 own               classifiers of the user, taught by class names
 estimators        the registry of baselines, from majority class to ensemble

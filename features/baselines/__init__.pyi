@@ -7,7 +7,8 @@ from .results import (
 from .results_file import read_results as read_results
 from .calibration import Calibration as Calibration
 from .curves import CurvePoint as CurvePoint, learning_curve as learning_curve
-from .estimators import DEFAULT_ESTIMATOR as DEFAULT_ESTIMATOR, ESTIMATORS as ESTIMATORS
+from .estimators import ESTIMATORS as ESTIMATORS
+from .names import BASELINES as BASELINES, DEFAULT_ESTIMATOR as DEFAULT_ESTIMATOR, TRACKS as TRACKS
 from .classifying import predict as predict
 from .models import Model as Model
 from .own import EstimatorError as EstimatorError, load_maker as load_maker
@@ -16,5 +17,4 @@ from .records import DEFAULT_GROUPS as DEFAULT_GROUPS, count_unknown as count_un
 from .scores import Scores as Scores, interval_text as interval_text, percent_text as percent_text
 from .severities import severity_warning as severity_warning
 from .splits import controls as controls, cross_validate as cross_validate
-from .tracks import TRACKS as TRACKS
 from .unlabelled import Answer as Answer, unlabelled_answers as unlabelled_answers

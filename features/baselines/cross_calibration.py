@@ -12,8 +12,9 @@ from features.baselines.calibration import (
     Calibration,
     fit_calibration,
 )
-from features.baselines.estimators import UNTRAINED, Estimator
+from features.baselines.estimators import Estimator
 from features.baselines.fitting import fits
+from features.baselines.names import UNTRAINED
 from features.baselines.own import Maker
 from features.baselines.records import Records
 from features.baselines.tracks import Split, grouped_splits

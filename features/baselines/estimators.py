@@ -24,6 +24,7 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 from sklearn.utils.validation import check_is_fitted, validate_data
 
+from features.baselines.names import BASELINES
 from features.baselines.own import Maker, OwnClassifier
 from features.baselines.records import FloatArray, IntArray
 from features.faults import CLASSES, COMBS, EVIDENCE, HEALTHY
@@ -125,11 +126,13 @@ def _mean(features: "DataFrame", columns: Sequence[str]) -> FloatArray:
     return np.mean([np.nan_to_num(features[column].to_numpy(), nan=-np.inf) for column in columns], axis=0)
 
 
-def _majority(seed: int) -> DummyClassifier:
+def majority(seed: int) -> DummyClassifier:
+    """The most frequent class of the training, whatever the record."""
     return DummyClassifier(strategy="most_frequent", random_state=seed)
 
 
-def _envelope_rule(seed: int) -> EnvelopeRule:  # noqa: ARG001
+def envelope_rule(seed: int) -> EnvelopeRule:  # noqa: ARG001
+    """The untrained rule on combs of fault lines."""
     return EnvelopeRule()
 
 
@@ -137,22 +140,26 @@ def _filled(*steps: BaseEstimator) -> Pipeline:
     return make_pipeline(SimpleImputer(strategy="median", keep_empty_features=True), *steps)
 
 
-def _logistic_regression(seed: int, strength: float = 0.1) -> Pipeline:
+def logistic_regression(seed: int, strength: float = 0.1) -> Pipeline:
+    """Logistic regression; ``strength`` is the inverse of its penalty."""
     return _filled(
         StandardScaler(),
         LogisticRegression(C=strength, max_iter=5000, class_weight="balanced", random_state=seed),
     )
 
 
-def _svm(seed: int) -> Pipeline:
+def svm(seed: int) -> Pipeline:
+    """Support vector machine with a radial kernel."""
     return _filled(StandardScaler(), SVC(class_weight="balanced", break_ties=True, random_state=seed))
 
 
-def _random_forest(seed: int) -> Pipeline:
+def random_forest(seed: int) -> Pipeline:
+    """Random forest."""
     return _filled(RandomForestClassifier(TREES, class_weight="balanced", random_state=seed))
 
 
-def _extra_trees(seed: int) -> Pipeline:
+def extra_trees(seed: int) -> Pipeline:
+    """Trees with random thresholds."""
     trees = ExtraTreesClassifier(
         TREES,
         min_samples_leaf=LEAF,  # pyright: ignore[reportArgumentType]
@@ -162,7 +169,8 @@ def _extra_trees(seed: int) -> Pipeline:
     return _filled(trees)
 
 
-def _gradient_boosting(seed: int) -> Pipeline:
+def gradient_boosting(seed: int) -> Pipeline:
+    """Gradient boosting on histograms."""
     boosting = HistGradientBoostingClassifier(
         max_iter=ROUNDS,
         max_leaf_nodes=8,
@@ -176,18 +184,18 @@ def _gradient_boosting(seed: int) -> Pipeline:
     return _filled(boosting)
 
 
-def _ensemble(seed: int) -> VotingClassifier:
+def ensemble(seed: int) -> VotingClassifier:
     """Three parts of extra trees and one of a strongly regularised logistic regression.
 
     Both average over many features instead of following a few. So models of two corpora drawn from one recipe agree better on real
     recordings than forests with leaves of one record do, at the same balanced accuracy. The logistic regression gives fewer false alarms
     and the trees tolerate wrong speed labels better.
     """
-    members = [("extra_trees", _extra_trees(seed)), ("logistic_regression", _logistic_regression(seed, 0.003))]
+    members = [("extra_trees", extra_trees(seed)), ("logistic_regression", logistic_regression(seed, 0.003))]
     return VotingClassifier(members, voting="soft", weights=[3, 1])
 
 
-def _relative_ensemble(seed: int) -> VotingClassifier:
+def relative_ensemble(seed: int) -> VotingClassifier:
     """Ensemble for records relative to a reference; there are twice as many features, and the changes tell more than the others.
 
     So each node of a tree tries more of them, and the logistic regression is less regularised and has a larger part. On simulated rigs
@@ -200,24 +208,13 @@ def _relative_ensemble(seed: int) -> VotingClassifier:
         class_weight="balanced",
         random_state=seed,
     )
-    members = [("extra_trees", _filled(trees)), ("logistic_regression", _logistic_regression(seed, 0.01))]
+    members = [("extra_trees", _filled(trees)), ("logistic_regression", logistic_regression(seed, 0.01))]
     return VotingClassifier(members, voting="soft", weights=[2, 1])
 
 
-ESTIMATORS: dict[str, Callable[[int], Estimator]] = {
-    "majority": _majority,
-    "envelope_rule": _envelope_rule,
-    "logistic_regression": _logistic_regression,
-    "svm": _svm,
-    "random_forest": _random_forest,
-    "extra_trees": _extra_trees,
-    "gradient_boosting": _gradient_boosting,
-    "ensemble": _ensemble,
-}
-RELATIVE_ESTIMATORS: dict[str, Callable[[int], Estimator]] = {"relative_ensemble": _relative_ensemble}
+ESTIMATORS: dict[str, Callable[[int], Estimator]] = {name: globals()[name] for name in BASELINES}
+RELATIVE_ESTIMATORS: dict[str, Callable[[int], Estimator]] = {"relative_ensemble": relative_ensemble}
 """Estimators for records relative to a reference alone; the other baselines take such records as they are."""
-UNTRAINED = ("majority", "envelope_rule")
-DEFAULT_ESTIMATOR = "ensemble"
 
 
 def relative_name(name: str) -> str:

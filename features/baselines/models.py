@@ -17,14 +17,9 @@ from sklearn.exceptions import NotFittedError
 from features.baselines.calibration import UNCALIBRATED, Calibration
 from features.baselines.classifying import predict
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
-from features.baselines.estimators import (
-    DEFAULT_ESTIMATOR,
-    ESTIMATORS,
-    UNTRAINED,
-    Estimator,
-    relative_name,
-)
+from features.baselines.estimators import Estimator, relative_name
 from features.baselines.model_file import read_model_file, write_model_file
+from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, UNTRAINED
 from features.baselines.own import Maker, maker_name
 from features.baselines.predictions import fault_names
 from features.baselines.records import (
@@ -257,9 +252,9 @@ class Model(Shown):
             If it is not fitted.
         """
         self._check_fitted()
-        if self.name not in ESTIMATORS:
+        if self.name not in BASELINES:
             raise CorpusError(
-                f"{path}: {self.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."
+                f"{path}: {self.name} is no baseline; a model file holds only one of {', '.join(BASELINES)}."
             )
         check_result(Path(path), "model")
         write_model_file({"raceway_model": FORMAT, **_content(self)}, Path(path))

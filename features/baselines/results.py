@@ -14,9 +14,9 @@ from typing import Literal
 import xarray as xr
 
 from features.baselines.curves import CurvePoint, curve_points, curve_sizes
-from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, UNTRAINED
 from features.baselines.importance import permutation_importance
 from features.baselines.models import Model, record_digests, seen_records
+from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS, UNTRAINED, Track
 from features.baselines.own import Maker
 from features.baselines.records import (
     DEFAULT_GROUPS,
@@ -30,7 +30,7 @@ from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import Widths, uncovered_in_splits
 from features.baselines.sources import score_sources
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
-from features.baselines.tracks import TRACKS, Split, Track
+from features.baselines.tracks import Split
 from features.table.definitions import measured_quantity
 from features.table.waveforms import Waveforms
 from gen.corpus import class_counts, unit_counts
@@ -309,7 +309,7 @@ def _untrained_first(baselines: dict[str, Baseline]) -> dict[str, Baseline]:
 def _chosen(estimators: Mapping[str, str | Maker] | None, *, several: bool) -> dict[str, str | Maker]:
     """Classifiers to score by name, the untrained baselines first."""
     if estimators is None:
-        return {name: name for name in (BRIEF if several else ESTIMATORS)}
+        return {name: name for name in (BRIEF if several else BASELINES)}
     return {name: name for name in UNTRAINED} | dict(estimators)
 
 

@@ -11,14 +11,14 @@ import numpy as np
 import xarray as xr
 
 from features.baselines.calibration import UNCALIBRATED, fit_calibration
-from features.baselines.estimators import UNTRAINED
 from features.baselines.fitting import fits
+from features.baselines.names import UNTRAINED, Track
 from features.baselines.own import Maker
 from features.baselines.predictions import Predictions, fault_names, predictions
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
 from features.baselines.scores import Scores, confusion_matrix, figures, score
 from features.baselines.severities import uncovered_in_splits
-from features.baselines.tracks import Split, Track, check_taught, grouped_splits, track_splits
+from features.baselines.tracks import Split, check_taught, grouped_splits, track_splits
 from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS
 

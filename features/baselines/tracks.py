@@ -14,18 +14,16 @@ groups evenly.
 """
 
 from collections.abc import Sequence
-from typing import Literal, get_args
 
 import numpy as np
 from sklearn.model_selection import StratifiedGroupKFold
 
+from features.baselines.names import Track
 from features.baselines.records import FloatArray, IntArray, Records, check_classes
 from features.faults import HEALTHY
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 
-Track = Literal["specimen", "rig", "bearing", "speed", "severity", "shape"]
-TRACKS: tuple[Track, ...] = get_args(Track)
 Split = tuple[IntArray, IntArray]
 
 NOVELTY = {
@@ -52,7 +50,7 @@ def track_splits(records: Records, labels: IntArray, track: Track, folds: int, s
     labels
         Labels to be balanced among folds where groups are dealt out, shape (record,): the classes, or permuted ones.
     track
-        A name of `TRACKS`.
+        A name of `features.baselines.TRACKS`.
     folds
         Number of splits and of ranges; fewer where a track has fewer groups.
     seed

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from features.baselines import Results, Scores, interval_text, percent_text, severity_warning
-from features.baselines.estimators import UNTRAINED
+from features.baselines.names import UNTRAINED
 from features.baselines.results_file import write_results
 from features.baselines.tracks import NOVELTY
 from features.faults import HEALTHY, LOOKS

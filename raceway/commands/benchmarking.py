@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from features.baselines.names import BASELINES, TRACKS
 from raceway.commands.feature_tables import notice_of_unknown, table_of
-from raceway.commands.models import ESTIMATORS, warn_of_durations, warn_of_seen, warn_of_severities
+from raceway.commands.models import warn_of_durations, warn_of_seen, warn_of_severities
 from raceway.console import show
 from raceway.console.options import (
     A_CORPUS,
@@ -33,14 +34,11 @@ if TYPE_CHECKING:
     from features.table.recording_speeds import Speed
     from features.table.waveforms import Waveforms
 
-# a copy of the names, since help must not import the registry; a test compares the two
-TRACKS = ("specimen", "rig", "bearing", "speed", "severity", "shape")
-
 
 def _checked_names(_context: click.Context, _option: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
     for name in names:
-        if name not in (*ESTIMATORS, "all") and not all(name.partition(":")):
-            raise click.BadParameter(f"{name!r} is none of {', '.join(ESTIMATORS)}, all, or MODULE:NAME of your own")
+        if name not in (*BASELINES, "all") and not all(name.partition(":")):
+            raise click.BadParameter(f"{name!r} is none of {', '.join(BASELINES)}, all, or MODULE:NAME of your own")
     return names
 
 
@@ -213,7 +211,7 @@ def _makers(names: tuple[str, ...]) -> "dict[str, str | Maker] | None":
     """Classifiers by the name that the user gave; None if none was given."""
     from features.baselines import load_maker
 
-    spelled = dict.fromkeys(baseline for name in names for baseline in (ESTIMATORS if name == "all" else (name,)))
+    spelled = dict.fromkeys(baseline for name in names for baseline in (BASELINES if name == "all" else (name,)))
     return {name: load_maker(name) if ":" in name else name for name in spelled} or None
 
 

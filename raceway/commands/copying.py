@@ -13,8 +13,6 @@ from raceway.console.progress import notice, progress
 if TYPE_CHECKING:
     from gen.corpus import Codec
 
-FORMS = ("parquet", "zarr", "csv", "huggingface")
-
 
 def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[str, ...]) -> dict[str, str]:
     """New names of channels by their old ones, from ``OLD=NEW``."""
@@ -42,7 +40,7 @@ def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[s
     help="Compression of the signals of a corpus; by default zlib, which every netCDF-4 reader knows.",
 )
 @click.option("--float32", is_flag=True, help="Store accelerations in floating point in place of counts.")
-@click.option("--to", type=click.Choice(FORMS), help="Form of a folder for another program.")
+@click.option("--to", metavar="FORM", help="Form of a folder for another program, see above.")
 @json_option
 def copy(
     sources: tuple[Path, ...],

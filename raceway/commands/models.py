@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR
 from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.references import reference_options, reference_table
 from raceway.console import show
@@ -32,18 +33,6 @@ if TYPE_CHECKING:
     from features.baselines import Answer, Calibration, Model, Results, Scores
     from features.table.recording_speeds import Speed
 
-# a copy of the names, since help must not import the registry; a test compares the two
-ESTIMATORS = (
-    "majority",
-    "envelope_rule",
-    "logistic_regression",
-    "svm",
-    "random_forest",
-    "extra_trees",
-    "gradient_boosting",
-    "ensemble",
-)
-
 
 @click.command()
 @click.argument("source", metavar="DIR|RECIPE", shell_complete=complete_recipes)
@@ -52,11 +41,11 @@ ESTIMATORS = (
 )
 @click.option(
     "--estimator",
-    type=click.Choice(ESTIMATORS),
-    default="ensemble",
+    type=click.Choice(BASELINES),
+    default=DEFAULT_ESTIMATOR,
     show_default=True,
     metavar="NAME",
-    help=f"One of {', '.join(ESTIMATORS)}.",
+    help=f"One of {', '.join(BASELINES)}.",
 )
 @analysis_options
 @worker_options

@@ -67,6 +67,7 @@ def test_a_form_for_another_program_says_where_to_read_on(run, tones, tmp_path):
         ("{one} --split train -o {other}", "exists and is not an empty folder"),
         ("{one} {one} -o {out}", "has the same samples as record 0"),
         ("{one} -o {one}/parts/part-00000.nc", "choose a place outside it"),
+        ("{one} --to xls -o {out}", "there is no form 'xls'; allowed are parquet, zarr, csv, huggingface"),
         ("{one} --rename-channel housing -o {out}", "give OLD=NEW, once for each channel"),
         ("{one} --rename-channel house=a -o {out}", "there is no channel 'house'; the nearest is housing."),
         ("-o {out}", "Missing argument"),

@@ -7,14 +7,12 @@ import click
 import pytest
 from click.types import FloatParamType, IntParamType
 
-from features.baselines import ESTIMATORS, TRACKS
 from features.report.views import VIEWS
 from features.table.band import DEFAULT_BAND
 from features.table.recording_speeds import SPEEDS
-from gen.exporting import FORMS
 from gen.support.errors import CorpusError
 from gen.support.workers import cores
-from raceway.commands import benchmarking, copying, models, plotting
+from raceway.commands import plotting
 from raceway.commands.recordings import _speeds
 from raceway.console.options import names, speed_option
 from tests.command_tree import COMMANDS
@@ -59,9 +57,6 @@ def test_an_option_refuses_what_is_no_value_of_it_in_one_sentence(run, line):
 @pytest.mark.parametrize(
     ("choices", "registry"),
     [
-        (models.ESTIMATORS, ESTIMATORS),
-        (benchmarking.TRACKS, TRACKS),
-        (copying.FORMS, FORMS),
         (plotting.VIEWS, VIEWS),
         (speed_option(lambda: None).__click_params__[0].type.choices, SPEEDS),
     ],
