@@ -22,8 +22,8 @@ from benchmarks.speed import real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import UNSURE
 from features.diagnosis import Given, Recorded, diagnose_recording
-from features.faults import CLASSES, HEALTHY
 from features.table.indicators import Orders
+from gen.corpus.fault_classes import CLASSES, HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.support.units import rpm_to_hertz

@@ -19,8 +19,8 @@ from benchmarks.speed import Recording, real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
 from features.diagnosis import ANY_RATE, Diagnosis, Given, Recorded, diagnose_recording
-from features.faults import CLASSES, HEALTHY
 from features.table.indicators import Orders
+from gen.corpus.fault_classes import CLASSES, HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from raceway.kept_models import load_reference_model

@@ -7,7 +7,6 @@ It uses the format of a corpus and not the simulator, so that recordings of real
 ========= ==============================================================================
 module    responsibility
 ========= ==============================================================================
-faults    the fault classes: colour, lines and telling features of each, in one table
 signal    spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
 table     records -> feature table: bands, definitions, indicators, files
 accessor  the functions of `signal` on xarray

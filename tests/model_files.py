@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from features.baselines import ESTIMATORS, Model, estimators
-from features.faults import EVIDENCE
+from gen.corpus.fault_classes import EVIDENCE
 
 NAMES = (*EVIDENCE, "raw_kurtosis")
 

@@ -18,8 +18,8 @@ from features.baselines.names import UNTRAINED
 from features.baselines.own import Maker
 from features.baselines.records import Records
 from features.baselines.tracks import Split, grouped_splits
-from features.faults import HEALTHY
 from gen.corpus import FAULTS
+from gen.corpus.fault_classes import HEALTHY
 
 FOLDS = 3  # at most; each costs a training on two thirds of the records
 

@@ -27,8 +27,8 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 from features.baselines.names import BASELINES
 from features.baselines.own import Maker, OwnClassifier
 from features.baselines.records import FloatArray, IntArray
-from features.faults import CLASSES, COMBS, EVIDENCE, HEALTHY
 from gen.corpus import FAULTS
+from gen.corpus.fault_classes import CLASSES, COMBS, EVIDENCE, HEALTHY
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -70,7 +70,7 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
         Raises
         ------
         ValueError
-            If a feature of ``features.faults.EVIDENCE`` is not among the columns.
+            If a feature of ``gen.corpus.fault_classes.EVIDENCE`` is not among the columns.
         """
         missing = set(EVIDENCE) - set(getattr(X, "columns", ()))
         if missing:
@@ -99,8 +99,8 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
 def rule_levels(features: "DataFrame", threshold: float) -> dict[str, FloatArray]:
     """Level of each class, shape (record,); the rule predicts the class with the highest level.
 
-    The level of a class is the mean of the features of its row in `features.faults`; a missing feature counts as -inf,
-    and so does a class whose row has no features: the rule never predicts it. Three classes differ:
+    The level of a class is the mean of the features of its row in `gen.corpus.fault_classes`; a missing feature counts
+    as -inf, and so does a class whose row has no features: the rule never predicts it. Three classes differ:
 
     - Healthy: the threshold.
     - Cage: the mean of the first two lines of FTF, or -inf if these lines come from a spalled ball, which passes the

@@ -13,9 +13,9 @@ import numpy as np
 
 from features.baselines.calibration import IMPULSIVENESS, Calibration, calibrate, combine
 from features.baselines.colour import Colour
-from features.faults import HEALTHY
 from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULTS
+from gen.corpus.fault_classes import HEALTHY
 
 UNSURE, DAMAGED = "unsure", "damaged"
 

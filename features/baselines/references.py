@@ -21,12 +21,12 @@ from features.baselines.records import (
     record_digests,
     title_of,
 )
-from features.faults import HEALTHY
 from features.signal.rows import group_means, mean_row
 from features.table.band import band_of
 from features.table.channels import channels_of
 from features.table.recording_speeds import recording_numbers
 from gen.corpus import FAULTS, UNKNOWN_CODE
+from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 
 HEALTHY_CODE = FAULTS.index(HEALTHY)

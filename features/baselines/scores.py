@@ -19,8 +19,8 @@ from features.baselines.calibration import SMALLEST
 from features.baselines.detection import INTERVAL, Roc, WidthBin, detection, roc
 from features.baselines.predictions import Predictions
 from features.baselines.records import FloatArray, IntArray, Records
-from features.faults import HEALTHY
 from gen.corpus import FAULTS
+from gen.corpus.fault_classes import HEALTHY
 from gen.support.shown import Shown
 
 HEALTHY_CODE = FAULTS.index(HEALTHY)

@@ -8,7 +8,6 @@ _MAKES_SCORES = (
     "features/signal",
     "features/table",
     "features/baselines",
-    "features/faults.py",
 )
 """Folders and files by which a corpus becomes scores; a test looks for others."""
 

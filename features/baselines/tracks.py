@@ -20,8 +20,8 @@ from sklearn.model_selection import StratifiedGroupKFold
 
 from features.baselines.names import Track
 from features.baselines.records import FloatArray, IntArray, Records, check_classes
-from features.faults import HEALTHY
 from gen.corpus import FAULTS
+from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 
 Split = tuple[IntArray, IntArray]

@@ -38,7 +38,6 @@ from features.diagnosis.wording import (
     speed_warning,
     unexplained,
 )
-from features.faults import HEALTHY
 from features.signal.rows import FloatArray, mean_row
 from features.table.band import Band
 from features.table.channels import joined_channels
@@ -47,6 +46,7 @@ from features.table.durations import suited
 from features.table.indicators import Orders, feature_names, indicators
 from features.table.recordings import recording_table, windows_of
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
+from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 
 WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."

@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 
 from features.diagnosis.spectrum import TOP_ORDER, BandSpectrum
-from features.faults import CLASSES, SHAFT, FaultClass
 from features.table.indicators import Orders
+from gen.corpus.fault_classes import CLASSES, SHAFT, FaultClass
 
 FALSE_ALARM = 0.01  # probability that noise has a first line in a recording, and that it adds a further line to one
 TOLERANCE = 0.02  # of an order: slip, contact angle and the remaining error of the speed

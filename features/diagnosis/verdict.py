@@ -22,7 +22,7 @@ from collections.abc import Mapping, Sequence
 from features.baselines.predictions import DAMAGED, UNSURE
 from features.diagnosis.evidence import Line
 from features.diagnosis.wording import by_family, family_in_words, faulty, line_of
-from features.faults import CLASSES, HEALTHY, SHAFT, SIDES
+from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT, SIDES
 
 PLAIN = 15.0  # dB, level of lines that contradict a class
 OBVIOUS = 25.0  # dB, the same for a class of which the classifier is sure

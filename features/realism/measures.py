@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import irfft
 
-from features.faults import CLASSES, COMBS
 from features.signal.colour import centroid, roll_off, tonality
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.impulsive import band_kurtosis, equal_bands
@@ -22,6 +21,7 @@ from features.signal.shape import envelope_shape, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd
 from features.table.band import DEFAULT_BAND
 from features.table.indicators import FLOOR_WIDTH, Orders
+from gen.corpus.fault_classes import CLASSES, COMBS
 
 LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their amplifiers differ
 UPPER_BAND = 3500.0  # Hz

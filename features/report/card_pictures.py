@@ -15,7 +15,6 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from PIL import Image
 
-from features.faults import LOOKS
 from features.report.examples import chosen_example
 from features.report.page import quantities
 from features.report.pictures import STYLE, WIDTH, DrawnRecord, draw_envelope_spectrum, draw_waveform, picture
@@ -44,6 +43,7 @@ from gen.corpus.card.additions import (
     read_additions,
     write_additions,
 )
+from gen.corpus.fault_classes import LOOKS
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 

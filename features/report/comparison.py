@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.faults import CLASSES
 from features.realism.comparison import SHARES, Comparison
 from features.realism.measures import MEASURES, NAMES, Measure
 from features.realism.windows import Windows, typical_window
@@ -19,6 +18,7 @@ from features.report.templates import template, three_digits
 from features.signal.rows import FloatArray
 from features.table.indicators import Orders
 from gen.corpus import FAULTS, make_result_folder, write_numbers, write_text_durably
+from gen.corpus.fault_classes import CLASSES
 
 TYPICAL = "kurtosis"  # an example has the median of this measure, which every class has
 

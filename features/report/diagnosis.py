@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels, Recorded
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.diagnosis.wording import probability_in_words
-from features.faults import CLASSES, HEALTHY, SHAFT
 from features.report.pictures import (
     FAINT,
     INK,
@@ -31,6 +30,7 @@ from features.signal.motion import velocity_band
 from features.signal.rows import FloatArray
 from features.table.band import DEFAULT_BAND, Band
 from gen.corpus import check_result, write_text_durably
+from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT
 
 LOWEST_DB, MARGIN_DB = -5.0, 4.0  # ends of the axis of levels: below the floor, and above the highest
 DRAWN_HARMONICS = 3  # of each family

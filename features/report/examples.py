@@ -7,7 +7,6 @@ import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from features.faults import COMBS, LOOKS
 from features.report.pictures import (
     STYLE,
     WIDTH,
@@ -20,6 +19,7 @@ from features.report.pictures import (
 from features.report.shown import can_be_drawn, shown_of
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULT_NAMES
+from gen.corpus.fault_classes import COMBS, LOOKS
 
 CANDIDATES = 15  # records of a class among which its example is chosen
 

@@ -21,7 +21,6 @@ import numpy as np
 import xarray as xr
 from scipy.signal import resample
 
-from features.faults import COMBS, FUNDAMENTALS, LOOKS, SHAFT
 from features.report.pictures import (
     SEGMENT,
     TOLERANCE,
@@ -51,6 +50,7 @@ from gen.corpus import (
     open_corpus,
     write_text_durably,
 )
+from gen.corpus.fault_classes import COMBS, FUNDAMENTALS, LOOKS, SHAFT
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
 from gen.support.shown import visible

@@ -15,7 +15,6 @@ from features.baselines import Results, Scores, interval_text, percent_text, sev
 from features.baselines.names import UNTRAINED
 from features.baselines.results_file import write_results
 from features.baselines.tracks import NOVELTY
-from features.faults import HEALTHY, LOOKS
 from features.report.curves import draw_curve, draw_detection, draw_reliability, draw_roc
 from features.report.examples import draw_examples
 from features.report.pictures import picture
@@ -34,6 +33,7 @@ from gen.corpus import (
     unit_counts,
     write_text_durably,
 )
+from gen.corpus.fault_classes import HEALTHY, LOOKS
 
 LONGEST_TEXT = 300
 BARS, LEAST_IMPORTANCE = 15, 5e-4  # of the drawn quantities

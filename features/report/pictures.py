@@ -1,7 +1,7 @@
 """Pictures of a record, drawn from plain arrays, and the style of all pictures.
 
-All colours, those of `features.faults` included, are from the palette of Okabe and Ito [1]_, which colour-blind readers
-can distinguish. Pictures contain numbers and class names, and no text of a corpus.
+All colours, those of `gen.corpus.fault_classes` included, are from the palette of Okabe and Ito [1]_, which
+colour-blind readers can distinguish. Pictures contain numbers and class names, and no text of a corpus.
 
 .. [1] M. Okabe, K. Ito, "Color Universal Design: how to make figures and presentations that are friendly to colorblind
        people", 2008.
@@ -18,7 +18,6 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.faults import FUNDAMENTALS, HEALTHY, LOOKS, SHAFT
 from features.signal.demodulation import amplitude_spectrum, analytic_band
 from features.signal.orders import order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray, squared_modulus
@@ -26,6 +25,7 @@ from features.signal.spectra import fourier_coefficients, psd, whiten_by_psd
 from features.table.band import DEFAULT_BAND, Band
 from features.table.indicators import WHITENING_WIDTH, Orders
 from gen.corpus import GENERATOR, check_result, write_durably
+from gen.corpus.fault_classes import FUNDAMENTALS, HEALTHY, LOOKS, SHAFT
 from gen.support.errors import CorpusError
 
 PictureFormat = Literal["png", "svg", "pdf"]

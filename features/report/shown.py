@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from features.faults import FUNDAMENTALS, UNKNOWN
 from features.report.pictures import DrawnRecord, fault_lines
 from features.signal.orders import angles_from_speed
 from features.signal.rows import FloatArray
@@ -15,6 +14,7 @@ from features.table.band import LEAST_WIDTH, Band
 from features.table.channels import channel_number
 from features.table.indicators import Orders
 from gen.corpus import FAULT_NAMES, SIGNAL, corpus_name, open_corpus
+from gen.corpus.fault_classes import FUNDAMENTALS, UNKNOWN
 from gen.support.errors import CorpusError
 
 CONSTANT = 1.02  # largest ratio of two speeds that count as one

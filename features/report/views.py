@@ -12,7 +12,6 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.faults import FUNDAMENTALS, LOOKS, SHAFT
 from features.report.pictures import (
     FAINT,
     OVER,
@@ -36,6 +35,7 @@ from features.signal.orders import order_map, order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
 from features.signal.separation import cepstrum
 from features.table.band import Band
+from gen.corpus.fault_classes import FUNDAMENTALS, LOOKS, SHAFT
 
 HEIGHT = 3.6  # inches
 FAINTEST = 1e-12  # of an amplitude

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from features.faults import CLASSES, SHAFT, FaultClass
 from features.signal.demodulation import ZERO_PADDING, running_median
 from features.signal.lines import LINE_TOLERANCE, Orders
 from features.signal.rows import FloatArray
 from features.table.indicators import FLOOR_WIDTH
+from gen.corpus.fault_classes import CLASSES, SHAFT, FaultClass
 
 if TYPE_CHECKING:
     import xarray as xr

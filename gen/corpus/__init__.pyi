@@ -17,6 +17,12 @@ from .choice import operating_variables as operating_variables
 from .codecs import CODECS as CODECS, Codec as Codec
 from .croissant import write_croissant as write_croissant
 from .description import format_page as format_page
+from .fault_classes import (
+    FAULT_NAMES as FAULT_NAMES,
+    FAULTS as FAULTS,
+    UNKNOWN as UNKNOWN,
+    UNKNOWN_CODE as UNKNOWN_CODE,
+)
 from .facts import (
     UNITS as UNITS,
     FaultCounts as FaultCounts,
@@ -89,8 +95,6 @@ from .publication import Creator as Creator, Publication as Publication, read_pu
 from .reading import open_part as open_part
 from .schema import (
     DRAWS as DRAWS,
-    FAULT_NAMES as FAULT_NAMES,
-    FAULTS as FAULTS,
     FORMAT as FORMAT,
     IDENTITY as IDENTITY,
     MISSING_COUNT as MISSING_COUNT,
@@ -99,8 +103,6 @@ from .schema import (
     SCHEMA as SCHEMA,
     SIGNAL as SIGNAL,
     SPLITS as SPLITS,
-    UNKNOWN as UNKNOWN,
-    UNKNOWN_CODE as UNKNOWN_CODE,
     Variable as Variable,
     class_names as class_names,
     identity as identity,

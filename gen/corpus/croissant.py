@@ -14,11 +14,12 @@ import xarray as xr
 from gen.corpus.acdd import content_id, license_address, publication_attributes
 from gen.corpus.card.citation import bibtex
 from gen.corpus.card.page import card_folder
+from gen.corpus.fault_classes import FAULT_NAMES
 from gen.corpus.files import sha256, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
 from gen.corpus.publication import Publication
-from gen.corpus.schema import FAULT_NAMES, SIGNAL, SPLITS
+from gen.corpus.schema import SIGNAL, SPLITS
 
 CROISSANT_NAME = "croissant.json"
 

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gen.corpus.schema import FAULT_NAMES, FAULTS, SPLITS
+from gen.corpus.fault_classes import FAULT_NAMES, FAULTS
+from gen.corpus.schema import SPLITS
 from gen.corpus.simulated import UNJUDGED
 
 COARSE = 0.05  # relative rms change of the motion; a step of the usual fineness changes a record by some thousandths

@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gen.corpus.fault_classes import FAULT_NAMES
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     import xarray as xr
 
 FORMAT = 3
-FAULTS = ("healthy", "inner", "outer", "ball", "cage", "compound")
-UNKNOWN, UNKNOWN_CODE = "unknown", 127  # recording whose class is not known: a value of ``fault``, not a class
-FAULT_NAMES: Mapping[int, str] = {**dict(enumerate(FAULTS)), UNKNOWN_CODE: UNKNOWN}
 SPLITS = ("train", "validation", "test")
 ROLES = ("operating", "label", "latent", "provenance")
 _CONTENT_OF_ROLES = {  # words of ISO 19115-1 in the attribute coverage_content_type of ACDD 1.3

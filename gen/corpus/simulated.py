@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from gen.corpus.schema import DRAWS, FAULT_NAMES, UNKNOWN, UNKNOWN_CODE, Variable, class_names
+from gen.corpus.fault_classes import FAULT_NAMES, UNKNOWN, UNKNOWN_CODE
+from gen.corpus.schema import DRAWS, Variable, class_names
 
 # 20 log10 of the ratio of two rms; CF has no unit for levels
 _SNR = "bearing over background or rounding of the converter in decibels re 1, NaN without either or in silence"

@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, FAULTS, OTHER_BEARING, SIMULATED, SPLITS, identity, make_dataset
-from gen.corpus.schema import UNKNOWN_CODE
+from gen.corpus.fault_classes import UNKNOWN_CODE
 from gen.corpus.simulated import MACHINE_CONDITIONS
 from gen.measurement.measure import Measured
 from gen.mechanisms.measuring_chain import LABELS

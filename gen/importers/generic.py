@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gen.corpus import UNKNOWN
+from gen.corpus.fault_classes import LOOKS
 from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.assumptions import assumptions
 from gen.importers.conversion import accelerations, doubts
@@ -28,7 +28,6 @@ from gen.support.progress import Progress
 from gen.support.units import rpm_to_hertz, to_si
 
 _NO_RATE = 10_000.0  # Hz, if no file states one: each is then skipped with its own reason
-_SPALLS = {"inner": 1, "outer": 1, "ball": 1, "compound": 2, UNKNOWN: -1}
 _OF_A_FILE = {"path", "delimiter", "channels", *SensorKeys.model_fields}
 
 
@@ -197,7 +196,8 @@ def _join(files: Sequence[Labels], folder: Path) -> _Joined:
 
 
 def _recording(labels: Labels, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:
-    unknown = 0.0 if labels.fault in ("healthy", "cage") else math.nan
+    spalls = LOOKS[labels.fault].n_spalls
+    unknown = math.nan if spalls else 0.0
     return Recording(
         number=number,
         rig=rig,
@@ -207,7 +207,7 @@ def _recording(labels: Labels, signal: FloatArray, number: int, rig: int, specim
         fault=labels.fault,
         signal=signal,
         load=math.nan if labels.load_n is None else labels.load_n,
-        n_spalls=labels.n_spalls or _SPALLS.get(labels.fault, 0),
+        n_spalls=labels.n_spalls or spalls,
         width=unknown if labels.width_mm is None else to_si(labels.width_mm, "mm"),
         depth=unknown if labels.depth_um is None else to_si(labels.depth_um, "um"),
         angle=math.nan if labels.angle_deg is None else to_si(labels.angle_deg, "deg"),

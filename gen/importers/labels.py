@@ -4,7 +4,7 @@ from typing import Annotated, NamedTuple, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from gen.corpus import UNKNOWN
+from gen.corpus.fault_classes import LOOKS
 from gen.importers.bearing_text import bearing_of_label
 from gen.importers.conversion import VOLTAGES, Scale, Unit, unit_problem, volts_per_acceleration
 from gen.importers.label_values import (
@@ -28,7 +28,6 @@ from gen.importers.signals import STATING_RATES, Place
 from gen.physics.bearing import Bearing
 
 _OF_SPALLS = ("width_mm", "depth_um", "angle_deg", "n_spalls")
-_WITHOUT_SPALL = ("healthy", "cage", UNKNOWN)
 
 
 class Sensor(NamedTuple):
@@ -120,7 +119,7 @@ class Labels(SensorKeys):
         if self.unit is None and not (self.channels and all(channel.unit for channel in self.channels)):
             raise ValueError("unit: is missing; give it.")
         spall = next((key for key in _OF_SPALLS if getattr(self, key) is not None), None)
-        if spall and self.fault in _WITHOUT_SPALL:
+        if spall and LOOKS[self.fault].n_spalls <= 0:
             raise ValueError(f"{spall}: describes a spall, and fault is {self.fault}; remove one of the two.")
         for keys in (self, *(self.channels or ())):
             if keys.sensitivity_mv_per_g is not None and keys.sensitivity_mv_per_m_s2 is not None:

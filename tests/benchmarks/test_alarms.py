@@ -21,7 +21,7 @@ from benchmarks.alarms import (
     table,
 )
 from features.baselines.predictions import UNSURE
-from features.faults import HEALTHY
+from gen.corpus.fault_classes import HEALTHY
 
 
 def answer(fault, verdict, condition=""):

@@ -11,10 +11,11 @@ from gen.corpus.card import additions
 from gen.corpus.card.citation import bibtex, citation
 from gen.corpus.card.facts import card_facts, needs_plugin
 from gen.corpus.card.markdown import code_text, plain_text
+from gen.corpus.fault_classes import FAULTS
 from gen.corpus.files import CARD_SUFFIX, corpus_around, place_of, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import RECIPE_NAME, Manifest, corpus_files, read_manifest, recipe_text
-from gen.corpus.schema import FAULTS, listed_flags
+from gen.corpus.schema import listed_flags
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:

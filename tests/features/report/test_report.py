@@ -295,7 +295,7 @@ def test_the_drawn_envelope_has_its_highest_lines_where_the_fault_is_marked(faul
 
 
 def test_the_lines_of_a_class_have_its_orders_and_others_those_of_the_other_parts_and_of_the_shaft():
-    """Which lines a class has is tested in tests/features/test_faults_laws.py."""
+    """Which lines a class has is tested in tests/features/test_fault_classes_laws.py."""
     own, others = fault_lines(Orders(**ORDERS), "ball")
     assert own == pytest.approx({"2 BSF": 4.7, "4 BSF": 9.4, "6 BSF": 14.1})
     assert others.items() >= {"BPFO": 3.6, "BPFI": 5.4, "shaft": 1.0, "FTF": 0.4}.items()

@@ -1,4 +1,4 @@
-"""Laws of the table of fault classes: complete, in the order of the format, and the only place that describes a class."""
+"""Laws of the table of fault classes: complete, and the only place that describes a class."""
 
 import ast
 from collections.abc import Iterator
@@ -10,21 +10,16 @@ import pytest
 
 from features.baselines import estimators
 from features.baselines.estimators import EnvelopeRule
-from features.faults import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, LOOKS, FaultClass, NominalLine
 from features.report import pictures
 from features.report.pictures import DrawnRecord, draw_record, fault_lines
 from features.signal.lines import FAMILIES
 from features.table.indicators import Orders, feature_names
 from gen.corpus import FAULTS
+from gen.corpus.fault_classes import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, LOOKS, FaultClass, NominalLine
 from tests.paths import ROOT
 
 ORDERS = Orders(*map(np.float64, (0.4, 3.6, 5.4, 2.35)))
 RULE = ROOT / "features" / "baselines" / "estimators.py"  # three classes interact there: ball, cage and compound
-
-
-def test_the_table_has_the_classes_of_the_format_in_its_order():
-    assert tuple(CLASSES) == FAULTS
-    assert all(row.name == name for name, row in CLASSES.items())
 
 
 def test_classes_are_drawn_in_different_colours():
@@ -60,7 +55,6 @@ def described_classes(path: Path) -> Iterator[str]:
 
 def test_no_other_module_of_features_names_a_class():
     named = {path: set(described_classes(path)) for path in (ROOT / "features").rglob("*.py")}
-    assert named.pop(ROOT / "features" / "faults.py") == set(FAULTS)
     assert named.pop(RULE) == {"outer", "ball", "cage", "compound"}
     assert not {path: names for path, names in named.items() if names}
 

@@ -1,7 +1,6 @@
-"""Table of the fault classes: everything that a class of the corpus format means to features, baselines and pictures.
+"""Table of the fault classes: everything that a class means to corpora, features, baselines and pictures.
 
-A new class of the format needs one new row here, at its place in the order of the format; a test compares the two.
-This module imports nothing of the project, so that the pure signal functions may use it.
+A new class needs one new row at the end: the codes of stored records are places in the table. This module imports nothing of the project.
 
 A ball spall strikes both races in each spin, so its fundamental line is twice the ball spin frequency ``bsf``.
 """
@@ -27,7 +26,7 @@ class FaultClass(NamedTuple):
     Attributes
     ----------
     name
-        As in ``gen.corpus.FAULTS``.
+        Value of ``fault`` in a corpus.
     colour
         In all pictures.
     lines
@@ -48,6 +47,8 @@ class FaultClass(NamedTuple):
         ``lower`` than the lines on an outer race, which stands still, or empty.
     companion
         Class whose lines go with those of this one, so that they do not speak against it.
+    n_spalls
+        Spalls of a recording that does not state their number.
     """
 
     name: str
@@ -60,6 +61,7 @@ class FaultClass(NamedTuple):
     side: str = "shaft"
     beside: Literal["", "needed", "lower"] = ""
     companion: str = ""
+    n_spalls: int = 0
 
     @property
     def evidence(self) -> tuple[str, ...]:
@@ -75,31 +77,59 @@ BPFI, BPFO = _harmonics("bpfi", 1, 2, 3), _harmonics("bpfo", 1, 2, 3)
 BSF, FTF = _harmonics("bsf", 2, 4, 6), _harmonics("ftf", 1, 2, 3)
 SHAFT = NominalLine("shaft", "shaft", 1)
 
-HEALTHY, UNKNOWN = "healthy", "unknown"
+HEALTHY = "healthy"
+UNKNOWN, UNKNOWN_CODE = "unknown", 127  # recording whose class is not known: a value of ``fault``, not a class
 CLASSES: Mapping[str, FaultClass] = {
     row.name: row
     for row in (
         FaultClass(HEALTHY, "#009E73", words="Healthy"),
         FaultClass(
-            "inner", "#D55E00", BPFI, "whitened_bpfi_comb", words="Inner race fault", part="inner race", beside="needed"
+            "inner",
+            "#D55E00",
+            BPFI,
+            "whitened_bpfi_comb",
+            words="Inner race fault",
+            part="inner race",
+            beside="needed",
+            n_spalls=1,
         ),
         FaultClass(
-            "outer", "#0072B2", BPFO, "whitened_bpfo_comb", words="Outer race fault", part="outer race", beside="lower"
+            "outer",
+            "#0072B2",
+            BPFO,
+            "whitened_bpfo_comb",
+            words="Outer race fault",
+            part="outer race",
+            beside="lower",
+            n_spalls=1,
         ),
         FaultClass(
-            "ball", "#CC79A7", BSF, "whitened_2bsf_comb", words="Ball fault", part="balls", side="ftf", companion="cage"
+            "ball",
+            "#CC79A7",
+            BSF,
+            "whitened_2bsf_comb",
+            words="Ball fault",
+            part="balls",
+            side="ftf",
+            companion="cage",
+            n_spalls=1,
         ),
         FaultClass(
             "cage", "#E69F00", FTF, single_lines=("whitened_ftf", "whitened_2ftf"), words="Cage fault", part="cage"
         ),
         # the label does not say which parts are damaged, so the fundamental line of every part is marked
-        FaultClass("compound", "#56B4E9", (BPFI[0], BPFO[0], BSF[0], FTF[0]), words="Several faults"),
+        FaultClass("compound", "#56B4E9", (BPFI[0], BPFO[0], BSF[0], FTF[0]), words="Several faults", n_spalls=2),
     )
 }
-"""Rows by name, in the order of the codes of the format. Colours: see `features.report.pictures`."""
+"""Rows by name. Colours: see `features.report.pictures`."""
 
-LOOKS: Mapping[str, FaultClass] = {**CLASSES, UNKNOWN: FaultClass(UNKNOWN, "#444444")}
-"""Rows for pictures: of the classes, and of records whose class is not known."""
+FAULTS = tuple(CLASSES)
+"""Names of the classes; the code of a class is its place."""
+
+FAULT_NAMES: Mapping[int, str] = {**dict(enumerate(FAULTS)), UNKNOWN_CODE: UNKNOWN}
+
+LOOKS: Mapping[str, FaultClass] = {**CLASSES, UNKNOWN: FaultClass(UNKNOWN, "#444444", n_spalls=-1)}
+"""Rows of the classes, and of records whose class is not known."""
 
 SIDES = {SHAFT.base: "shaft", "ftf": "cage"}
 """Part that turns at the distance of sidebands."""
