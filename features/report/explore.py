@@ -82,14 +82,6 @@ AXES = ("shaft_rate", "load", "record"), ("width", "depth", "load", "record")  #
 READ = ("fault", "sample_rate", "shaft_rate", "first_shaft_rate", "last_shaft_rate", *Orders._fields)
 
 
-class Explored(NamedTuple):
-    """What a page has: its records, and those of the corpus."""
-
-    page: Path
-    shown: int
-    records: int
-
-
 class ExplorerColumn(NamedTuple):
     """Quantity of the records for table, axes and conditions; numbers, or texts."""
 
@@ -112,7 +104,7 @@ def write_explorer(
     workers: int = 1,
     scheduler: "Client | str | None" = None,
     progress: Progress | None = None,
-) -> Explored:
+) -> tuple[int, int]:
     """Write a page to browse a corpus.
 
     Parameters
@@ -131,6 +123,10 @@ def write_explorer(
         Number or name of the channel, and band of the envelopes [Hz].
     workers, scheduler, progress
         As in `features.feature_table`; progress counts records.
+
+    Returns
+    -------
+    Numbers of the records on the page and of those of the corpus.
 
     Raises
     ------
@@ -170,7 +166,7 @@ def write_explorer(
         parts=_parts(facts, known, [reduced[block] for block in sorted(reduced)]),
     )
     write_text_durably(page, output)
-    return Explored(output, len(places), count)
+    return len(places), count
 
 
 def reduce_record(shown: DrawnRecord) -> dict[str, np.ndarray]:

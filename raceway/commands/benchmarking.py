@@ -112,11 +112,9 @@ def benchmark(
     learning_curve: bool,
     folds: int,
     seed: int,
-    channel: str | None,
-    band: tuple[float, float] | None,
+    analysis: Analysis,
     speed: "Speed",
-    workers: int | None,
-    scheduler: str | None,
+    team: Team,
     as_json: bool,
 ) -> None:
     """Measure the scores of all baselines on DIR.
@@ -148,13 +146,14 @@ def benchmark(
     from features.report.page import write_report
     from gen.corpus import result_folder
 
-    team = Team(workers, scheduler)
     loaded = _load(models)
     with result_folder(output):
-        table = table_of(corpus, "off", team, Analysis(channel, band))
-        others = [table_of(test, speed, team, Analysis(None, band)) for test in tests]
+        table = table_of(corpus, "off", team, analysis)
+        others = [table_of(test, speed, team, analysis._replace(channel=None)) for test in tests]
         scored = _score_models(loaded, [table, *others], seed)
-        signals = _waveforms(corpus, channel, list(zip(tests, others, strict=True)), per_turn) if waveforms else []
+        signals = (
+            _waveforms(corpus, analysis.channel, list(zip(tests, others, strict=True)), per_turn) if waveforms else []
+        )
         options = {
             "tracks": "all" if "all" in tracks else tracks,
             "estimators": chosen,
@@ -193,7 +192,7 @@ def benchmark(
 
 
 def _waveforms(
-    corpus: Path, channel: str | None, tests: "list[tuple[Path, xr.Dataset]]", per_turn: int | None
+    corpus: Path, channel: Any, tests: "list[tuple[Path, xr.Dataset]]", per_turn: int | None
 ) -> "list[Waveforms]":
     """Waveforms of the corpus and of the other corpora, resampled to the same number of turns, at the speeds of their tables."""
     from features import open_waveforms

@@ -2,16 +2,13 @@
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
 from raceway.console import show
 from raceway.console.options import A_CORPUS, choice_options, json_option, target_option
 from raceway.console.progress import notice, progress
-
-if TYPE_CHECKING:
-    from gen.corpus import Codec
 
 
 def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[str, ...]) -> dict[str, str]:
@@ -42,18 +39,7 @@ def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[s
 @click.option("--float32", is_flag=True, help="Store accelerations in floating point in place of counts.")
 @click.option("--to", metavar="FORM", help="Form of a folder for another program, see above.")
 @json_option
-def copy(
-    sources: tuple[Path, ...],
-    output: Path,
-    where: str | None,
-    split: str | None,
-    channels: tuple[str, ...] | None,
-    rename: dict[str, str],
-    codec: "Codec | None",
-    float32: bool,
-    to: str | None,
-    as_json: bool,
-) -> None:
+def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool, **choice: Any) -> None:
     """Copy corpora, or some of their records and channels.
 
     The name of TARGET gives the form:
@@ -88,11 +74,8 @@ def copy(
     """
     from gen import copy as copy_corpora
 
-    choice = {"where": where, "split": split, "channels": channels}
     with progress("copying", "records") as report:
-        made = copy_corpora(
-            sources, output, **choice, rename=rename, codec=codec, float32=float32, to=to, progress=report
-        )
+        made = copy_corpora(sources, output, to=to, **choice, progress=report)
     if made.filled:
         notice(
             f"variables that one of the sources lacks are marked as not known in its records: {', '.join(made.filled)}."

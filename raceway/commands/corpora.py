@@ -11,6 +11,7 @@ import click
 from raceway.console import show
 from raceway.console.ending import DONE, FOUND_WANTING
 from raceway.console.options import (
+    Team,
     corpus_argument,
     file_option,
     json_option,
@@ -157,8 +158,7 @@ def _show_plan(planned: "Plan") -> None:
 def generate(
     recipe: str,
     output: Path,
-    workers: int | None,
-    scheduler: str | None,
+    team: Team,
     seed: int | None,
     records: int | None,
     as_json: bool,
@@ -186,9 +186,9 @@ def generate(
     share_one_heap()
     wanted = read_recipe(recipe, seed=seed, records=records)
     start = time.monotonic()
-    workers = workers or _default_workers(wanted)
+    workers = team.workers or _default_workers(wanted)
     with if_interrupted(partial(_kept, output, wanted)):
-        made = _generate(recipe, output, workers=workers, scheduler=scheduler, seed=seed, records=records)
+        made = _generate(recipe, output, workers=workers, scheduler=team.scheduler, seed=seed, records=records)
     for failure in made.failures:
         notice(f"left out: {failure}")
     useless = complaint(made.signals, made.records)

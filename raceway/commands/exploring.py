@@ -38,10 +38,8 @@ def explore(
     table: Path | None,
     records: int,
     sound: bool,
-    channel: str | None,
-    band: tuple[float, float] | None,
-    workers: int | None,
-    scheduler: str | None,
+    analysis: Analysis,
+    team: Team,
 ) -> None:
     """Make a page to browse DIR in a web browser.
 
@@ -58,12 +56,11 @@ def explore(
     from features.report.explore import write_explorer
     from gen.corpus import read_manifest
 
-    options = (
-        Team(workers, scheduler).options(min(records, read_manifest(corpus).records))
-        | Analysis(channel, band).options()
-    )
+    options = team.options(min(records, read_manifest(corpus).records)) | analysis.options()
     with progress("reading", "records") as report:
-        made = write_explorer(corpus, output, table=table, records=records, sound=sound, **options, progress=report)
-    of_all = "" if made.shown == made.records else f" of {made.records:,}"
+        shown, count = write_explorer(
+            corpus, output, table=table, records=records, sound=sound, **options, progress=report
+        )
+    of_all = "" if shown == count else f" of {count:,}"
     size = output.stat().st_size / 1e6
-    show.text(f"{output}: {made.shown:,}{of_all} records of {corpus}, {size:.1f} MB. Open it in a web browser.")
+    show.text(f"{output}: {shown:,}{of_all} records of {corpus}, {size:.1f} MB. Open it in a web browser.")

@@ -56,8 +56,7 @@ def features(
     channel: tuple[str, ...] | None,
     band: tuple[float, float] | None,
     speed: "Speed",
-    workers: int | None,
-    scheduler: str | None,
+    team: Team,
     as_json: bool,
 ) -> None:
     """Compute the features of every record of DIR.
@@ -83,7 +82,7 @@ def features(
 
     check_destination(output)
     one, *more = channel or (None,)
-    table = table_of(corpus, speed, Team(workers, scheduler), Analysis(channel if more else one, band))
+    table = table_of(corpus, speed, team, Analysis(channel if more else one, band))
     write_table(table, output)
     ranked = None if rank is None else _ranking(table, rank)
     records, columns = table.sizes["record"], table.sizes["feature"]

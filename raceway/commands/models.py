@@ -54,10 +54,8 @@ def train(
     source: str,
     output: Path | None,
     estimator: str,
-    channel: str | None,
-    band: tuple[float, float] | None,
-    workers: int | None,
-    scheduler: str | None,
+    analysis: Analysis,
+    team: Team,
     as_json: bool,
 ) -> None:
     """Train a classifier on the corpus in DIR or of RECIPE.
@@ -87,14 +85,12 @@ def train(
     folder = Path(source)
     from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
     corpus = corpus_path(folder) if from_folder else None
-    team = Team(workers, scheduler)
     if corpus is None:
-        if scheduler is not None:
+        if team.scheduler is not None:
             raise click.UsageError("--scheduler is for DIR: generate the corpus of the RECIPE with it first")
         from gen.recipe import find_recipe
 
         find_recipe(source)  # a misspelt name is reported before the simulator is imported
-    analysis = Analysis(channel, band)
     if corpus is None and analysis != USUAL_ANALYSIS:
         raise click.UsageError("--channel and --band are for DIR: generate the corpus of the RECIPE first")
     if corpus is None and output is None:
@@ -141,8 +137,7 @@ def evaluate(
     channel: tuple[str, ...] | None,
     reference: Path | None,
     speed: "Speed",
-    workers: int | None,
-    scheduler: str | None,
+    team: Team,
     as_json: bool,
     **reading: Any,
 ) -> None:
@@ -175,10 +170,9 @@ def evaluate(
     if model is None:
         open_corpus(corpus).close()  # a wrong path is told before the model is trained
     loaded, source = load_reference_model() if model is None else (Model.load(model), model)
-    team = Team(workers, scheduler)
     analysis = Analysis(channel, loaded.band)
     table = table_of(corpus, speed, team, analysis)
-    healthy = None if reference is None else reference_table(reference, corpus, table, speed, team, analysis, **reading)
+    healthy = None if reference is None else reference_table(reference, corpus, table, speed, team, analysis, reading)
     answers = unlabelled_answers(table, loaded, healthy)
     if count_unknown(table) == table.sizes["record"]:
         _show_answers_alone(corpus, source, loaded.name, answers, as_json=as_json)

@@ -28,7 +28,7 @@ def _creators(_context: click.Context, _option: click.Parameter, texts: tuple[st
 
 @click.command()
 @corpus_argument
-@click.option("--license", "license_", metavar="SPDX", help="Licence as an SPDX identifier, such as CC-BY-4.0.")
+@click.option("--license", metavar="SPDX", help="Licence as an SPDX identifier, such as CC-BY-4.0.")
 @click.option(
     "--creator",
     "creators",
@@ -44,18 +44,7 @@ def _creators(_context: click.Context, _option: click.Parameter, texts: tuple[st
 @click.option("--date", metavar="YYYY-MM-DD", help="Day on which the corpus was made.")
 @click.option("--scores", type=A_PATH, metavar="FILE", help="results.json of raceway benchmark on this corpus.")
 @json_option
-def card(
-    corpus: Path,
-    license_: str | None,
-    creators: list[dict[str, str]],
-    institution: str | None,
-    doi: str | None,
-    references: tuple[str, ...],
-    contact: str | None,
-    date: str | None,
-    scores: Path | None,
-    as_json: bool,
-) -> None:
+def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None:
     """Complete the data card of DIR for publication.
 
     The card is DIR/README.md; that of a single file NAME.nc is NAME.card/README.md. It is made from the files of the corpus, with a
@@ -70,15 +59,6 @@ def card(
 
     Next: read DIR/README.md, then raceway copy DIR -o NAME.nc
     """
-    given = {
-        "license": license_,
-        "creators": creators,
-        "institution": institution,
-        "doi": doi,
-        "references": list(references),
-        "contact": contact,
-        "date": date,
-    }
     publication = _publication(corpus, {name: value for name, value in given.items() if value})
     from features.report.card_pictures import complete_card
     from gen.corpus import card_folder

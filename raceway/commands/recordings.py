@@ -3,13 +3,12 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from raceway.console.options import Decorator, names
+from raceway.console.options import Decorator, gathered, names
 
 if TYPE_CHECKING:
     from features.diagnosis import Recorded
@@ -59,6 +58,11 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
     return value
 
 
+def mark_of(_context: click.Context, _option: click.Parameter, name: str | None) -> str | None:
+    """Mark between columns by its name."""
+    return MARKS.get(name or "")
+
+
 rpm_option: Decorator = click.option(
     "--rpm",
     "speeds",
@@ -89,7 +93,7 @@ _sensitivity: Decorator = click.option(
 _channels: Decorator = click.option(
     "--channel",
     "channels",
-    callback=names,
+    callback=lambda *given: names(*given) or (),
     metavar="A,B,C",
     help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
     "of one housing. By default all axes of one sensor, as names or their absence tell: x, y, z, ch1, ch2, ch3, or three columns.",
@@ -103,20 +107,12 @@ _variable: Decorator = click.option(
 _delimiter: Decorator = click.option(
     "--delimiter",
     type=click.Choice([*MARKS]),
+    callback=mark_of,
     help="Mark between the columns of a text, if it is not plain; commas are decimal ones unless it is comma.",
 )
 
 
-def reading_options(command: Any) -> Any:
-    """Add the options that say how a recording is read; the command gets them as ``reading``."""
-
-    @wraps(command)
-    def reads(*given: Any, delimiter: Any, channels: Any, **others: Any) -> Any:
-        values = {name: others.pop(name) for name in ("variable", "unit", "sensitivity", "rate")}
-        reading = Reading(channels=channels or (), delimiter=MARKS.get(delimiter or ""), **values)
-        return command(*given, reading=reading, **others)
-
-    return _rate(_unit(_sensitivity(_channels(_variable(_delimiter(reads))))))
+reading_options = gathered("reading", Reading, _rate, _unit, _sensitivity, _channels, _variable, _delimiter)
 
 
 def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:

@@ -1,12 +1,13 @@
 """Options that name healthy records of a rig, and the feature table of these."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from raceway.commands.feature_tables import table_of
-from raceway.commands.recordings import MARKS
+from raceway.commands.recordings import MARKS, mark_of
 from raceway.console.options import A_PATH, Analysis, Decorator, Team
 from raceway.console.progress import notice
 
@@ -41,7 +42,6 @@ def reference_options(command: Any) -> Any:
         ),
         click.option(
             "--reference-rpm",
-            "reference_shaft_rpm",
             type=click.FloatRange(0.001, 1e7),
             metavar="RPM",
             help="Speed of the recording, if DIR has several.",
@@ -62,6 +62,7 @@ def reference_options(command: Any) -> Any:
         click.option(
             "--reference-delimiter",
             type=click.Choice([*MARKS]),
+            callback=mark_of,
             help="Mark between columns of the recording, if it is a text.",
         ),
     ]
@@ -77,27 +78,26 @@ def reference_table(
     speed: "Speed",
     team: Team,
     analysis: Analysis,
-    *,
-    reference_shaft_rpm: float | None,
-    reference_rate: float | None,
-    reference_column: int | str | None,
-    reference_variable: str | None,
-    reference_delimiter: str | None,
+    reading: Mapping[str, Any],
 ) -> "xr.Dataset":
-    """Feature table of a reference of the corpus whose own feature table is ``table``; the speed of a recording is believed."""
+    """Feature table of a reference of the corpus whose own feature table is ``table``.
+
+    ``reading`` has the values of the options that say how a recording is read; its speed is believed.
+    """
     from features.baselines.reference_choice import check_durations, recording_reference
     from gen.importers.signals import Place, read_shape
     from gen.support.units import rpm_to_hertz
 
     if path.is_file():
-        place = Place(reference_variable, reference_column, MARKS.get(reference_delimiter or ""))
-        signal = read_shape(path, place, reference_rate, _OPTIONS)
+        place = Place(*(reading[f"reference_{key}"] for key in Place._fields))
+        signal = read_shape(path, place, reading["reference_rate"], _OPTIONS)
         for note in signal.warnings:
             notice(f"warning: {note}")
         fs = float(table["sample_rate"].max()) if signal.fs is None else signal.fs
         if signal.fs is None:
             notice(f"{path}: does not state its sample rate; {fs:g} Hz is used, as in {corpus} (--reference-rate).")
-        rate = None if reference_shaft_rpm is None else rpm_to_hertz(reference_shaft_rpm)
+        rpm = reading["reference_rpm"]
+        rate = None if rpm is None else rpm_to_hertz(rpm)
         return recording_reference(signal.values, fs, corpus, path, rate, analysis.options()["band"])
     if path.resolve() == corpus.resolve():
         return table

@@ -1,6 +1,7 @@
 """Arguments and options that several commands share; the place for the result is checked before any work is done."""
 
 from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
@@ -74,6 +75,23 @@ _scheduler: Decorator = click.option(
 )
 
 
+def gathered(name: str, kind: Any, *options: Decorator) -> Decorator:
+    """Make options whose values, named as the fields of the named tuple ``kind``, the command gets as one argument of a name."""
+
+    def decorator(command: Any) -> Any:
+        @wraps(command)
+        def gather(**values: Any) -> Any:
+            one = kind(*(values.pop(field) for field in kind._fields))
+            return command(**{name: one}, **values)
+
+        decorated = gather
+        for option in reversed(options):
+            decorated = option(decorated)
+        return decorated
+
+    return decorator
+
+
 class Team(NamedTuple):
     """Values of the options ``--workers`` and ``--scheduler``."""
 
@@ -89,11 +107,7 @@ class Team(NamedTuple):
 
 
 USUAL = Team()
-
-
-def worker_options(command: Any) -> Any:
-    """Add the options ``--workers`` and ``--scheduler``."""
-    return _workers(_scheduler(command))
+worker_options = gathered("team", Team, _workers, _scheduler)
 
 
 class Analysis(NamedTuple):
@@ -155,10 +169,7 @@ band_option: Decorator = click.option(
 )
 
 
-def analysis_options(command: Any) -> Any:
-    """Add the options ``--channel`` and ``--band``."""
-    return channel_option(band_option(command))
-
+analysis_options = gathered("analysis", Analysis, channel_option, band_option)
 
 _where: Decorator = click.option(
     "--where",
