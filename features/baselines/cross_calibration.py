@@ -40,17 +40,17 @@ def fit_and_calibrate(
     cross_validation = None if estimator in UNTRAINED else calibration_splits(records, seed)
     by, splits = ("nothing", []) if cross_validation is None else cross_validation
     every = np.arange(len(records.fault))
-    whole, *folds = fits(
+    (whole, _), *folds = fits(
         records.features, records.fault, estimator, [(every, every[:0]), *splits], seed, workers=workers, done=done
     )
     if not folds:
-        return whole.estimator, UNCALIBRATED
+        return whole, UNCALIBRATED
     classes, truth = np.unique(records.fault, return_inverse=True)
     probabilities = np.zeros((len(truth), len(classes)))
-    for (_, test), fold in zip(splits, folds, strict=True):
-        probabilities[test] = fold.probabilities
+    for (_, test), (_, of_tested) in zip(splits, folds, strict=True):
+        probabilities[test] = of_tested
     calibration = fit_calibration(probabilities, truth, by)
-    return whole.estimator, calibration.model_copy(update={"impulsive": _impulsive(records)})
+    return whole, calibration.model_copy(update={"impulsive": _impulsive(records)})
 
 
 def _impulsive(records: Records) -> float | None:

@@ -6,7 +6,7 @@ its own seed and predicts in one thread, so its result does not depend on the nu
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -21,13 +21,6 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 
-class Fit(NamedTuple):
-    """A fitted estimator, and its probabilities of the tested records, shape (record, class); empty if none is tested."""
-
-    estimator: Estimator
-    probabilities: FloatArray
-
-
 def fits(
     features: "DataFrame",
     labels: IntArray,
@@ -37,7 +30,7 @@ def fits(
     *,
     workers: int = 1,
     done: Callable[[int], None] = lambda _: None,
-) -> list[Fit]:
+) -> list[tuple[Estimator, FloatArray]]:
     """Fit a classifier to the training records of each split, and predict the tested ones.
 
     Parameters
@@ -56,9 +49,13 @@ def fits(
         Number of fits at a time; each needs its own copy of the training records. At most ``MOST_THREADS`` are used.
     done
         Called with 1 after each fit.
+
+    Returns
+    -------
+    Fitted estimator of each split, and its probabilities of the tested records, shape (record, class); empty if none is tested.
     """
     workers = min(workers, MOST_THREADS, len(splits)) if isinstance(estimator, str) else 1
-    by_number: dict[int, Fit] = {}
+    by_number: dict[int, tuple[Estimator, FloatArray]] = {}
     fit_one = partial(_fit, features, labels, estimator, seed)
     # matrices of some thousand rows: the threads of BLAS take three times the processor time and no less of the clock
     with threadpool_limits(1 if isinstance(estimator, str) else None, "blas"):
@@ -70,11 +67,11 @@ def fits(
 
 def _fit(
     features: "DataFrame", labels: IntArray, estimator: str | Maker, seed: int, numbered: tuple[int, Split]
-) -> Iterator[tuple[int, Fit]]:
+) -> Iterator[tuple[int, tuple[Estimator, FloatArray]]]:
     number, (train, test) = numbered
     # a classifier of the user may write into its rows, so it gets a copy
     rows = features if len(train) == len(labels) and isinstance(estimator, str) else features.take(train)
     fitted = make_estimator(estimator, seed).fit(rows, labels[train])
     del rows
     none = np.zeros((0, len(fitted.classes_)))
-    yield number, Fit(fitted, class_probabilities(fitted, features.take(test)) if len(test) else none)
+    yield number, (fitted, class_probabilities(fitted, features.take(test)) if len(test) else none)

@@ -33,9 +33,9 @@ def permutation_importance(
     columns = records.features.columns
     losses = np.empty((len(splits), len(parts)))
     fitted = fits(records.features, records.fault, estimator, splits, seed, workers=workers)
-    for fold, ((_, test), fit) in enumerate(zip(splits, fitted, strict=True)):
-        rows, truth, classes = records.features.take(test).to_numpy(), records.fault[test], fit.estimator.classes_
-        whole = _balanced_accuracy(truth, classes[fit.probabilities.argmax(axis=1)])
+    for fold, ((_, test), (fitted_one, of_tested)) in enumerate(zip(splits, fitted, strict=True)):
+        rows, truth, classes = records.features.take(test).to_numpy(), records.fault[test], fitted_one.classes_
+        whole = _balanced_accuracy(truth, classes[of_tested.argmax(axis=1)])
         together = max(1, PREDICTED_ROWS // len(rows))
         for first in range(0, len(parts), together):
             chosen = parts[first : first + together]
@@ -43,7 +43,7 @@ def permutation_importance(
             for table, part in zip(changed, chosen, strict=True):
                 table[:, part] = rng.permutation(rows[:, part])
             exchanged = pd.DataFrame(changed.reshape(-1, len(columns)), columns=columns)
-            told = classes[class_probabilities(fit.estimator, exchanged).argmax(axis=1)]
+            told = classes[class_probabilities(fitted_one, exchanged).argmax(axis=1)]
             losses[fold, first : first + together] = whole - _balanced_accuracy(truth, told.reshape(len(chosen), -1))
     return losses.mean(axis=0)
 

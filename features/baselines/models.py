@@ -209,8 +209,8 @@ class Model(Shown):
         table, healthy = self._tables(data, reference)
         if healthy is None:
             return self._scores(table, None, seed)
-        chosen = choose_reference(table, healthy, self.features)
-        return replace(self._scores(chosen.table, chosen.reference, seed), reference=chosen.sentence)
+        tested, healthy, sentence = choose_reference(table, healthy, self.features)
+        return replace(self._scores(tested, healthy, seed), reference=sentence)
 
     def _scores(self, data: xr.Dataset | Waveforms, reference: xr.Dataset | None, seed: int) -> Scores:
         model = self if isinstance(data, Waveforms) else suited(self, durations_of(data))

@@ -1,11 +1,10 @@
 """Reference of a test: the healthy records that tested records are compared with, and none of which is tested.
 
-``table, reference -> healthy records, without double use -> Compared``
+``table, reference -> healthy records, without double use -> records to test, healthy records, a sentence``
 """
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -24,26 +23,9 @@ SAME_BEARING = 0.02  # relative: orders within it are those of one bearing
 OTHER_BEARING = "No bearing of the reference has the fault orders of a tested one: check that it is of the same rig."
 
 
-class Compared(NamedTuple):
-    """Records to test, the healthy records of their reference, and the number of records that are left out."""
-
-    table: xr.Dataset
-    reference: xr.Dataset
-    left_out: int
-
-    @property
-    def sentence(self) -> str:
-        """What is compared with what, for people."""
-        count = self.reference.sizes["record"]
-        whose = "the healthy records of their rig" if by_rig(self.table, self.reference) else "all healthy records"
-        left = f"; {self.left_out:,} tested records that belong to it are left out" if self.left_out else ""
-        apart = _apart_in_speed(self.table, self.reference)
-        speed = f", those nearest in speed, which are up to {100 * apart:.0f} % away" if apart > SAME_SPEED else ""
-        other = "" if _share_a_bearing(self.table, self.reference) else f" {OTHER_BEARING}"
-        return f"Records are compared with {whose} in the reference, which has {count:,}{speed}{left}.{other}"
-
-
-def choose_reference(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]) -> Compared:
+def choose_reference(
+    table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]
+) -> tuple[xr.Dataset, xr.Dataset, str]:
     """Choose the records to test and their healthy records, so that no tested record is part of the reference.
 
     If both tables hold the same records, the first healthy recording of each rig is the reference, and rigs without one are not tested.
@@ -55,6 +37,10 @@ def choose_reference(table: xr.Dataset, reference: xr.Dataset, features: Sequenc
         Feature tables; order of their records has no effect on the choice.
     features
         Names of the features that identify a record.
+
+    Returns
+    -------
+    Records to test, their healthy records, and a sentence for people: which records are compared with which.
 
     Raises
     ------
@@ -74,7 +60,18 @@ def choose_reference(table: xr.Dataset, reference: xr.Dataset, features: Sequenc
             f"{title_of(reference)}: every tested record belongs to the reference; give another recording as reference."
         )
         raise CorpusError(message)
-    return Compared(table.isel(record=tested), healthy, int((~tested).sum()))
+    chosen = table.isel(record=tested)
+    return chosen, healthy, _sentence(chosen, healthy, int((~tested).sum()))
+
+
+def _sentence(table: xr.Dataset, reference: xr.Dataset, left_out: int) -> str:
+    count = reference.sizes["record"]
+    whose = "the healthy records of their rig" if by_rig(table, reference) else "all healthy records"
+    left = f"; {left_out:,} tested records that belong to it are left out" if left_out else ""
+    apart = _apart_in_speed(table, reference)
+    speed = f", those nearest in speed, which are up to {100 * apart:.0f} % away" if apart > SAME_SPEED else ""
+    other = "" if _share_a_bearing(table, reference) else f" {OTHER_BEARING}"
+    return f"Records are compared with {whose} in the reference, which has {count:,}{speed}{left}.{other}"
 
 
 def _apart_in_speed(table: xr.Dataset, reference: xr.Dataset) -> float:

@@ -10,7 +10,6 @@ from a bootstrap [1]_ over specimens, because the records of one specimen are st
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import rankdata
@@ -133,14 +132,6 @@ class Scores(Shown):
         }
 
 
-class Figures(NamedTuple):
-    """Three figures of one confusion matrix."""
-
-    balanced_accuracy: float
-    macro_f1: float
-    accuracy: float
-
-
 def score(records: Records, predictions: Predictions, seed: int = 0) -> Scores:
     """Scores by record and by recording.
 
@@ -256,17 +247,14 @@ def confusion_matrix(fault: IntArray, predicted: IntArray, rows: IntArray, colum
     return matrix
 
 
-def figures(matrix: IntArray, rows: IntArray, columns: IntArray) -> Figures:
+def figures(matrix: IntArray, rows: IntArray, columns: IntArray) -> tuple[float, float, float]:
     """Mean recall, mean F1 and accuracy over the classes of ``rows``; a class that is never predicted has F1 = 0."""
     same = rows[:, None] == columns
     hits = (matrix * same).sum(axis=1)
     predicted = same @ matrix.sum(axis=0)
     tested = matrix.sum(axis=1)
-    return Figures(
-        balanced_accuracy=float(np.mean(hits / tested)),
-        macro_f1=float(np.mean(2 * hits / (tested + predicted))),
-        accuracy=float(hits.sum() / tested.sum()),
-    )
+    f1 = 2 * hits / (tested + predicted)
+    return float(np.mean(hits / tested)), float(np.mean(f1)), float(hits.sum() / tested.sum())
 
 
 def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> Interval | None:

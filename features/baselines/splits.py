@@ -128,9 +128,9 @@ def score_splits(
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []
     fitted = fits(records.features, labels, estimator, splits, seed, workers=workers)
-    for (_, test), fold in zip(splits, fitted, strict=True):
-        probabilities[np.ix_(test, fold.estimator.classes_)] = fold.probabilities
-        classes = np.union1d(classes, fold.estimator.classes_)
+    for (_, test), (fold, of_tested) in zip(splits, fitted, strict=True):
+        probabilities[np.ix_(test, fold.classes_)] = of_tested
+        classes = np.union1d(classes, fold.classes_)
         folds.append(_balanced_accuracy(labels[test], probabilities[test]))
     tested = np.sort(np.concatenate([test for _, test in splits]))
     chosen = records._replace(fault=labels).at(tested)
@@ -156,4 +156,4 @@ def _pool(
 def _balanced_accuracy(fault: IntArray, probabilities: FloatArray) -> float:
     present, every = np.unique(fault), np.arange(len(FAULTS))
     matrix = confusion_matrix(fault, probabilities.argmax(axis=1), present, every)
-    return figures(matrix, present, every).balanced_accuracy
+    return figures(matrix, present, every)[0]

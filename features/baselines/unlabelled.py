@@ -51,12 +51,12 @@ def unlabelled_answers(table: xr.Dataset, model: Model, reference: xr.Dataset | 
     CorpusError
         As ``evaluate``.
     """
-    chosen = None if reference is None else choose_reference(table, reference, model.features)
-    tested = table if chosen is None else chosen.table
-    unknown = tested.isel(record=tested["fault"].values == UNKNOWN_CODE)
+    if reference is not None:
+        table, reference, _ = choose_reference(table, reference, model.features)
+    unknown = table.isel(record=table["fault"].values == UNKNOWN_CODE)
     if not unknown.sizes["record"]:
         return ()
-    predictions = predict(unknown, model, None if chosen is None else chosen.reference)
+    predictions = predict(unknown, model, reference)
     whole, numbers = predictions.by_recording or predictions, predictions.recording
     _, first = np.unique(numbers, return_index=True)
     return tuple(_answer(unknown, whole, numbers, row) for row in sorted(first))

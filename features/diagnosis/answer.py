@@ -24,7 +24,7 @@ from features.diagnosis.evidence import Line, find_evidence
 from features.diagnosis.levels import levels_of
 from features.diagnosis.quality import ENOUGH, Quality, quality_of
 from features.diagnosis.result import LONGEST, Diagnosis, Recorded
-from features.diagnosis.search import Found, Given, Pair, find_pairs, mean_spectra, strange_comb
+from features.diagnosis.search import Given, Pair, find_pairs, mean_spectra, strange_comb
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.diagnosis.verdict import judge
 from features.diagnosis.wording import (
@@ -97,10 +97,10 @@ def diagnose_recording(
         return _with_levels(_useless(given, model, quality), shown)
     references = [_reference(one, recording, used, given) for one in healthy]
     spectra = mean_spectra(list(used.signals.values()), used.fs, given)
-    found = find_pairs(spectra, given)
-    judged = [_judge(used, pair, model, references) for pair in found.pairs]
+    pairs, elsewhere = find_pairs(spectra, given)
+    judged = [_judge(used, pair, model, references) for pair in pairs]
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
-    diagnosis = _conclude(judged, found, given, strange)
+    diagnosis = _conclude(judged, elsewhere, given, strange)
     advice = diagnosis.advice + (
         _advice(used, bool(healthy)) if diagnosis.verdict in (UNSURE, DAMAGED, HEALTHY) else ()
     )
@@ -256,13 +256,13 @@ def _advice(recording: Recorded, compared: bool) -> tuple[str, ...]:
     return tuple(([longer] if duration < ENOUGH else []) + ([] if compared else [reference]))
 
 
-def _conclude(judged: list[Judged], found: Found, given: Given, strange: float | None) -> Diagnosis:
+def _conclude(judged: list[Judged], elsewhere: tuple[Pair, ...], given: Given, strange: float | None) -> Diagnosis:
     """Diagnosis at the first pair, "unsure" if others give another class or if a strong comb is not explained."""
     first = judged[0]
     why = first.why
     advice: tuple[str, ...] = ("Measure the speed during the recording, and check the bearing designation.",)
-    if found.elsewhere or strange is not None:
-        why = unexplained(first.pair, found.elsewhere, strange)
+    if elsewhere or strange is not None:
+        why = unexplained(first.pair, elsewhere, strange)
         advice = (
             "Measure the speed, check the bearing, and give them as ranges or alternatives if they are not known.",
         )
@@ -290,8 +290,8 @@ def _conclude(judged: list[Judged], found: Found, given: Given, strange: float |
         sentence=sentence,
         advice=advice,
         warnings=speed_warning(first.pair, given),
-        explanations=found.pairs,
-        elsewhere=found.elsewhere,
+        explanations=tuple(one.pair for one in judged),
+        elsewhere=elsewhere,
         windows=first.windows,
         spectrum=_shown_spectrum(first.spectra, first.lines),
     )

@@ -51,8 +51,7 @@ def count_verdicts(
     """
     tested = table.assign(row=("record", np.arange(table.sizes["record"])), rate=("record", rates_to_use(table)))
     if reference is not None:
-        compared = choose_reference(tested, reference, model.features)
-        tested, reference = compared.table, compared.reference
+        tested, reference, _ = choose_reference(tested, reference, model.features)
     tested = tested.isel(record=tested["fault"].values != UNKNOWN_CODE)
     predicted = predict(tested, model, reference)
     whole = predicted.by_recording or predicted

@@ -95,13 +95,6 @@ class Pair(NamedTuple):
     alike: tuple[str, ...] = ()
 
 
-class Found(NamedTuple):
-    """Pairs within those given, best first, and pairs elsewhere that explain a strong comb that they do not explain."""
-
-    pairs: tuple[Pair, ...]
-    elsewhere: tuple[Pair, ...]
-
-
 class LevelSpectra(NamedTuple):
     """Mean log level over the floor of envelope and signal, shape (frequency,), resolution [Hz] and number of windows."""
 
@@ -167,8 +160,10 @@ class _Grid(NamedTuple):
         )
 
 
-def find_pairs(spectra: LevelSpectra, given: Given) -> Found:
-    """Pairs that explain the lines of a recording.
+def find_pairs(spectra: LevelSpectra, given: Given) -> tuple[tuple[Pair, ...], tuple[Pair, ...]]:
+    """Pairs within those given that explain the lines of a recording, best first, and pairs elsewhere that explain what these do not.
+
+    Those elsewhere explain a strong comb.
 
     With one bearing and one speed, that pair is the answer unless the lines clearly tell another speed within 8 %: in its
     place if the shaft tells so too, and else beside it. Otherwise all pairs are named that come within 1.5 standard
@@ -185,7 +180,7 @@ def find_pairs(spectra: LevelSpectra, given: Given) -> Found:
     own = max(evidence[names.index(pair.bearing), grid.near(pair.rate)].max() for pair in pairs)
     strong = np.where(grid.combs.max(axis=1) > STRONG_COMB, evidence, -np.inf)
     elsewhere = grid.best(strong) if strong.max() > own + CLEAR_MARGIN else []
-    return Found(tuple(pairs), tuple(elsewhere))
+    return tuple(pairs), tuple(elsewhere)
 
 
 def _corrected(grid: _Grid, best: Pair, *, clear: bool) -> list[Pair]:

@@ -5,7 +5,7 @@ with all numbers. Names of folders are escaped by the page and not drawn.
 """
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -21,27 +21,6 @@ from gen.corpus import FAULTS, make_result_folder, write_numbers, write_text_dur
 from gen.corpus.fault_classes import CLASSES
 
 TYPICAL = "kurtosis"  # an example has the median of this measure, which every class has
-
-
-class Row(NamedTuple):
-    """Row of the table of a class: a measure, its AUC, that of each real set against the others, and its quantiles."""
-
-    measure: Measure
-    auc: str
-    yardstick: list[str]
-    synthetic: list[str]
-    real: list[str]
-
-
-class ClassPart(NamedTuple):
-    """Part of the page about one class."""
-
-    fault: str
-    colour: str
-    counts: list[tuple[str, int]]
-    rows: list[Row]
-    sides: bytes
-    distributions: bytes
 
 
 def write_comparison(comparison: Comparison, output: Path | str) -> Path:
@@ -78,7 +57,8 @@ def _letters(comparison: Comparison) -> dict[str, str]:
     return {comparison.synthetic.name: "synthetic"} | real
 
 
-def _part(comparison: Comparison, fault: str) -> ClassPart:
+def _part(comparison: Comparison, fault: str) -> dict[str, Any]:
+    """Variables of the template about one class."""
     letters = _letters(comparison)
     sets = [windows for windows in (comparison.synthetic, *comparison.real) if _of_class(windows, fault).size]
     measures = [measure for measure in MEASURES if measure.name in comparison.auc[fault]]
@@ -90,14 +70,14 @@ def _part(comparison: Comparison, fault: str) -> ClassPart:
     drawn = {label: columns for label, columns in values.items() if any(column.size for column in columns.values())}
     numbers = {name: number for number, name in enumerate(letters)}
     shown = {numbers[w.name]: _shown(w, fault, letters[w.name], comparison) for w in sets}
-    return ClassPart(
-        fault=fault,
-        colour=CLASSES[fault].colour,
-        counts=[(windows.name, len(_of_class(windows, fault))) for windows in sets],
-        rows=[_row(comparison, fault, measure) for measure in measures],
-        sides=picture(draw_sides(shown, comparison.common.top), "svg"),
-        distributions=picture(draw_distributions(drawn, list(letters.values())), "svg"),
-    )
+    return {
+        "fault": fault,
+        "colour": CLASSES[fault].colour,
+        "counts": [(windows.name, len(_of_class(windows, fault))) for windows in sets],
+        "rows": [_row(comparison, fault, measure) for measure in measures],
+        "sides": picture(draw_sides(shown, comparison.common.top), "svg"),
+        "distributions": picture(draw_distributions(drawn, list(letters.values())), "svg"),
+    }
 
 
 def _of_class(windows: Windows, fault: str) -> np.ndarray:
@@ -115,15 +95,15 @@ def _shown(windows: Windows, fault: str, title: str, comparison: Comparison) -> 
     return DrawnRecord(f"{title}, record {record}", signal, known["sample_rate"], known["shaft_rate"], orders, fault)
 
 
-def _row(comparison: Comparison, fault: str, measure: Measure) -> Row:
+def _row(comparison: Comparison, fault: str, measure: Measure) -> tuple[Measure, str, list[str], list[str], list[str]]:
+    """Measure, its AUC, that of each real set against the others, and its quantiles in the synthetic set and in the real ones."""
     quantiles = comparison.quantiles[fault][measure.name]
     held = [table.get(fault, {}).get(measure.name) for table in comparison.yardstick.values()]
-    return Row(
-        measure,
-        _two_digits(comparison.auc[fault][measure.name]),
-        [_two_digits(value) for value in held],
-        *([three_digits(value) for value in quantiles.get(name, [])] for name in (comparison.synthetic.name, "real")),
+    synthetic, real = (
+        [three_digits(value) for value in quantiles.get(name, [])] for name in (comparison.synthetic.name, "real")
     )
+    auc = _two_digits(comparison.auc[fault][measure.name])
+    return measure, auc, [_two_digits(value) for value in held], synthetic, real
 
 
 def _two_digits(value: float | None) -> str:

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -34,15 +33,6 @@ from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT
 
 LOWEST_DB, MARGIN_DB = -5.0, 4.0  # ends of the axis of levels: below the floor, and above the highest
 DRAWN_HARMONICS = 3  # of each family
-
-
-class Bar(NamedTuple):
-    """Bar of a probability."""
-
-    name: str
-    probability: float
-    text: str
-    colour: str
 
 
 def write_diagnosis(
@@ -97,12 +87,10 @@ def write_diagnosis(
     write_text_durably(page, Path(output))
 
 
-def _bars(probabilities: Mapping[str, float]) -> list[Bar]:
+def _bars(probabilities: Mapping[str, float]) -> list[tuple[str, float, str, str]]:
+    """Class, probability, its text, and colour."""
     ranked = sorted(probabilities.items(), key=lambda item: -item[1])
-    return [
-        Bar(fault, probability, probability_in_words(probability), CLASSES[fault].colour)
-        for fault, probability in ranked
-    ]
+    return [(fault, share, probability_in_words(share), CLASSES[fault].colour) for fault, share in ranked]
 
 
 def _level_row(levels: Levels, *, several: bool) -> tuple[str, list[str]]:

@@ -1,7 +1,5 @@
 """An example of each class of a corpus as a picture, and all of them on one."""
 
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
 from matplotlib import rc_context
@@ -24,17 +22,13 @@ from gen.corpus.fault_classes import COMBS, LOOKS
 CANDIDATES = 15  # records of a class among which its example is chosen
 
 
-class Example(NamedTuple):
-    """A drawn record of one class with its caption; the image is empty if no record can be drawn."""
-
-    fault: str
-    caption: str
-    image: bytes
-
-
-def draw_examples(corpus: xr.Dataset) -> list[Example]:
-    """Example of each class that the corpus contains."""
-    return [_example(corpus, code) for code in np.unique(corpus["fault"].values)]
+def draw_examples(corpus: xr.Dataset) -> list[tuple[str, str, bytes]]:
+    """Each class that the corpus contains, with the caption and the picture of an example, which is empty if no record can be drawn."""
+    chosen = {FAULT_NAMES[code]: chosen_example(corpus, code) for code in np.unique(corpus["fault"].values)}
+    return [
+        (fault, caption, b"" if shown is None else picture(draw_record(shown), "svg"))
+        for fault, (shown, caption) in chosen.items()
+    ]
 
 
 @rc_context(STYLE)
@@ -57,11 +51,6 @@ def draw_overview(corpus: xr.Dataset) -> Figure:
         waveform.set_title(shown.title, color=LOOKS[shown.fault].colour, fontweight="bold")
         envelope.set_title("")
     return figure
-
-
-def _example(corpus: xr.Dataset, code: int) -> Example:
-    shown, caption = chosen_example(corpus, code)
-    return Example(FAULT_NAMES[code], caption, b"" if shown is None else picture(draw_record(shown), "svg"))
 
 
 def chosen_example(corpus: xr.Dataset, code: int) -> tuple[DrawnRecord | None, str]:

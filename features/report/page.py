@@ -6,7 +6,7 @@ includes every picture. Corpora come from unknown sources: their text is escaped
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,7 +18,7 @@ from features.baselines.tracks import NOVELTY
 from features.report.curves import draw_curve, draw_detection, draw_reliability, draw_roc
 from features.report.examples import draw_examples
 from features.report.pictures import picture
-from features.report.summaries import Quantity, draw_content, draw_scores
+from features.report.summaries import draw_content, draw_scores
 from features.report.templates import template
 from gen.corpus import (
     FAULTS,
@@ -46,14 +46,6 @@ QUANTITIES = (
     ("snr", "signal over background [dB]", 1.0),
     ("fault_snr", "fault over all else [dB]", 1.0),
 )
-
-
-class Panel(NamedTuple):
-    """A small figure beside others: its alternative text, the figure, and its caption."""
-
-    alt: str
-    image: bytes
-    caption: str
 
 
 def write_report(corpus: Path | str, results: Results, output: Path | str) -> Path:
@@ -109,9 +101,9 @@ def _content(corpus: xr.Dataset) -> dict[str, Any]:
     }
 
 
-def quantities(corpus: xr.Dataset) -> list[Quantity]:
-    """Quantities whose distributions are drawn: speed, load, severities and levels."""
-    return [Quantity(label, _of_faults(name, corpus) * factor) for name, label, factor in QUANTITIES if name in corpus]
+def quantities(corpus: xr.Dataset) -> dict[str, np.ndarray]:
+    """Quantities whose distributions are drawn, by label: speed, load, severities and levels."""
+    return {label: _of_faults(name, corpus) * factor for name, label, factor in QUANTITIES if name in corpus}
 
 
 def _of_faults(name: str, corpus: xr.Dataset) -> np.ndarray:
@@ -144,8 +136,8 @@ def _scores(results: Results) -> dict[str, Any]:
     }
 
 
-def _panels(scores: Scores) -> list[Panel]:
-    """Detection by width and against false alarms, and reliability, as far as they are known."""
+def _panels(scores: Scores) -> list[tuple[str, bytes, str]]:
+    """Small figures with alternative text and caption: detection by width and against false alarms, and reliability, as far as known."""
     panels = []
     if scores.detection:
         caption = (
@@ -153,21 +145,19 @@ def _panels(scores: Scores) -> list[Panel]:
             "intervals, for which a specimen counts once, however many records it has."
         )
         drawn = draw_detection(scores.detection, scores.false_alarms)
-        panels.append(Panel("Share of detected faults by their width", picture(drawn, "svg"), caption))
+        panels.append(("Share of detected faults by their width", picture(drawn, "svg"), caption))
     if scores.roc is not None:
         caption = (
             f"Share of the faulty records that are detected against that of false alarms, for all thresholds. The area "
             f"under the curve is {scores.roc.area:.3f} (95 % interval {interval_text(scores.roc.interval)}); 1 is perfect, "
             f"and chance, dashed, is 0.5. The band, where it is known, is the 95 % interval over specimens."
         )
-        panels.append(
-            Panel("Share of detected faults against false alarms", picture(draw_roc(scores.roc), "svg"), caption)
-        )
+        panels.append(("Share of detected faults against false alarms", picture(draw_roc(scores.roc), "svg"), caption))
     caption = (
         f"Share of right answers of records in bins of their largest probability. On the dashed line, probabilities are "
         f"right; below it, they are too high. The mean distance, the calibration error, is {scores.ece:.3f}."
     )
-    return [*panels, Panel("Accuracy against largest probability", picture(draw_reliability(scores), "svg"), caption)]
+    return [*panels, ("Accuracy against largest probability", picture(draw_reliability(scores), "svg"), caption)]
 
 
 def _bars(importance: Mapping[str, float]) -> list[tuple[str, float]]:

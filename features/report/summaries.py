@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib import rc_context
@@ -21,15 +21,8 @@ if TYPE_CHECKING:
 TEST_MARKERS = ((VERMILION, "s"), ("#009E73", "^"), ("#CC79A7", "v"), ("#E69F00", "P"))
 
 
-class Quantity(NamedTuple):
-    """Values of a per-record variable, in the unit of its label, shape (record,)."""
-
-    label: str
-    values: FloatArray
-
-
 @rc_context(STYLE)
-def draw_content(fault: IntArray, rig: IntArray, quantities: Sequence[Quantity]) -> Figure:
+def draw_content(fault: IntArray, rig: IntArray, quantities: Mapping[str, FloatArray]) -> Figure:
     """Records per rig, and histograms of the quantities that vary, stacked by class.
 
     Parameters
@@ -37,16 +30,17 @@ def draw_content(fault: IntArray, rig: IntArray, quantities: Sequence[Quantity])
     fault, rig
         Class and rig number of each record, shape (record,).
     quantities
-        Each gets a histogram if it varies; values that are not finite are omitted.
+        Values by label, shape (record,). Each gets a histogram if it varies; values that are not finite are omitted.
     """
-    quantities = [quantity for quantity in quantities if _varies(quantity.values)]
+    quantities = {label: values for label, values in quantities.items() if _varies(values)}
     rows = -(-(1 + len(quantities)) // 2)
     figure = Figure(figsize=(WIDTH, 0.4 + 1.5 * rows), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False).ravel()
     present = np.unique(fault)
     _draw_rigs(panels[0], fault, rig, present)
-    for axes, quantity in zip(panels[1:], quantities, strict=False):
-        _draw_distribution(axes, fault, quantity, present)
+    for axes, (label, values) in zip(panels[1:], quantities.items(), strict=False):
+        axes.set(xlabel=label, ylabel="records")
+        _draw_distribution(axes, fault, values, present)
     for axes in panels[1 + len(quantities) :]:
         axes.remove()
     handles, labels = panels[0].get_legend_handles_labels()
@@ -71,9 +65,9 @@ def _varies(values: FloatArray) -> bool:
     return finite.size > 0 and bool(finite.min() < finite.max())
 
 
-def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present: IntArray) -> None:
-    finite = np.isfinite(quantity.values)
-    values = quantity.values[finite]
+def _draw_distribution(axes: Axes, fault: IntArray, values: FloatArray, present: IntArray) -> None:
+    finite = np.isfinite(values)
+    values = values[finite]
     wide = values.min() > 0 and values.max() > 10 * values.min()
     spaced = np.geomspace if wide else np.linspace
     edges = spaced(values.min(), values.max(), 25)
@@ -84,7 +78,6 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
         histtype="stepfilled",
         color=[LOOKS[FAULT_NAMES[c]].colour for c in present],
     )
-    axes.set(xlabel=quantity.label, ylabel="records")
     axes.locator_params(axis="x", nbins=5)
     if wide:
         axes.set_xscale("log")

@@ -51,7 +51,7 @@ def test_unknown_is_a_value_of_the_format_and_no_class(corpus):
         assert opened.fault.flag_values.tolist() == [*FAULT_NAMES]
         assert opened.n_spalls.values[-4:].tolist() == [-1] * 4
         assert np.isnan(opened.width.values[-4:]).all()
-        assert [example.fault for example in draw_examples(opened)] == ["healthy", "inner", "unknown"]
+        assert [fault for fault, _, _ in draw_examples(opened)] == ["healthy", "inner", "unknown"]
     assert describe(corpus)["classes"] == {"healthy": 6, "inner": 6, "unknown": 4}
     assert "| unknown | 4 | 2 |" in (corpus / "README.md").read_text()
 

@@ -9,7 +9,6 @@ from features.diagnosis import Given, Pair, Recorded
 from features.diagnosis.answer import Judged, _conclude, _usable
 from features.diagnosis.evidence import Line
 from features.diagnosis.result import LONGEST
-from features.diagnosis.search import Found
 from features.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
 from features.diagnosis.wording import MISSED, answer_in_words, missed_faults
 from features.table.indicators import Orders
@@ -160,9 +159,8 @@ def pair(rate, bearing="6205"):
 
 
 def concluded(*names, elsewhere=(), strange=None, given=GIVEN):
-    pairs = [pair(RATE + number) for number in range(len(names))]
-    each = [judged(name, one) for name, one in zip(names, pairs, strict=True)]
-    return _conclude(each, Found(tuple(pairs), elsewhere), given, strange)
+    each = [judged(name, pair(RATE + number)) for number, name in enumerate(names)]
+    return _conclude(each, elsewhere, given, strange)
 
 
 def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():

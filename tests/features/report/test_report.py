@@ -202,11 +202,11 @@ def test_the_example_of_a_class_is_the_record_of_median_level(corpus, monkeypatc
     drawn = []
     monkeypatch.setattr(examples, "draw_record", lambda shown: drawn.append(shown.title) or draw_record(shown))
     with open_corpus(corpus) as opened:
-        healthy = examples.draw_examples(opened)[0]
+        fault, caption, _ = examples.draw_examples(opened)[0]
     assert drawn[0].startswith("Record 12: ")
-    assert healthy.fault == "healthy"
-    assert healthy.caption.startswith("Specimen 4 of rig 1, ")
-    assert healthy.caption.endswith("; the median of 6 records by the level of the fault lines.")
+    assert fault == "healthy"
+    assert caption.startswith("Specimen 4 of rig 1, ")
+    assert caption.endswith("; the median of 6 records by the level of the fault lines.")
 
 
 def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, page, folder):
