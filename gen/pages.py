@@ -9,7 +9,7 @@ import textwrap
 from pathlib import Path
 
 from gen.corpus import format_page
-from gen.drawing.distributions import KINDS
+from gen.drawing import KINDS
 from gen.mechanisms.measuring_chain import LABELS
 from gen.physics.catalogue import catalogue_page
 from gen.recipe.finding import recipe_purpose, shipped_recipes

@@ -8,16 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from gen.corpus.fault_classes import FAULT_NAMES, UNKNOWN, UNKNOWN_CODE
+from gen.corpus.fault_classes import FAULT_NAMES, UNKNOWN
 from gen.corpus.schema import DRAWS, Variable, class_names
 
 # 20 log10 of the ratio of two rms; CF has no unit for levels
 _SNR = "bearing over background or rounding of the converter in decibels re 1, NaN without either or in silence"
 _FAULT_SNR = "what the fault adds over all else of the record in decibels re 1, NaN without a fault or if not known"
-
-_CONDITIONS = ("sound", "unbalance", "bent_shaft", "misalignment", "looseness", "rub", "belt")
-MACHINE_CONDITIONS: Mapping[int, str] = {**dict(enumerate(_CONDITIONS)), UNKNOWN_CODE: UNKNOWN}
-"""Classes of ``machine_condition``."""
 
 UNJUDGED = 2
 """Value of ``detectable`` of a fault that was not judged."""
@@ -49,8 +45,6 @@ SIMULATED = (
     Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance as built, negative if preloaded"),
     Variable("operating_clearance", "f8", "m", "latent", "diametral clearance in operation: warm, oiled, under axial load"),
     Variable("clipped", "i4", "1", "latent", "samples at the limits of the converter"),
-    Variable("gear_mesh", "i4", "1", "latent", "teeth of the gear on the shaft, the order of its mesh line; 0 without a gear"),
-    Variable("machine_condition", "i1", "1", "label", "condition of the machine, whatever that of its bearing", MACHINE_CONDITIONS),
     Variable("pair", "i4", "1", "provenance", "number of the group of records that differ in their fault's severity alone, -1 without"),
     Variable("rung", "i4", "1", "provenance", "place of the severity in corpus.rungs of the recipe, -1 outside a group"),
     Variable("oversampling", "i4", "1", "provenance", "integration steps per sample"),

@@ -5,19 +5,34 @@ section are drawn.
 """
 
 import functools
+import math
 from collections.abc import Callable, Collection, Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import AfterValidator
 
 from gen.drawing.distributions import Grid, interval, is_within
 from gen.drawing.section import Section, quantities
 from gen.support.errors import RecipeError
-from gen.support.units import split_unit
+from gen.support.units import decibel_to_ratio, split_unit
 
-Drawn = dict[str, float]
-"""Values drawn from one recipe section, by the key without its unit."""
+
+def drawn_values(value: Any) -> Any:
+    """Drawn values that may come from a file, lists as tuples; ValueError if one is no number, no text and no drawn section."""
+    match value:
+        case dict():
+            return {str(key): drawn_values(item) for key, item in value.items()}
+        case list() | tuple():
+            return tuple(map(drawn_values, value))
+        case int() | float() | str() | None if not isinstance(value, bool):
+            return value
+    raise ValueError(f"{type(value).__name__} is neither a number nor a drawn section")
+
+
+Drawn = Annotated[dict[str, Any], AfterValidator(drawn_values)]
+"""Values drawn from one recipe section, by the key without its unit: numbers, and drawn sections within it."""
 Derived = Callable[[Callable[[str], float]], float]
 """Value of a derived quantity, from a function that gives the values of the section by key [SI]."""
 Known = Mapping[str, float | Derived]
@@ -65,6 +80,14 @@ class Draws:
     def value(self, distribution: Any) -> float:
         """Next value of a distribution, in the unit of the recipe key; of a share, the share."""
         return self.combination.value(distribution, self.u())
+
+    def ratio(self, level: Any) -> float:
+        """Next value of the distribution of a level in decibels, as a ratio of amplitudes [1]."""
+        return decibel_to_ratio(self.value(level))
+
+    def angle(self) -> float:
+        """Next angle, anywhere in a turn [rad]."""
+        return 2 * math.pi * self.u()
 
     def section(self, section: Section, known: Known | None = None, keys: Collection[str] | None = None) -> Drawn:
         """One value of every distribution of a section, or of some ``keys`` of it, in SI units, by the key without its unit.

@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, FAULTS, OTHER_BEARING, SIMULATED, SPLITS, identity, make_dataset
 from gen.corpus.fault_classes import UNKNOWN_CODE
-from gen.corpus.simulated import MACHINE_CONDITIONS
+from gen.drawing import Drawn
 from gen.measurement.measure import Measured
-from gen.mechanisms.measuring_chain import LABELS
+from gen.mechanisms.background.section import LABELS as OF_SOURCES
+from gen.mechanisms.background.section import locked_of
+from gen.mechanisms.measuring_chain import LABELS as OF_CHAIN
 from gen.physics.bearing import FaultOrders, orders
 from gen.scenarios import Scenario, common_settings, scenario_texts
 from gen.simulation.simulate import Response
@@ -28,7 +30,7 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
         else:
             rows.append({**_drawn(scenario), **truth._asdict()})
     columns: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
-    columns |= {label.name: [found.get(label.name, 0) for found in measured.chain_labels] for label in LABELS}
+    columns |= {label.name: [found.get(label.name, 0) for found in measured.chain_labels] for label in OF_CHAIN}
     columns |= {
         "clipped": measured.clipped,
         "snr": measured.snr,
@@ -50,7 +52,7 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
         settings.sample_rate,
         settings.channels,
         columns,
-        extra=SIMULATED + LABELS + (OTHER_BEARING if two_bearings else ()),
+        extra=SIMULATED + OF_SOURCES + OF_CHAIN + (OTHER_BEARING if two_bearings else ()),
         counts_per_unit=measured.counts_per_unit,
         attributes={
             "title": f"Records of recipe {settings.recipe}",
@@ -58,9 +60,6 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
             "source": "simulation: Hertz contact shaft-bearing model, classical Runge-Kutta",
         },
     )
-
-
-_CONDITION_CODES = {name: code for code, name in MACHINE_CONDITIONS.items()}
 
 
 def _of_other(scenario: Scenario, truth: Truth | None) -> dict[str, Any]:
@@ -79,10 +78,18 @@ def _of_other(scenario: Scenario, truth: Truth | None) -> dict[str, Any]:
     }
 
 
+def _of_sources(background: Drawn) -> dict[str, float]:
+    """Values of the labels of sources that are locked to the shaft."""
+    labels = dict.fromkeys((label.name for label in OF_SOURCES), 0.0)
+    for source, drawn in locked_of(background):
+        labels |= source.found(drawn)
+    return labels
+
+
 def _drawn(scenario: Scenario) -> dict[str, Any]:
     """Variables of one record that are copied from its scenario."""
     settings, rig, specimen, record = scenario.settings, scenario.rig, scenario.specimen, scenario.record
-    conditions, condition = record.conditions, rig.background.condition
+    conditions = record.conditions
     return {
         "sample_rate": settings.sample_rate,
         "axial_load": conditions.axial_load,
@@ -103,8 +110,7 @@ def _drawn(scenario: Scenario) -> dict[str, Any]:
         "split": SPLITS.index(specimen.split),
         "source": f"{settings.recipe}/{record.number}",
         "identity": identity(settings.corpus, rig.number, specimen.number, record.number, record.pair),
-        "machine_condition": _CONDITION_CODES["sound" if condition is None else condition.kind],
-        "gear_mesh": 0 if rig.background.gear is None else rig.background.gear.teeth,
+        **_of_sources(rig.background),
         "diametral_clearance": specimen.properties["diametral_clearance"],
         "gain": rig.gain if record.snr is None else np.nan,
         "background_rms": rig.background_rms if record.snr is None else np.nan,

@@ -4,8 +4,6 @@
 module            responsibility
 ================= ======================================================================
 rig               transfer paths and machine background of a rig
-gear              vibration of a gear mesh
-machine_condition lines and bursts of a machine that is not well
 mixing            bearing and background of a record put together, compiled
 background        noise, lines and impulses of the machine in one record
 levels            gains of bearing and background

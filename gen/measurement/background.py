@@ -13,6 +13,8 @@ from scipy.fft import irfft, rfft
 
 from gen.measurement.mixing import Lines
 from gen.measurement.rig import RigFilters
+from gen.mechanisms.background.impulses import add_impulses
+from gen.mechanisms.background.knocks import add_knocks
 from gen.physics.elementary import power
 from gen.physics.profile import share_at
 from gen.scenarios import Scenario
@@ -49,8 +51,9 @@ def lines_of(filters: RigFilters, scenario: Scenario, rng: np.random.Generator, 
     lines = filters.in_channels(motion, amplitudes, np.concatenate([rates, steps * axis.fs / (2 * np.pi)]))
     parts = np.stack([lines.real, lines.imag], axis=2)
     growth = _NO_GROWTH
-    if record.speed_profile is not None and filters.growth > 0 and n_orders:
-        growth = power(share_at(record.speed_profile, axis.response_times()), filters.growth)
+    exponent = filters.background["growth"]
+    if record.speed_profile is not None and exponent > 0 and n_orders:
+        growth = power(share_at(record.speed_profile, axis.response_times()), exponent)
     return Lines(
         modulations=filters.modulations,
         harmonics=parts[:, :n_orders],
@@ -65,7 +68,7 @@ def impulses_of(
 ) -> list[Float32Array]:
     """Impulses at random times, and knocks locked to the shaft, behind the paths: shape (channel, time) each, or (0, 0) for none [1]."""
     signals = [NO_SIGNAL] * len(filters)
-    rows = [row for row, some in enumerate(filters) if some.impulses[0] > 0 or some.knocks[0] > 0]
+    rows = [row for row, some in enumerate(filters) if some.background["impulses"] or some.background["knocks"]]
     if rows:
         hits = np.stack([_hits(filters[row], angles[row], rngs[row]) for row in rows])
         paths = np.stack([filters[row].impulse_paths for row in rows])
@@ -77,13 +80,9 @@ def impulses_of(
 
 def _hits(filters: RigFilters, angles: FloatArray, rng: np.random.Generator) -> Float32Array:
     """Strength of impulses and knocks at the samples where they start, shape (time,) [1]."""
-    length = len(angles)
-    hits = np.zeros(length, np.float32)
-    number, level = filters.impulses
-    times = rng.integers(length, size=rng.poisson(number))
-    np.add.at(hits, times, level * rng.standard_normal(len(times), dtype=np.float32))
-    orders, level, phase = filters.knocks
-    if orders > 0:
-        times = np.flatnonzero(np.diff(np.floor((orders * angles + phase) / (2 * np.pi))) > 0) + 1
-        hits[times] += level * (1 + 0.2 * rng.standard_normal(len(times), dtype=np.float32))
+    hits, background = np.zeros(len(angles), np.float32), filters.background
+    if background["impulses"]:
+        add_impulses(hits, background["impulses"], filters.fs, rng)
+    if background["knocks"]:
+        add_knocks(hits, background["knocks"], filters.knock_phase, angles, rng)
     return hits

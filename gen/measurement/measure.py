@@ -7,7 +7,7 @@ it is in single precision. Its error is 1e-7 of the largest value of a record: a
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any, NamedTuple
@@ -18,7 +18,6 @@ from scipy.fft import irfft, rfft
 
 from gen.corpus.simulated import UNJUDGED
 from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
-from gen.measurement.gear import gear_mesh
 from gen.measurement.judging import Judge, Parts, judges_of
 from gen.measurement.levels import (
     bearing_over_background,
@@ -26,9 +25,9 @@ from gen.measurement.levels import (
     gains_of,
     mean_square,
 )
-from gen.measurement.machine_condition import condition_bursts, condition_lines
 from gen.measurement.mixing import Products, mix
 from gen.measurement.rig import RigFilters, rig_filters
+from gen.mechanisms.background.section import locked_of
 from gen.mechanisms.measuring_chain import disturb
 from gen.scenarios import Gains, Purpose, Scenario, common_settings
 from gen.simulation.shaft import scenario_angles
@@ -209,10 +208,11 @@ def _parts(
     background = noise_of(filters, n_channels, rngs)
     impulses = impulses_of(filters, angles, rngs)
     for row, scenario in enumerate(scenarios):
-        for source in _sources(scenario, angles[row]):
-            behind = filters[row].source_in_channels(source)
-            # impulses have the length of the Fourier transform
-            impulses[row] = impulses[row][:, : behind.shape[1]] + behind if impulses[row].size else behind
+        for source, drawn in locked_of(scenario.rig.background):
+            for vibration in source.vibrations(drawn, angles[row], scenario.rng(source.of_record)):
+                behind = filters[row].source_in_channels(vibration)
+                # impulses have the length of the Fourier transform
+                impulses[row] = impulses[row][:, : behind.shape[1]] + behind if impulses[row].size else behind
     parts = []
     for row in range(count):
         fault = both[count + faulty.index(row)] if row in faulty else NO_SIGNAL
@@ -224,17 +224,6 @@ def _parts(
         lines_of_impulses = filters[row].impulse_lines
         parts.append(Part(added, bearing, noise, lines_of_impulses, products, angles[row][axis.kept], orders, steady))
     return parts
-
-
-def _sources(scenario: Scenario, angles: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
-    """Gear and condition of the machine, ahead of the paths, shape (time,) each [1]."""
-    gear, condition = scenario.rig.background.gear, scenario.rig.background.condition
-    if gear is not None:
-        yield gear_mesh(gear, angles, scenario.rng(Purpose.GEAR_PHASE))
-    if condition is not None:
-        yield condition_lines(condition, angles)
-        if condition.bursts is not None:
-            yield condition_bursts(condition.bursts, angles, scenario.rng(Purpose.BURSTS))
 
 
 def _mix(part: Part, gains: Gains) -> Float32Array:

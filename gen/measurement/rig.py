@@ -7,15 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-from gen.physics.elementary import power
+from gen.drawing import Drawn
+from gen.mechanisms.background.harmonics import motion_of_harmonics
+from gen.mechanisms.background.noise import noise_factors
+from gen.mechanisms.background.tones import motion_of_tones
+from gen.mechanisms.path import parts_of_modulation, transmissibility
 from gen.physics.kernel.decimate import pass_band
-from gen.physics.resonance import base_excited
-from gen.scenarios import Background, Mode, Purpose, Rig, ShaftModulation, stream
+from gen.scenarios import Purpose, Rig, stream
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
 
-_FLATTEST = 0.8  # orbit at a harmonic: the shaft never moves along a straight line
 _SMALLEST_GAIN = 1e-6  # of a motion behind the paths; a line that all paths suppress stays out
 
 
@@ -23,6 +25,8 @@ _SMALLEST_GAIN = 1e-6  # of a motion behind the paths; a line that all paths sup
 class RigFilters:
     """Transfer paths and machine background of a rig, ready for responses of one length."""
 
+    length: int
+    """Samples of a response."""
     n: int
     """Samples of a Fourier transform: at least as many as a response has."""
     fs: float
@@ -45,16 +49,14 @@ class RigFilters:
     """Amplitude of each harmonic of the shaft, shape (order,)."""
     harmonic_motion: NDArray[np.complex128]
     """Motion of the machine at each harmonic along each channel, shape (channel, order)."""
-    growth: float
-    """Exponent of the growth of the harmonics with the speed [1]."""
     tones: FloatArray
     """Angle per sample [rad], amplitude, and parts of the modulation by the shaft, of each tone, shape (tone, 4)."""
     tone_motion: NDArray[np.complex128]
     """Motion of the machine at each tone along each channel, shape (channel, tone)."""
-    impulses: tuple[float, float]
-    """Expected number in a response, and level."""
-    knocks: tuple[float, float, float]
-    """Number in a turn of the shaft, level, and phase [rad]."""
+    background: Drawn
+    """As drawn for the rig."""
+    knock_phase: float
+    """Phase of the knocks [rad]."""
     impulse_paths: NDArray[np.complex64]
     """Path and chain, scaled so that an impulse has a peak of 1 behind each, shape (channel, frequency); unscaled without impulses."""
 
@@ -64,8 +66,9 @@ class RigFilters:
 
         An impulse of strength ``a`` raises all lines by ``a^2`` times its energy; the mean of ``a^4`` is 3 for a normal distribution.
         """
-        number, level = self.impulses
-        return np.float32(math.sqrt(3 * number) * level**2) * np.abs(self.impulse_paths) ** 2
+        impulses = self.background["impulses"] or {"frequency": 0.0, "level": 0.0}
+        number = impulses["frequency"] * self.length / self.fs
+        return np.float32(math.sqrt(3 * number) * impulses["level"] ** 2) * np.abs(self.impulse_paths) ** 2
 
     def source_in_channels(self, source: FloatArray) -> Float32Array:
         """Signal of a source in the machine behind path and chain of each channel, shape (channel, time), of ``source``, shape (time,) [1].
@@ -108,107 +111,45 @@ def rig_filters(rig: Rig, length: int, fs: float, seed: int) -> RigFilters:
     own = [path or rig.path for path in rig.own_paths]
     sensor = high_pass(rig.high_pass, frequency)
     chain = sensor * pass_band(frequency * (2 / fs))
-    paths = np.stack([path.direct + base_transmissibility(path.modes, frequency) for path in own])
-    impulses, knocks = background.impulses, background.knocks
+    paths = np.stack([path["direct"] + transmissibility(path["modes"], frequency) for path in own])
     impulse_paths = paths * chain
-    if impulses is not None or knocks is not None:
+    if background["impulses"] or background["knocks"]:
         impulse_paths /= np.abs(irfft(impulse_paths, n)).max(axis=1, keepdims=True)
     of_modulations, of_harmonics, of_tones, of_knocks = stream(seed, rig.number, 0, 0, Purpose.PHASES).spawn(4)
     directions = np.array([channel.angle for channel in rig.channels])
-    harmonics, harmonic_motion = _harmonics(background, directions, of_harmonics)
-    tones, tone_motion = _tones(background, fs, directions, of_tones)
+    harmonics, harmonic_motion = motion_of_harmonics(background["harmonics"] or (), directions, of_harmonics)
+    tones, tone_motion = motion_of_tones(background["tones"] or (), fs, directions, of_tones)
     return RigFilters(
+        length=length,
         n=n,
         fs=fs,
         paths=paths.astype(np.complex64),
         bearing_paths=(paths * sensor).astype(np.complex64),
         direct=None
-        if rig.high_pass > 0 or any(path.modes for path in own)
-        else np.array([[path.direct] for path in own], np.float32),
+        if rig.high_pass > 0 or any(path["modes"] for path in own)
+        else np.array([[path["direct"]] for path in own], np.float32),
         chain=chain,
-        noise=_noise_factors(background, frequency, np.abs(chain), n),
-        common_noise=math.sqrt(background.coherence),
+        noise=noise_factors(background, frequency, np.abs(chain), n),
+        common_noise=math.sqrt(background["coherence"]),
         modulations=_modulations(rig, of_modulations),
         harmonics=harmonics,
         harmonic_motion=harmonic_motion,
-        growth=background.growth,
         tones=tones,
         tone_motion=tone_motion,
-        impulses=(0.0, 0.0) if impulses is None else (impulses.frequency * length / fs, impulses.level),
-        knocks=(0.0, 0.0, 0.0)
-        if knocks is None
-        else (knocks.frequency, knocks.level, 2 * math.pi * of_knocks.random()),
+        background=background,
+        knock_phase=2 * math.pi * of_knocks.random(),
         impulse_paths=impulse_paths.astype(np.complex64),
     )
 
 
-def _noise_factors(background: Background, frequency: FloatArray, chain: FloatArray, n: int) -> Float32Array:
-    factors = noise_spectrum(background, frequency) * chain
-    factors *= math.sqrt(n / 2) / np.sqrt(np.mean(np.square(factors)))
-    # the spectrum is real at 0 Hz, and at the Nyquist frequency of an even n: one number has all of the power there
-    factors[:1] *= math.sqrt(2)
-    factors[n - n // 2 :] *= math.sqrt(2)
-    return factors.astype(np.float32)
-
-
 def _modulations(rig: Rig, rng: np.random.Generator) -> FloatArray:
     """Parts of all modulations, shape (1 + channel, 4); channels on the common path share one."""
-    of_noise, of_path, *of_own = 2 * np.pi * rng.random((2 + len(rig.own_paths), 2))
-    rows = [_parts(rig.background.modulation, of_noise)]
-    for path, phases in zip(rig.own_paths, of_own, strict=True):
-        rows.append(_parts(rig.path.modulation, of_path) if path is None else _parts(path.modulation, phases))
+    of_noise, of_path, *of_own = rng.random((2 + len(rig.own_paths), 2))
+    rows = [parts_of_modulation(rig.background["modulation"], of_noise)]
+    for own, turns in zip(rig.own_paths, of_own, strict=True):
+        path, turns = (rig.path, of_path) if own is None else (own, turns)
+        rows.append(parts_of_modulation(path["modulation"], turns))
     return np.array(rows)
-
-
-def _parts(modulation: ShaftModulation, phases: FloatArray) -> FloatArray:
-    """Parts of a modulation once per turn, then of that twice per turn, shape (4,)."""
-    depths = np.array([modulation.once, modulation.twice])
-    return np.stack([depths * np.cos(phases), depths * np.sin(phases)], axis=1).ravel()
-
-
-def _harmonics(
-    background: Background, directions: FloatArray, rng: np.random.Generator
-) -> tuple[FloatArray, NDArray[np.complex128]]:
-    """Amplitudes and motions of the harmonics; the first is in phase with the unbalance, which points along the mark of the shaft."""
-    levels = np.zeros(max((int(line.frequency) for line in background.harmonics), default=0))
-    for line in background.harmonics:
-        levels[int(line.frequency) - 1] = math.sqrt(2) * line.level
-    forward, backward, flatness = rng.random((3, len(levels)))
-    forward[:1] = 0.0
-    return levels, along(directions, 2 * np.pi * forward, 2 * np.pi * backward, _FLATTEST * flatness)
-
-
-def _tones(
-    background: Background, fs: float, directions: FloatArray, rng: np.random.Generator
-) -> tuple[FloatArray, NDArray[np.complex128]]:
-    root, count = math.sqrt(2), len(background.tones)
-    forward, backward, flatness, phases = rng.random((4, count))
-    depths = np.array([tone.modulation for tone in background.tones])
-    steps = np.array([2 * math.pi * tone.frequency / fs for tone in background.tones])
-    levels = np.array([root * tone.level for tone in background.tones])
-    tones = np.stack([steps, levels, depths * np.cos(2 * np.pi * phases), depths * np.sin(2 * np.pi * phases)], axis=1)
-    return tones, along(directions, 2 * np.pi * forward, 2 * np.pi * backward, flatness)
-
-
-def along(
-    directions: FloatArray, forward: FloatArray, backward: FloatArray, flatness: FloatArray
-) -> NDArray[np.complex128]:
-    """Complex amplitudes of elliptical motions along ``directions`` [rad], shape (direction, line) [1].
-
-    An ellipse is the sum of a vector that turns with the shaft and one that turns against it, with the phases ``forward`` and
-    ``backward`` [rad]; ``flatness`` is the ratio of their lengths: 0 for a circle, 1 for a straight line. Each has shape (line,). See
-    A. Muszynska, Rotordynamics, CRC Press, 2005.
-    """
-    turned: NDArray[np.complex128] = np.exp(-1j * directions)[:, None]
-    return np.exp(1j * forward) * turned + flatness * np.exp(1j * backward) * np.conj(turned)
-
-
-def base_transmissibility(modes: tuple[Mode, ...], frequency: FloatArray) -> NDArray[np.complex128]:
-    """Sum of the transmissibilities of base-excited resonances, times their gains, shape (frequency,) [1]."""
-    total = np.zeros(len(frequency), complex)
-    for mode in modes:
-        total += base_excited(frequency / mode.frequency, mode.damping, mode.gain)
-    return total
 
 
 def high_pass(corner: float, frequency: FloatArray) -> NDArray[np.complex128]:
@@ -219,15 +160,3 @@ def high_pass(corner: float, frequency: FloatArray) -> NDArray[np.complex128]:
     if corner == 0:
         return np.ones(len(frequency), complex)
     return 1j * frequency / (corner + 1j * frequency)
-
-
-def noise_spectrum(background: Background, frequency: FloatArray) -> FloatArray:
-    """Amplitude spectrum of the noise of a machine, with unit mean power, shape (frequency,) [1].
-
-    Its PSD is a white floor plus ``f^-slope``, constant below 10 Hz, times the resonances.
-    """
-    falling = power(np.maximum(frequency, 10.0), -background.slope / 2)
-    falling *= np.abs(1 + base_transmissibility(background.modes, frequency))
-    falling[0] = 0.0
-    density = falling**2 / np.mean(falling**2) + background.floor**2
-    return np.sqrt(density / np.mean(density))

@@ -3,9 +3,7 @@
 import numpy as np
 
 from gen.corpus.schema import Variable
-from gen.drawing.distributions import Distribution, within
-from gen.drawing.draws import Drawn
-from gen.drawing.section import Probability
+from gen.drawing import Distribution, Drawn, Probability, within
 from gen.mechanisms.sensor_fault import FloatArray, Found, SensorFault
 
 

@@ -5,9 +5,7 @@ import math
 import numpy as np
 
 from gen.corpus.schema import Variable
-from gen.drawing.distributions import Distribution, within
-from gen.drawing.draws import Drawn, Draws
-from gen.drawing.section import Probability
+from gen.drawing import Distribution, Drawn, Draws, Probability, within
 from gen.mechanisms.sensor_fault import Faulty, FloatArray, Found, SensorFault
 from gen.physics.resonance import base_excited
 

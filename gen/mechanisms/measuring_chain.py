@@ -19,8 +19,7 @@ import numpy as np
 from pydantic import Field, create_model
 
 from gen.corpus.schema import Variable
-from gen.drawing.draws import Draws
-from gen.drawing.section import Section
+from gen.drawing import Draws, Section
 from gen.mechanisms.drift import Drift
 from gen.mechanisms.dropped_samples import DroppedSamples
 from gen.mechanisms.emi_bursts import EmiBursts

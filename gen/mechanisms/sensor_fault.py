@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.schema import Variable
-from gen.drawing.draws import Drawn, Draws
-from gen.drawing.section import Probability, Section
+from gen.drawing import Drawn, Draws, Probability, Section
 
 FloatArray = NDArray[np.floating]
 Found = Mapping[str, float]

@@ -7,9 +7,7 @@ machine            bearing, machine, lubricant, specimen
 faults             spalls, worn races, broken cages, several at once
 operation          speed and load with their profiles, slip, temperature
 publication        licence, creators and references of the corpus
-gear               gear mesh in the background
-machine_conditions machines that are not well
-sensing            sensors, path, background, level, converter
+sensing            sensors, level, converter
 changes            keys of operation and level that one fault replaces
 fault_entries      keys that all entries of faults have in common
 sections           all sections of a recipe, and the counts that follow from them

@@ -10,12 +10,7 @@ from .reading import (
     recipe_hash as recipe_hash,
     recipe_schema as recipe_schema,
 )
-from .sensing import (
-    MAX_OVERSAMPLING as MAX_OVERSAMPLING,
-    Modes as Modes,
-    Modulation as Modulation,
-    PathSection as PathSection,
-)
+from .sensing import MAX_OVERSAMPLING as MAX_OVERSAMPLING
 from .shares import (
     BALL_SPACING as BALL_SPACING,
     FREE_ANGLE as FREE_ANGLE,

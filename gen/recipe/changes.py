@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any, get_type_hints
 
 from pydantic import ConfigDict, Field, create_model, model_serializer
 
-from gen.drawing.section import Section
+from gen.drawing import Section
 from gen.recipe.operation import OperationSection
 from gen.recipe.sensing import SnrLevel
 

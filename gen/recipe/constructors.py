@@ -9,9 +9,8 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from gen.drawing.distributions import Choice, Grid, LogUniform, Normal, Uniform
+from gen.drawing import Choice, Grid, LogUniform, Normal, Section, Uniform, plain
 from gen.drawing.expressions import called
-from gen.drawing.section import Section, plain
 from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Healthy, RaceFault
 from gen.support.errors import RecipeError
 from gen.support.sentences import sentences

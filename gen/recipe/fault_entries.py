@@ -6,7 +6,7 @@ from typing import Any, get_args
 
 from pydantic import ConfigDict
 
-from gen.drawing.section import Section
+from gen.drawing import Section
 from gen.recipe.faults import Fault
 
 _OF_KIND = {

@@ -4,8 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, StrictInt, model_validator
 
-from gen.drawing.distributions import Distribution, Number, within
-from gen.drawing.section import Section, Weight
+from gen.drawing import Distribution, Number, Section, Weight, within
 from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
 from gen.recipe.changes import LevelChanges, OperationChanges
 

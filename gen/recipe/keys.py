@@ -11,8 +11,7 @@ from typing import Annotated, Any, NamedTuple, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from gen.drawing.distributions import DISTRIBUTIONS, interval
-from gen.drawing.section import Section
+from gen.drawing import DISTRIBUTIONS, Section, interval
 from gen.recipe.changes import Changes
 from gen.recipe.model import Recipe
 from gen.support.errors import RecipeError

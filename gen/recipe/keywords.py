@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, get_args, get_origin
 
 from pydantic import BaseModel
 
-from gen.drawing.section import Section, plain
+from gen.drawing import Section, plain
 from gen.recipe.changes import Changes
 from gen.recipe.faults import Fault
 from gen.recipe.model import Recipe

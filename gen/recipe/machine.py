@@ -7,8 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, StrictInt, field_validator, model_validator
 
-from gen.drawing.distributions import Distribution, Number, within
-from gen.drawing.section import Name, Probability, Section
+from gen.drawing import Distribution, Name, Number, Probability, Section, within
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.physics.extent import MAX_BALLS

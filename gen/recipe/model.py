@@ -6,7 +6,7 @@ from typing import Any, Self
 
 from pydantic import ValidationError, model_validator
 
-from gen.drawing.section import plain
+from gen.drawing import plain
 from gen.recipe.checks import check_recipe
 from gen.recipe.faults import fault_class
 from gen.recipe.sections import Sections

@@ -6,8 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from gen.drawing.distributions import Distribution, Number, within
-from gen.drawing.section import Section
+from gen.drawing import Distribution, Number, Section, within
 
 Share = Annotated[Number, Field(gt=0, le=1000)]
 CLOSEST_TIMES_S = 1e-6  # between two points of a profile; its slope stays a finite number

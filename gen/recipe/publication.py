@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from gen.corpus.publication import Creator, Publication
-from gen.drawing.section import Section
+from gen.drawing import Section
 
 
 class CreatorSection(Section, Creator):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from gen.corpus import RECIPE_TEXT
-from gen.drawing.section import plain
+from gen.drawing import plain
 from gen.recipe.finding import find_recipe
 from gen.recipe.model import Recipe
 from gen.support.errors import RecipeError

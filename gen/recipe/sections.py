@@ -10,9 +10,11 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, model_validator
 
 from gen.corpus import Codec
-from gen.drawing.distributions import Number
-from gen.drawing.section import Count, Name, Section
+from gen.drawing import Count, Name, Number, Section
+from gen.mechanisms.background.machine_conditions import MachineConditions
+from gen.mechanisms.background.section import BackgroundSection
 from gen.mechanisms.measuring_chain import SensorFaultsSection
+from gen.mechanisms.path import PathSection
 from gen.recipe.fault_entries import FaultList, fault_entries
 from gen.recipe.faults import Fault
 from gen.recipe.machine import (
@@ -24,10 +26,9 @@ from gen.recipe.machine import (
     OwnBearing,
     SpecimenSection,
 )
-from gen.recipe.machine_conditions import MachineConditionsSection
 from gen.recipe.operation import OperationSection
 from gen.recipe.publication import PublicationSection
-from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
+from gen.recipe.sensing import PhysicalLevel, RecordingSection, SnrLevel
 
 
 class Split(Section):
@@ -129,7 +130,7 @@ class Sections(Section):
     """A second bearing on the shaft, whose vibration the sensors get too; none if left out."""
     machine: MachineSection = MachineSection()
     """Masses, springs and dampers of each rig, and its faults other than those of the bearing."""
-    machine_conditions: MachineConditionsSection | None = None
+    machine_conditions: MachineConditions | None = None
     """What machines have that are not well: unbalance, looseness, a belt; all are sound if left out."""
     contact: ContactSection = ContactSection()
     """Contact of balls and races: its width and its oil."""

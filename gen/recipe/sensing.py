@@ -1,12 +1,11 @@
-"""Measurement of a record: channels, transfer paths, background of the machine, levels and the converter."""
+"""Measurement of a record: channels, levels and the converter."""
 
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, StrictInt
 
-from gen.drawing.distributions import Distribution, Number, within
-from gen.drawing.section import Name, Probability, Section, Weight
-from gen.recipe.gear import GearMesh
+from gen.drawing import Distribution, Name, Number, Section, Weight, within
+from gen.mechanisms.path import PathSection
 
 MAX_OVERSAMPLING = 96
 
@@ -46,45 +45,6 @@ class FloatConverter(Section):
     """Stores the signal in floating point, without rounding to counts and without clipping."""
 
 
-class Modes(Section):
-    """Resonances, drawn per rig."""
-
-    count: Distribution = within(0, 16)
-    """Number of resonances, rounded to a whole number."""
-    frequency_hz: Distribution = within(10, 50_000)
-    """Natural frequency of a resonance, drawn for each."""
-    damping_percent: Distribution = within(0.05, 50)
-    """Damping ratio of a resonance, drawn for each."""
-    gain_db: Distribution = within(-80, 80, default=0.0)
-    """Gain of a resonance relative to a direct part of 1; its sign is random."""
-
-
-class Modulation(Section):
-    """Amplitude modulation at one and two times the shaft rate: sidebands around every line."""
-
-    probability: Probability
-    """Share of the rigs that have the modulation."""
-    first: Distribution = within(0, 1)
-    """Depth of the modulation at 1x shaft rate, relative to the mean amplitude."""
-    second: Distribution = within(0, 1)
-    """Depth of the modulation at 2x shaft rate, relative to the mean amplitude."""
-
-
-class PathSection(Section):
-    """Linear transfer path from bearing to sensor, drawn per rig: a direct part and base-excited resonances."""
-
-    direct: Distribution = within(0, 10, default=1.0)
-    """Gain of the direct part, the same at all frequencies."""
-    modes: Modes | None = None
-    """Resonances of the path; none if left out."""
-    modulation: Modulation | None = None
-    """Modulation of the signal that the path transmits; none if left out."""
-
-    def silent(self) -> bool:
-        """Whether a drawn path may transmit nothing."""
-        return self.direct.support()[1] == 0 and (self.modes is None or self.modes.count.support()[0] < 1)
-
-
 class Channel(Section):
     """A sensor: the acceleration of a body along one direction."""
 
@@ -117,81 +77,6 @@ class RecordingSection(Section):
     """Constant that amplifier and converter add to the signal of all channels, drawn per rig."""
     converter: Annotated[Converter | FloatConverter, Field(discriminator="kind")] = Converter()
     """Conversion of the signal to stored numbers."""
-
-
-class Harmonics(Section):
-    """Lines at multiples of the shaft rate."""
-
-    probability: Probability
-    """Share of the rigs that have these lines."""
-    count: Distribution = within(1, 64)
-    """Number of lines, at 1x, 2x, ... shaft rate; rounded to a whole number."""
-    level_db: Distribution = within(-80, 40)
-    """Rms of a line relative to that of the background noise, drawn for each; the mean over all directions and channels."""
-    growth: Distribution = within(0, 4, default=0.0)
-    """Power of the speed with which the lines grow along `operation.speed_profile`; 2 is that of an unbalance."""
-
-
-class Tones(Section):
-    """Lines at fixed frequencies, such as those of other machines."""
-
-    probability: Probability
-    """Share of the rigs that have these lines."""
-    count: Distribution = within(1, 64)
-    """Number of lines, rounded to a whole number."""
-    frequency_hz: Distribution = within(1, 100_000)
-    """Frequency of a line, drawn for each; above half the sample rate it aliases."""
-    level_db: Distribution = within(-80, 40)
-    """Rms of a line relative to that of the background noise, drawn for each."""
-    modulation: Distribution = within(0, 1, default=0.0)
-    """Depth of the amplitude modulation of a line at 1x shaft rate, drawn for each."""
-
-
-class Impulses(Section):
-    """Impulses at random times, which no fault causes and which excite the path."""
-
-    probability: Probability
-    """Share of the rigs that have these impulses."""
-    rate_hz: Distribution = within(0.1, 1000)
-    """Mean number of impulses per second."""
-    level_db: Distribution = within(-80, 60)
-    """Rms of their peaks behind the path, relative to the rms of the background noise."""
-
-
-class Knocks(Section):
-    """Impulses locked to the shaft, which no bearing fault causes and which excite the path."""
-
-    probability: Probability
-    """Share of the rigs that have these impulses."""
-    orders: Distribution = within(0.1, 20)
-    """Number of impulses per turn of the shaft."""
-    level_db: Distribution = within(-80, 60)
-    """Mean of their peaks behind the path, relative to the rms of the background noise."""
-
-
-class BackgroundSection(Section):
-    """Vibration of the machine without the bearing: drawn per rig, the same for healthy and faulty records."""
-
-    slope: Distribution = within(-2, 4, default=0.0)
-    """Exponent of the noise: its power spectral density falls with frequency to this power above 10 Hz; 0 is white."""
-    floor_db: Distribution = within(-120, 20, default=-40.0)
-    """Rms of a white floor, relative to that of the noise with slope and resonances."""
-    modes: Modes | None = None
-    """Resonances that shape the noise; none if left out."""
-    modulation: Modulation | None = None
-    """Modulation of the noise by the shaft; none if left out."""
-    harmonics: Harmonics | None = None
-    """Lines at multiples of the shaft rate; none if left out."""
-    tones: Tones | None = None
-    """Lines at fixed frequencies; none if left out."""
-    impulses: Impulses | None = None
-    """Impulses at random times; none if left out."""
-    knocks: Knocks | None = None
-    """Impulses locked to the shaft; none if left out."""
-    coherence: Distribution = within(0, 1, default=0.0)
-    """Magnitude-squared coherence of the noise between two channels: 0 for independent noise, 1 for the same."""
-    gear_mesh: GearMesh | None = None
-    """Lines of a gear on the shaft; none if left out."""
 
 
 class PhysicalLevel(Section):

@@ -9,8 +9,7 @@ import difflib
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from gen.drawing.distributions import Support, interval, is_within
-from gen.drawing.section import Section, quantities
+from gen.drawing import Section, Support, interval, is_within, quantities
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.operation import OperationSection
 from gen.recipe.sections import Sections

@@ -7,7 +7,7 @@ from typing import Any
 from ruamel.yaml import YAML
 
 from gen.corpus import write_text_durably
-from gen.drawing.section import plain
+from gen.drawing import plain
 from gen.recipe.model import Recipe
 from gen.support.errors import RecipeError
 

@@ -3,13 +3,11 @@
 ============= =================================================================
 module        responsibility
 ============= =================================================================
-sensing       dataclasses of channels, transfer paths, background and sensor faults
 model         dataclasses of rig, specimen and record; random streams
 points        quasi-random points
 bearings      draw the bearing of a rig, its deviations as built, and the bearing at the other end of the shaft
 classes       choose the fault class of each specimen
 faults        draw the damage of a specimen
-machinery     draw the gear and the condition of a machine
 operating     operating conditions: per rig, specimen or record, shares, changes
 records       records of a specimen, with rungs of severity
 draw          draw rigs and specimens, and with them all records
@@ -26,6 +24,7 @@ from gen.scenarios.model import (
     Gains,
     Operation,
     OtherBearing,
+    Pickup,
     Purpose,
     Rig,
     Scenario,
@@ -36,37 +35,20 @@ from gen.scenarios.model import (
     stream,
 )
 from gen.scenarios.records import with_level
-from gen.scenarios.sensing import (
-    Background,
-    ConditionSignal,
-    Gear,
-    Mode,
-    Path,
-    Pickup,
-    ShaftModulation,
-    Tone,
-)
 from gen.scenarios.settings import common_settings, settings_of
 from gen.scenarios.stored import read_scenario, read_scenarios, scenario_texts
 
 __all__ = [
-    "Background",
-    "ConditionSignal",
     "Gains",
-    "Gear",
-    "Mode",
     "Operation",
     "OtherBearing",
-    "Path",
     "Pickup",
     "Purpose",
     "Rig",
     "Scenario",
     "Settings",
-    "ShaftModulation",
     "Spall",
     "Specimen",
-    "Tone",
     "Wear",
     "check_scenario",
     "common_settings",

@@ -10,8 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gen.drawing.distributions import weighted_index
-from gen.drawing.draws import Drawn, Draws, Known, known_of
+from gen.drawing import Drawn, Draws, Known, known_of, weighted_index
 from gen.physics.bearing import Bearing, free_contact_angle
 from gen.recipe import FREE_ANGLE, CatalogueBearing, Recipe, fault_class
 from gen.recipe.machine import named_bearing

@@ -67,7 +67,7 @@ def simulation_errors() -> Iterator[None]:
     """
     try:
         yield
-    except (ArithmeticError, LookupError, MemoryError, ValueError) as error:
+    except (ArithmeticError, LookupError, MemoryError, TypeError, ValueError) as error:
         reason = f"{type(error).__name__}: {error}"
         raise SimulationError(
             f"the drawn values of a scenario cannot be simulated ({reason}); keep all of them, in the ranges of recipes."

@@ -8,34 +8,23 @@ fault stream depends on the fault: a record with its fault and the same record w
 import functools
 import math
 from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus import SPLITS
-from gen.drawing.distributions import weighted_index
-from gen.drawing.draws import Draws, Known, known_of
+from gen.drawing import Draws, Known, known_of, weighted_index
+from gen.mechanisms.background.section import draw_background, draw_later, draw_locked
 from gen.mechanisms.measuring_chain import draw_for_rig
-from gen.recipe import (
-    Fault,
-    Modes,
-    PathSection,
-    Recipe,
-    operations,
-)
+from gen.recipe import Fault, Recipe, operations
 from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_bearing, known_of_rig
 from gen.scenarios.classes import fault_of_each_specimen, other_fault_of_each_specimen, possible_entries
 from gen.scenarios.faults import draw_damage
-from gen.scenarios.machinery import draw_gear, draw_machine_condition
-from gen.scenarios.model import Purpose, Rig, Scenario, Specimen, stream
+from gen.scenarios.model import Pickup, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Operating, operating_of
 from gen.scenarios.points import points_of
 from gen.scenarios.records import SpecimenSource, draw_record, record_points, source_of
-from gen.scenarios.sensing import Background, Mode, Path, Pickup, ShaftModulation, Tone
 from gen.support.errors import RecipeError
-from gen.support.units import decibel_to_ratio, percent_to_share
 
 
 def draw_scenarios(
@@ -97,24 +86,17 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
     for channel in recipe.recording.channels:
         body = tuple(channel.body)[weighted_index(tuple(channel.body.values()), draws.u())]
         channels.append(Pickup(body, draws.section(channel)["angle"]))
-    path = _draw_path(draws, recipe.path)
-    background = replace(
-        _draw_background(recipe, draws),
-        gear=draw_gear(recipe, number),
-        condition=draw_machine_condition(recipe, number),
-    )
-    own_paths = tuple(None if c.path is None else _draw_path(draws, c.path) for c in recipe.recording.channels)
+    path = recipe.path.draw(draws)
+    background = draw_background(recipe.background, draws)
+    own_paths = tuple(None if c.path is None else c.path.draw(draws) for c in recipe.recording.channels)
     oil = None if recipe.contact.lubricant is None else draws.section(recipe.contact.lubricant)
     if oil is not None and oil["viscosity_100"] >= oil["viscosity_40"]:
         raise RecipeError(
             f"rig {number}: oil of {oil['viscosity_40'] * 1e6:.3g} mm2/s at 40 C has no lower viscosity at 100 C; "
             f"keep viscosity_100_mm2_s below viscosity_40_mm2_s."
         )
-    background = replace(
-        background,
-        coherence=draws.value(recipe.background.coherence),
-        growth=0.0 if recipe.background.harmonics is None else draws.value(recipe.background.harmonics.growth),
-    )
+    background |= draw_later(recipe.background, draws)
+    background |= draw_locked([recipe.background, recipe], functools.partial(stream, recipe.seed, number, 0, 0), number)
     high_pass, offset = draws.value(recipe.recording.high_pass_hz), draws.value(recipe.recording.offset_m_s2)
     return Rig(
         number=number,
@@ -137,58 +119,6 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
         ),
         high_pass=high_pass,
         offset=offset,
-    )
-
-
-def _draw_path(draws: Draws, path: PathSection) -> Path:
-    modulation = _draw_modulation(draws, path.modulation)
-    direct = draws.value(path.direct)
-    return Path(direct, _draw_modes(draws, path.modes), modulation)
-
-
-def _draw_modes(draws: Draws, modes: Modes | None) -> tuple[Mode, ...]:
-    if modes is None:
-        return ()
-    drawn = []
-    for _ in range(round(draws.value(modes.count))):
-        frequency, damping = draws.value(modes.frequency_hz), percent_to_share(draws.value(modes.damping_percent))
-        gain, sign = decibel_to_ratio(draws.value(modes.gain_db)), 1.0 if draws.u() < 0.5 else -1.0
-        drawn.append(Mode(frequency, damping, sign * gain))
-    return tuple(drawn)
-
-
-def _draw_modulation(draws: Draws, modulation: Any) -> ShaftModulation:
-    if modulation is None or not draws.is_present(modulation):
-        return ShaftModulation()
-    return ShaftModulation(draws.value(modulation.first), draws.value(modulation.second))
-
-
-def _draw_background(recipe: Recipe, draws: Draws) -> Background:
-    wanted = recipe.background
-    slope, floor = draws.value(wanted.slope), decibel_to_ratio(draws.value(wanted.floor_db))
-    harmonics, tones = [], []
-    if wanted.harmonics is not None and draws.is_present(wanted.harmonics):
-        orders = range(1, round(draws.value(wanted.harmonics.count)) + 1)
-        harmonics = [Tone(float(order), decibel_to_ratio(draws.value(wanted.harmonics.level_db))) for order in orders]
-    if wanted.tones is not None and draws.is_present(wanted.tones):
-        for _ in range(round(draws.value(wanted.tones.count))):
-            level = decibel_to_ratio(draws.value(wanted.tones.level_db))
-            tones.append(Tone(draws.value(wanted.tones.frequency_hz), level, draws.value(wanted.tones.modulation)))
-    impulses = knocks = None
-    if wanted.impulses is not None and draws.is_present(wanted.impulses):
-        impulses = Tone(draws.value(wanted.impulses.rate_hz), decibel_to_ratio(draws.value(wanted.impulses.level_db)))
-    if wanted.knocks is not None and draws.is_present(wanted.knocks):
-        knocks = Tone(draws.value(wanted.knocks.orders), decibel_to_ratio(draws.value(wanted.knocks.level_db)))
-    modes, modulation = _draw_modes(draws, wanted.modes), _draw_modulation(draws, wanted.modulation)
-    return Background(
-        slope=slope,
-        floor=floor,
-        modes=modes,
-        modulation=modulation,
-        harmonics=tuple(harmonics),
-        tones=tuple(tones),
-        impulses=impulses,
-        knocks=knocks,
     )
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from gen.drawing.draws import Draws, Known
+from gen.drawing import Draws, Known
 from gen.physics.bearing import Bearing, ball_spacing
 from gen.recipe import BALL_SPACING, Fault
 from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Healthy, RaceFault

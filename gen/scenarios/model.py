@@ -5,60 +5,22 @@ Every value is a number, a text or a tuple, in SI units, so that a corpus can st
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from enum import IntEnum
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from gen.drawing.draws import Drawn
+from gen.drawing import Drawn, Purpose, stream
 from gen.mechanisms.measuring_chain import SensorFaultDraws
 from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
 from gen.recipe import MAX_OVERSAMPLING
-from gen.scenarios.sensing import Background, Path, Pickup
 from gen.support.shown import Shown
 
 Number = Annotated[int, Field(ge=0, lt=2**31)]
 """Number of a rig, specimen or record."""
 OTHER_STREAMS = 2**31
 """Added to the number of a specimen in the random streams of the bearing at the other end of its shaft."""
-
-
-class Purpose(IntEnum):
-    """Purpose of a random stream; the number is part of the seed of the stream and must not change."""
-
-    RIG = 0
-    CLASSES = 1
-    SPLIT = 2
-    SPECIMEN = 3
-    FAULT = 4
-    WAVINESS = 5
-    RECORD = 6
-    MOTION = 7
-    NOISE = 8
-    SAMPLING = 9
-    ROUGHNESS = 10
-    WEAR = 11
-    LOAD_WANDER = 12
-    KNOCKS = 13
-    PHASES = 14
-    LEVEL = 15
-    RIG_SENSOR_FAULTS = 20
-    RECORD_SENSOR_FAULTS = 21
-    SENSOR_NOISE = 22
-    GEAR = 23
-    GEAR_PHASE = 24
-    MACHINE_CONDITION = 25
-    BURSTS = 26
-    RIG_OPERATION = 30
-    SPECIMEN_OPERATION = 31
-    SPEED_PROFILE = 32
-    LOAD_PROFILE = 33
-    EDGES = 40
-    AXIS = 41
-    SLIP = 42
-    OTHER_BEARING = 50
 
 
 @dataclass(frozen=True)
@@ -128,6 +90,15 @@ class Wear:
 
 
 @dataclass(frozen=True)
+class Pickup:
+    """Body and direction of the acceleration that a channel measures."""
+
+    body: Literal["shaft", "housing", "sensor"]
+    angle: float
+    """Direction [rad]."""
+
+
+@dataclass(frozen=True)
 class Rig:
     """One machine."""
 
@@ -136,10 +107,11 @@ class Rig:
     machine: Drawn
     resonator: Drawn | None
     channels: tuple[Pickup, ...]
-    path: Path
-    own_paths: tuple[Path | None, ...]
+    path: Drawn
+    own_paths: tuple[Drawn | None, ...]
     """Transfer path of each channel; None for a channel on the common ``path``."""
-    background: Background
+    background: Drawn
+    """Noise and sources; levels are relative to the rms of the noise [1]."""
     gain: float
     """Gain of bearing and background, for ``level.kind: physical`` [1]."""
     background_rms: float
@@ -319,12 +291,3 @@ class Scenario(Shown):
     def without_fault(self) -> "Scenario":
         """The same record of the same specimen before it was damaged."""
         return replace(self, specimen=self.specimen.at_severity(0))
-
-
-def stream(seed: int, rig: int, specimen: int, record: int, purpose: Purpose) -> np.random.Generator:
-    """Random stream of one purpose; a stream of a rig or a specimen has 0 for the numbers of the lower levels."""
-    # The words that SeedSequence(seed, spawn_key=(rig, specimen, record, purpose)) makes of its numbers; given as an array they take half
-    # the time.
-    words = [seed >> 32 * place & 0xFFFFFFFF for place in range(max(4, -(-seed.bit_length() // 32)))]
-    sequence = np.random.SeedSequence(np.array([*words, rig, specimen, record, purpose], np.uint32))
-    return np.random.Generator(np.random.PCG64DXSM(sequence))

@@ -9,8 +9,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from gen.drawing.draws import Combination, Draws, Known, in_si
-from gen.drawing.section import Section, quantities
+from gen.drawing import Combination, Draws, Known, Section, in_si, quantities
 from gen.recipe import Recipe
 from gen.scenarios.model import Conditions
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.drawing.draws import Combination, Draws, Known, known_of
+from gen.drawing import Combination, Draws, Known, known_of
 from gen.mechanisms.measuring_chain import draw_for_record
 from gen.physics.axial import least_axial_load
 from gen.physics.profile import Profile

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _SCENARIO = TypeAdapter(Scenario)
 _LONGEST_PLACE = 100
-_EARLIER = '"ball_mass": false'  # in every scenario from before 0.1.0
+_EARLIER = '"gear": '  # in every scenario from before 0.1.0
 _ADVICE = "read the corpus with the version that wrote it."
 
 
@@ -93,6 +93,10 @@ def _of_today(text: str) -> str:
     try:
         values = json.loads(text)
         rig, record = values["rig"], values["record"]
+        background = rig["background"]
+        background["gear_mesh"], background["machine_conditions"] = background.pop("gear"), background.pop("condition")
+        if "ball_mass" not in rig:
+            return json.dumps(values)
         del rig["ball_mass"]
         of_rig, of_record = rig["sensor_faults"] or {}, record["sensor_faults"] or {}
         mounts = of_rig.pop("loose_mounts", [])

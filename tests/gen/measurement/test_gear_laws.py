@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from gen.measurement.gear import gear_mesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.measurement.gear import gear_mesh
 from gen.measurement.rig import rig_filters
 from gen.scenarios import Gear, draw_scenarios
 

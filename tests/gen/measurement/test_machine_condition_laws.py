@@ -6,13 +6,13 @@ from typing import get_args
 
 import numpy as np
 import pytest
+from gen.measurement.machine_condition import condition_bursts, condition_lines
+from gen.recipe.machine_conditions import MachineKind
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.corpus.simulated import MACHINE_CONDITIONS
-from gen.measurement.machine_condition import condition_bursts, condition_lines
 from gen.recipe import read_recipe
-from gen.recipe.machine_conditions import MachineKind
 from gen.scenarios import ConditionSignal, draw_scenarios
 
 TURNS, N = 40, 24_000

@@ -1,0 +1,33 @@
+"""Impulses locked to the shaft."""
+
+import math
+
+import numpy as np
+
+from gen.drawing import Distribution, Drawn, Draws, Probability, within
+from gen.mechanisms.background.source import FloatArray, Source
+
+_SCATTER = 0.2  # of the strength from knock to knock
+
+
+class Knocks(Source):
+    """Impulses locked to the shaft, which no bearing fault causes and which excite the path."""
+
+    place = "knocks"
+
+    probability: Probability
+    """Share of the rigs that have these impulses."""
+    orders: Distribution = within(0.1, 20)
+    """Number of impulses per turn of the shaft."""
+    level_db: Distribution = within(-80, 60)
+    """Mean of their peaks behind the path, relative to the rms of the background noise."""
+
+    def draw_present(self, draws: Draws) -> Drawn:
+        """Number per turn of the shaft and level."""
+        return {"frequency": draws.value(self.orders), "level": draws.ratio(self.level_db)}
+
+
+def add_knocks(hits: FloatArray, drawn: Drawn, phase: float, angles: FloatArray, rng: np.random.Generator) -> None:
+    """Add the strengths of knocks to the samples at which they start, shape (time,) [1], for ``angles`` of the shaft [rad]."""
+    times = np.flatnonzero(np.diff(np.floor((drawn["frequency"] * angles + phase) / (2 * math.pi))) > 0) + 1
+    hits[times] += drawn["level"] * (1 + _SCATTER * rng.standard_normal(len(times), dtype=np.float32))

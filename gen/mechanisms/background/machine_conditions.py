@@ -1,0 +1,119 @@
+"""Vibration of a machine that is not well: lines at orders of its shaft, and bursts of noise that come and go with it.
+
+Loose, rubbing or crooked parts repeat every turn, or every second one, and show in a hundred multiples of the shaft rate, up to some
+kilohertz. Where many of them stand close together, the envelope has lines at every order, those of healthy bearings among them.
+A burst is noise times ``exp(k (cos(n angle + start) - 1))``, a bell of the shaft angle whose width follows from ``k`` [1]_.
+
+.. [1] N. I. Fisher, Statistical Analysis of Circular Data, Cambridge University Press, 1993, section 3.3.6.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal, get_args
+
+import numpy as np
+from pydantic import Field, StrictInt
+from scipy.fft import irfft
+
+from gen.corpus.fault_classes import UNKNOWN, UNKNOWN_CODE
+from gen.corpus.schema import Variable
+from gen.drawing import Distribution, Drawn, Draws, Probability, Purpose, Section, Weight, weighted_index, within
+from gen.mechanisms.background.source import FloatArray, LockedSource
+from gen.support.units import decibel_to_ratio
+
+MachineKind = Literal["unbalance", "bent_shaft", "misalignment", "looseness", "rub", "belt"]
+MACHINE_CONDITIONS: Mapping[int, str] = {**dict(enumerate(("sound", *get_args(MachineKind)))), UNKNOWN_CODE: UNKNOWN}
+"""Classes of ``machine_condition``."""
+_PERIOD = 2**15  # samples of a table of one period: the 400th line is in it to 1e-3 of its amplitude
+
+
+class Bursts(Section):
+    """Bursts of noise that come and go with the shaft, as parts that strike or rub make them."""
+
+    level_db: Distribution = within(-80, 40)
+    """Rms of the bursts relative to that of the background noise."""
+    order: Distribution = within(0.05, 50, default=1.0)
+    """Number of bursts in a turn of the shaft."""
+    length_deg: Distribution = within(1, 180, default=30.0)
+    """Length of a burst, in degrees from burst to burst: a short one gives many harmonics."""
+
+
+class MachineCondition(Section):
+    """What one condition adds to the background: lines at multiples of an order of the shaft, and bursts of noise locked to it."""
+
+    kind: MachineKind
+    """Name of the condition in `machine_condition`, the label of the machine; the keys below say what it adds."""
+    weight: Weight = 1.0
+    """Share of the machines with this condition, relative to the other entries."""
+    order: Distribution = within(0.05, 50, default=1.0)
+    """Order of the shaft whose multiples it shows: 1 for the shaft, 0.5 for looseness and rub, that of the belt for a belt."""
+    count: Distribution = within(0, 400, default=0.0)
+    """Number of lines, at 1, 2, ... times `order`, rounded to a whole number; those beyond half the sample rate are left out."""
+    level_db: Distribution = within(-80, 40, default=-20.0)
+    """Rms of a line relative to that of the background noise, drawn for each."""
+    strongest: Annotated[StrictInt, Field(ge=1, le=400)] | None = None
+    """Number of the line that gets the largest of the drawn levels: 1 for unbalance, 2 for misalignment; any if left out."""
+    bursts: Bursts | None = None
+    """Bursts of noise locked to the shaft; none if left out."""
+
+
+class MachineConditions(LockedSource):
+    """Conditions of the machine other than those of its bearings, drawn per rig and the same for all classes of bearings."""
+
+    place, of_rig, of_record = "machine_conditions", Purpose.MACHINE_CONDITION, Purpose.BURSTS
+    labels = (
+        Variable("machine_condition", "i1", "1", "label", "condition of the machine, whatever that of its bearing", MACHINE_CONDITIONS),
+    )  # fmt: skip
+
+    probability: Probability
+    """Share of the rigs whose machine has one of the conditions."""
+    entries: Annotated[tuple[MachineCondition, ...], Field(min_length=1)]
+    """Conditions, one of which a machine has; drawn by weight."""
+
+    def draw_present(self, draws: Draws) -> Drawn:
+        """Kind, order, lines with their phases [rad], and bursts, None for none."""
+        entry = self.entries[weighted_index(tuple(entry.weight for entry in self.entries), draws.u())]
+        drawn = draws.section(entry)
+        levels = [draws.ratio(entry.level_db) for _ in range(round(drawn["count"]))]
+        if levels and entry.strongest is not None:
+            place, largest = min(entry.strongest, len(levels)) - 1, int(np.argmax(levels))
+            levels[place], levels[largest] = levels[largest], levels[place]
+        lines = tuple({"level": level, "phase": draws.angle()} for level in levels)
+        bursts = None
+        if entry.bursts is not None:
+            bursts = draws.section(entry.bursts)
+            bursts |= {"level": decibel_to_ratio(bursts["level"]), "start": draws.angle()}
+        return {"kind": entry.kind, "order": drawn["order"], "lines": lines, "bursts": bursts}
+
+    @staticmethod
+    def found(drawn: Drawn) -> dict[str, float]:
+        """Code of the condition."""
+        return {"machine_condition": 1 + get_args(MachineKind).index(drawn["kind"])}
+
+    @staticmethod
+    def vibrations(drawn: Drawn, angles: FloatArray, rng: np.random.Generator) -> list[FloatArray]:
+        """Lines and bursts of the condition."""
+        bursts = drawn["bursts"]
+        return [lines_of(drawn, angles), *([] if bursts is None else [bursts_of(bursts, angles, rng)])]
+
+
+def lines_of(condition: Drawn, angles: FloatArray) -> FloatArray:
+    """Lines of a condition, shape (time,) [1].
+
+    A line that passes half the sample rate anywhere in the record, where the anti-alias filter would remove it, is left out.
+    """
+    fastest = float(np.abs(np.diff(angles)).max()) * condition["order"]
+    lines = condition["lines"][: math.ceil(math.pi / fastest) - 1] if fastest > 0 else condition["lines"]
+    if not lines:
+        return np.zeros(len(angles))
+    spectrum = [0.0, *(line["level"] * np.exp(1j * line["phase"]) for line in lines)]
+    period = irfft(spectrum, _PERIOD) * (_PERIOD / math.sqrt(2))
+    turn = np.arange(_PERIOD) * (2 * math.pi / _PERIOD)
+    return np.interp(condition["order"] * angles, turn, period, period=2 * math.pi)
+
+
+def bursts_of(drawn: Drawn, angles: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Bursts of a condition, shape (time,) [1]."""
+    sharpness = 1 / drawn["length"] ** 2
+    bells = np.exp(sharpness * (np.cos(drawn["order"] * angles + drawn["start"]) - 1))
+    return drawn["level"] * bells / math.sqrt(np.mean(bells**2)) * rng.standard_normal(len(angles))

@@ -1,0 +1,54 @@
+"""What a source of vibration in the machine is: a section of a recipe that draws itself for a rig."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.corpus.schema import Variable
+from gen.drawing import Drawn, Draws, Probability, Purpose, Section
+
+FloatArray = NDArray[np.floating]
+
+
+class Source(Section):
+    """A source that some rigs have. It is drawn from the stream of the rig; its levels are relative to the rms of the noise."""
+
+    place: ClassVar[str]
+    """Its key in a recipe, and in the drawn background of a rig."""
+
+    probability: Probability
+
+    def draw(self, draws: Draws) -> Any:
+        """Drawn values in SI units, levels as ratios; None if the rig has no such source."""
+        return self.draw_present(draws) if draws.is_present(self) else None
+
+    def draw_present(self, draws: Draws) -> Any:
+        """Drawn values of a source that the rig has."""
+        raise NotImplementedError
+
+
+class LockedSource(Source):
+    """A source whose vibration follows from the angle of the shaft, ahead of the paths.
+
+    It has streams of its own for a rig and for a record, so that it moves no other drawn value.
+    """
+
+    of_rig: ClassVar[Purpose]
+    of_record: ClassVar[Purpose]
+    labels: ClassVar[tuple[Variable, ...]] = ()
+    """What the corpus says of it, 0 without it."""
+
+    @staticmethod
+    def found(drawn: Drawn) -> Mapping[str, float]:
+        """Values of its labels."""
+        raise NotImplementedError
+
+    @staticmethod
+    def vibrations(drawn: Drawn, angles: FloatArray, rng: np.random.Generator) -> list[FloatArray]:
+        """Vibrations over the rms of the background noise, for ``angles`` of the shaft [rad], shape (time,) each [1].
+
+        Each has its rms ahead of the paths and, over all channels, behind them.
+        """
+        raise NotImplementedError
