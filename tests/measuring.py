@@ -5,12 +5,34 @@ from dataclasses import replace
 import numpy as np
 
 from gen.measurement.measure import measure
-from gen.scenarios import Background, ShaftModulation, draw_scenarios, settings_of
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.timeline import timeline
 
 FS = 12_000.0
 FLOAT = {"recording.converter": {"kind": "float32"}}
-QUIET = Background(0.0, 1e-6, (), ShaftModulation(), (), (), None, None)
+
+
+def path(direct, modes=(), once=0.0, twice=0.0):
+    return {"direct": direct, "modes": tuple(modes), "modulation": {"once": once, "twice": twice}}
+
+
+def mode(frequency, damping, gain):
+    return {"frequency": frequency, "damping": damping, "gain": gain}
+
+
+def tone(frequency, level, modulation=0.0):
+    return {"frequency": float(frequency), "level": level, "modulation": modulation}
+
+
+def quiet(**sources):
+    """A drawn background without a floor to speak of, with some sources."""
+    return {
+        "slope": 0.0, "floor": 1e-6, "modes": (), "modulation": {"once": 0.0, "twice": 0.0}, "coherence": 0.0, "growth": 0.0,
+        "harmonics": None, "tones": None, "impulses": None, "knocks": None,
+    } | sources  # fmt: skip
+
+
+QUIET = quiet()
 
 
 def response(recipe, n_records, wave):

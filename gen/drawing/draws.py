@@ -6,6 +6,7 @@ section are drawn.
 
 import functools
 import math
+import reprlib
 from collections.abc import Callable, Collection, Mapping
 from typing import Annotated, Any
 
@@ -20,15 +21,14 @@ from gen.support.units import decibel_to_ratio, split_unit
 
 
 def drawn_values(value: Any) -> Any:
-    """Drawn values that may come from a file, lists as tuples; ValueError if one is no number, no text and no drawn section."""
-    match value:
-        case dict():
-            return {str(key): drawn_values(item) for key, item in value.items()}
-        case list() | tuple():
-            return tuple(map(drawn_values, value))
-        case int() | float() | str() | None if not isinstance(value, bool):
-            return value
-    raise ValueError(f"{type(value).__name__} is neither a number nor a drawn section")
+    """Drawn values that may come from a file, lists as tuples; ValueError about one that is neither a number nor a drawn section."""
+    if isinstance(value, dict):
+        return {key: item if key == "kind" else drawn_values(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return tuple(map(drawn_values, value))
+    if value is None or type(value) in (int, float):
+        return value
+    raise ValueError(f"{reprlib.repr(value)} is no number")
 
 
 Drawn = Annotated[dict[str, Any], AfterValidator(drawn_values)]

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from gen.measurement.measure import compile_mixing
-from gen.mechanisms.measuring_chain import faults_of
+from gen.mechanisms.chain.measuring_chain import faults_of
 from gen.physics.inputs import CONSTANT, ROUND, Waviness
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.layout import Shape

@@ -13,7 +13,7 @@ from gen.drawing import Drawn
 from gen.measurement.measure import Measured
 from gen.mechanisms.background.section import LABELS as OF_SOURCES
 from gen.mechanisms.background.section import locked_of
-from gen.mechanisms.measuring_chain import LABELS as OF_CHAIN
+from gen.mechanisms.chain.measuring_chain import LABELS as OF_CHAIN
 from gen.physics.bearing import FaultOrders, orders
 from gen.scenarios import Scenario, common_settings, scenario_texts
 from gen.simulation.simulate import Response

@@ -28,7 +28,7 @@ from gen.measurement.levels import (
 from gen.measurement.mixing import Products, mix
 from gen.measurement.rig import RigFilters, rig_filters
 from gen.mechanisms.background.section import locked_of
-from gen.mechanisms.measuring_chain import disturb
+from gen.mechanisms.chain.measuring_chain import disturb
 from gen.scenarios import Gains, Purpose, Scenario, common_settings
 from gen.simulation.shaft import scenario_angles
 from gen.simulation.simulate import Twins

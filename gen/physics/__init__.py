@@ -11,6 +11,7 @@ hertz      load-deflection factor of point and line contacts
 rotor      machine constants, static equilibrium, bounds of its eigenfrequencies
 rating     static load rating and equivalent static load
 resonance  resonances that are excited at their base
+orbit      elliptical motion at one frequency
 lubricant  oil film and temperature: clearance, stiffness, damping
 axial      squeeze of the balls by an axial load
 profile    change of speed and load over a record

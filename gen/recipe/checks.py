@@ -1,6 +1,6 @@
 """Refuse recipes that cannot be made as a whole: keys that contradict each other, weights that cannot be met."""
 
-from gen.mechanisms.measuring_chain import faults_of
+from gen.mechanisms.chain.measuring_chain import faults_of
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
 from gen.recipe.loads import load_problem
 from gen.recipe.machine import CatalogueBearing, designation_problem

@@ -13,7 +13,7 @@ from gen.corpus import Codec
 from gen.drawing import Count, Name, Number, Section
 from gen.mechanisms.background.machine_conditions import MachineConditions
 from gen.mechanisms.background.section import BackgroundSection
-from gen.mechanisms.measuring_chain import SensorFaultsSection
+from gen.mechanisms.chain.measuring_chain import SensorFaultsSection
 from gen.mechanisms.path import PathSection
 from gen.recipe.fault_entries import FaultList, fault_entries
 from gen.recipe.faults import Fault

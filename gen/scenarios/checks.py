@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from gen.mechanisms.measuring_chain import foreign
+from gen.mechanisms.chain.measuring_chain import foreign
 from gen.physics.bearing import Bearing
 from gen.physics.extent import MAX_BALLS
 from gen.scenarios.faults import check_fits

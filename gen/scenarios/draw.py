@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gen.corpus import SPLITS
 from gen.drawing import Draws, Known, known_of, weighted_index
 from gen.mechanisms.background.section import draw_background, draw_later, draw_locked
-from gen.mechanisms.measuring_chain import draw_for_rig
+from gen.mechanisms.chain.measuring_chain import draw_for_rig
 from gen.recipe import Fault, Recipe, operations
 from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_bearing, known_of_rig
 from gen.scenarios.classes import fault_of_each_specimen, other_fault_of_each_specimen, possible_entries

@@ -11,7 +11,6 @@ import numpy as np
 from pydantic import Field
 
 from gen.drawing import Drawn, Purpose, stream
-from gen.mechanisms.measuring_chain import SensorFaultDraws
 from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
 from gen.recipe import MAX_OVERSAMPLING
@@ -119,7 +118,7 @@ class Rig:
     lubricant: Drawn | None = None
     footprint: bool = False
     """True for contacts of Hertzian width, False for point contacts."""
-    sensor_faults: SensorFaultDraws = field(default_factory=dict)
+    sensor_faults: Drawn = field(default_factory=dict)
     """Faults of the measuring chain that last as long as the rig."""
     high_pass: float = 0.0
     """Frequency below which the sensors measure less and less; 0 if they measure down to 0 Hz [Hz]."""
@@ -223,7 +222,7 @@ class Operation:
     load_profile: Profile | None = None
     level_try: int = 0
     """Number of levels that were drawn before this one and at which the fault could not be seen."""
-    sensor_faults: SensorFaultDraws = field(default_factory=dict)
+    sensor_faults: Drawn = field(default_factory=dict)
     """Faults of the measuring chain that come and go."""
     pair: int = -1
     """Number of the group of records that differ in the severity of their fault alone; -1 if the record is in no group."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.drawing import Combination, Draws, Known, known_of
-from gen.mechanisms.measuring_chain import draw_for_record
+from gen.mechanisms.chain.measuring_chain import draw_for_record
 from gen.physics.axial import least_axial_load
 from gen.physics.profile import Profile
 from gen.physics.rating import static_rating

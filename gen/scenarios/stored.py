@@ -95,9 +95,10 @@ def _of_today(text: str) -> str:
         rig, record = values["rig"], values["record"]
         background = rig["background"]
         background["gear_mesh"], background["machine_conditions"] = background.pop("gear"), background.pop("condition")
-        if "ball_mass" not in rig:
+        if "ball_mass" not in rig:  # of the last days before 0.1.0
             return json.dumps(values)
-        del rig["ball_mass"]
+        if rig.pop("ball_mass"):
+            return text
         of_rig, of_record = rig["sensor_faults"] or {}, record["sensor_faults"] or {}
         mounts = of_rig.pop("loose_mounts", [])
         of_rig["loose_mount"] = mounts if any(mounts) else None

@@ -1,1 +1,18 @@
-"""Background of a machine: noise, and one file for each source of vibration beside its bearings."""
+"""Background of a machine: its noise, and sources of vibration beside its bearings.
+
+================== ==========================================================
+module             responsibility
+================== ==========================================================
+source             what a source is
+noise              colour, resonances and coherence of the noise
+harmonics          lines at multiples of the shaft rate
+tones              lines at fixed frequencies
+impulses           impulses at random times
+knocks             impulses locked to the shaft
+gear_mesh          multiples of a tooth mesh with sidebands of both gears
+machine_conditions lines and bursts of machines that are not well
+section            all of them, as a recipe has them and as they are drawn
+================== ==========================================================
+
+A further source is one file, and its line in ``section.LOCKED``.
+"""

@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.drawing import Distribution, Drawn, Draws, Probability, within
-from gen.mechanisms.background.source import FloatArray, Source
+from gen.mechanisms.background.source import BackgroundSource, FloatArray
 from gen.physics.orbit import along
 
 _FLATTEST = 0.8  # orbit at a harmonic: the shaft never moves along a straight line
 
 
-class Harmonics(Source):
+class Harmonics(BackgroundSource):
     """Lines at multiples of the shaft rate."""
 
     place = "harmonics"

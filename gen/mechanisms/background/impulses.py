@@ -3,10 +3,10 @@
 import numpy as np
 
 from gen.drawing import Distribution, Drawn, Draws, Probability, within
-from gen.mechanisms.background.source import FloatArray, Source
+from gen.mechanisms.background.source import BackgroundSource, FloatArray
 
 
-class Impulses(Source):
+class Impulses(BackgroundSource):
     """Impulses at random times, which no fault causes and which excite the path."""
 
     place = "impulses"

@@ -5,12 +5,12 @@ import math
 import numpy as np
 
 from gen.drawing import Distribution, Drawn, Draws, Probability, within
-from gen.mechanisms.background.source import FloatArray, Source
+from gen.mechanisms.background.source import BackgroundSource, FloatArray
 
 _SCATTER = 0.2  # of the strength from knock to knock
 
 
-class Knocks(Source):
+class Knocks(BackgroundSource):
     """Impulses locked to the shaft, which no bearing fault causes and which excite the path."""
 
     place = "knocks"

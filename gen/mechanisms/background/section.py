@@ -5,6 +5,7 @@ streams of their own, and a further one moves no value of the others.
 """
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,11 +19,11 @@ from gen.mechanisms.background.impulses import Impulses
 from gen.mechanisms.background.knocks import Knocks
 from gen.mechanisms.background.machine_conditions import MachineConditions
 from gen.mechanisms.background.noise import Noise
-from gen.mechanisms.background.source import LockedSource, Source
+from gen.mechanisms.background.source import BackgroundSource, LockedSource
 from gen.mechanisms.background.tones import Tones
 from gen.mechanisms.path import draw_modes, draw_modulation
 
-SOURCES: tuple[type[Source], ...] = (Harmonics, Tones, Impulses, Knocks)
+SOURCES: tuple[type[BackgroundSource], ...] = (Harmonics, Tones, Impulses, Knocks)
 """Sources of the stream of a rig, in the order in which they are drawn."""
 LOCKED: tuple[type[LockedSource], ...] = (GearMesh, MachineConditions)
 """Sources that follow from the angle of the shaft, in the order in which they are added."""
@@ -71,9 +72,9 @@ def draw_later(section: BackgroundSection, draws: Draws) -> Drawn:
 
 def draw_locked(sections: Iterable[Section], stream_for: Callable[[Purpose], np.random.Generator], rig: int) -> Drawn:
     """Sources of a rig that are locked to the shaft, of the sections that have them; each from a stream of its own."""
-    drawn: Drawn = {}
-    for source in LOCKED:
-        wanted = next((found for section in sections if (found := getattr(section, source.place, None))), None)
+    drawn: Drawn = dict.fromkeys(source.place for source in LOCKED)
+    for section, source in product(sections, LOCKED):
+        wanted = getattr(section, source.place, None)
         if wanted is not None:
             drawn[source.place] = wanted.draw(Draws(stream_for(source.of_rig), np.empty(0), rig, f"rig {rig}"))
     return drawn

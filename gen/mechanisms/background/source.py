@@ -12,7 +12,7 @@ from gen.drawing import Drawn, Draws, Probability, Purpose, Section
 FloatArray = NDArray[np.floating]
 
 
-class Source(Section):
+class BackgroundSource(Section):
     """A source that some rigs have. It is drawn from the stream of the rig; its levels are relative to the rms of the noise."""
 
     place: ClassVar[str]
@@ -29,7 +29,7 @@ class Source(Section):
         raise NotImplementedError
 
 
-class LockedSource(Source):
+class LockedSource(BackgroundSource):
     """A source whose vibration follows from the angle of the shaft, ahead of the paths.
 
     It has streams of its own for a rig and for a record, so that it moves no other drawn value.

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.drawing import Distribution, Drawn, Draws, Probability, within
-from gen.mechanisms.background.source import FloatArray, Source
+from gen.mechanisms.background.source import BackgroundSource, FloatArray
 from gen.physics.orbit import along
 
 
-class Tones(Source):
+class Tones(BackgroundSource):
     """Lines at fixed frequencies, such as those of other machines."""
 
     place = "tones"

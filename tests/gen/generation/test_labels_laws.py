@@ -8,7 +8,7 @@ import pytest
 from gen.corpus import FAULTS, SPLITS
 from gen.generation.labels import part_dataset
 from gen.measurement.measure import measure
-from gen.mechanisms.measuring_chain import LABELS
+from gen.mechanisms.chain.measuring_chain import LABELS
 from gen.recipe import corpus_identity
 from gen.scenarios import draw_scenarios, read_scenario, settings_of
 from gen.simulation.timeline import timeline

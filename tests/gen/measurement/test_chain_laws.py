@@ -9,20 +9,24 @@ from scipy.signal import welch
 from gen.measurement.measure import measure
 from gen.measurement.rig import high_pass
 from gen.physics.kernel.decimate import decimation, pass_band
-from gen.scenarios import Background, Gear, Mode, Path, ShaftModulation, Tone, draw_scenarios
+from gen.scenarios import draw_scenarios
+from tests.measuring import mode, path, quiet, tone
 
 FS = 12_000.0
-DIRECT = Path(1.0, (), ShaftModulation())
-SOUND = Background(0.0, 0.0, (), ShaftModulation(), (), (), None, None)
+DIRECT = path(1.0)
+SOUND = quiet(floor=0.0)
 LONG = {"recording.converter": {"kind": "float32"}, "recording.duration_s": 10.0, "operation.shaft_rpm": 1800}
-GEAR = Gear(150, 300, ({"level": 3.0, "phase": 0.0},) * 2, 0.9, 0.0, 0.0, high_point=0.0, lead_point=0.0)
+GEAR = {
+    "teeth": 150, "mate_teeth": 300, "lines": ({"level": 3.0, "phase": 0.0},) * 2, "shaft_modulation": 0.9, "mate_modulation": 0.0,
+    "phase_modulation": 0.0, "high_point": 0.0, "lead_point": 0.0,
+}  # fmt: skip
 NOISY = {
     "noise": SOUND,
-    "modes": replace(SOUND, modes=(Mode(5900.0, 0.01, 3.0),)),
-    "tones": replace(SOUND, tones=(Tone(5950.0, 3.0), Tone(7000.0, 3.0))),
-    "impulses": replace(SOUND, impulses=Tone(40.0, 30.0)),
-    "knocks": replace(SOUND, knocks=Tone(3.0, 30.0)),
-    "gear": replace(SOUND, gear=GEAR),
+    "modes": quiet(floor=0.0, modes=(mode(5900.0, 0.01, 3.0),)),
+    "tones": quiet(floor=0.0, tones=(tone(5950.0, 3.0), tone(7000.0, 3.0))),
+    "impulses": quiet(floor=0.0, impulses=tone(40.0, 30.0)),
+    "knocks": quiet(floor=0.0, knocks=tone(3.0, 30.0)),
+    "gear": quiet(floor=0.0, gear_mesh=GEAR),
 }
 
 
@@ -71,7 +75,7 @@ def test_a_sensor_loses_three_decibels_at_its_corner_and_six_an_octave_below_it(
 
 def test_bearing_and_machine_pass_the_same_sensor(recipe_with):
     """A slow line loses as much whether the bearing makes it or the shaft, at 30 Hz behind a corner of 40 Hz."""
-    of_shaft = line(recorded(recipe_with, replace(SOUND, harmonics=(Tone(1.0, 1.0),)), high_pass=40.0))
+    of_shaft = line(recorded(recipe_with, quiet(floor=0.0, harmonics=(tone(1.0, 1.0),)), high_pass=40.0))
     of_bearing = line(recorded(recipe_with, SOUND, wave, high_pass=40.0))
     expected = abs(high_pass(40.0, np.array([30.0])))[0]
     assert of_shaft == pytest.approx(expected, abs=0.03)

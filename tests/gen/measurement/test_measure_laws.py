@@ -9,10 +9,24 @@ from hypothesis import strategies as st
 from scipy.signal import welch
 
 from gen.measurement.measure import measure
-from gen.scenarios import Background, Gear, Mode, Path, ShaftModulation, Tone, draw_scenarios, settings_of, with_level
+from gen.scenarios import draw_scenarios, settings_of, with_level
 from gen.simulation.simulate import Twins
 from gen.simulation.timeline import timeline
-from tests.measuring import FLOAT, FS, QUIET, background_of, hiss, response, rms, silence, with_rig
+from tests.measuring import (
+    FLOAT,
+    FS,
+    QUIET,
+    background_of,
+    hiss,
+    mode,
+    path,
+    quiet,
+    response,
+    rms,
+    silence,
+    tone,
+    with_rig,
+)
 
 
 @pytest.fixture(scope="module")
@@ -81,9 +95,7 @@ def test_the_background_does_not_know_the_class(recipe_with):
 
 def test_records_of_one_rig_share_the_spectrum_of_their_noise_but_not_its_samples(recipe_with):
     recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0})
-    scenarios = with_rig(
-        draw_scenarios(recipe, 0, 2), background=Background(1.0, 1e-3, (), ShaftModulation(), (), (), None, None)
-    )
+    scenarios = with_rig(draw_scenarios(recipe, 0, 2), background=quiet(slope=1.0, floor=1e-3))
     one, other = measure(silence(recipe, 2), scenarios).signal[:, 0]
     assert abs(np.corrcoef(one, other)[0, 1]) < 0.1
     densities = welch(np.stack([one, other]), FS, nperseg=512)[1][:, 5:-5]
@@ -115,27 +127,25 @@ def tone_through(recipe, scenarios, frequency):
 @given(
     st.floats(100, 5500),
     st.floats(0, 2),
-    st.lists(st.builds(Mode, st.floats(500, 5500), st.floats(0.006, 0.08), st.floats(-3, 3)), max_size=3),
+    st.lists(st.builds(mode, st.floats(500, 5500), st.floats(0.006, 0.08), st.floats(-3, 3)), max_size=3),
 )
 def test_a_tone_comes_through_the_path_with_the_transmissibility_of_its_resonances(
     recipe_with, frequency, direct, modes
 ):
     recipe = recipe_with(FLOAT)
-    scenarios = with_rig(
-        draw_scenarios(recipe, 0, 1), path=Path(direct, tuple(modes), ShaftModulation()), gain=1.0, background_rms=0.0
-    )
+    scenarios = with_rig(draw_scenarios(recipe, 0, 1), path=path(direct, modes), gain=1.0, background_rms=0.0)
     tone, found = tone_through(recipe, scenarios, frequency)
     expected = complex(direct)
-    for mode in modes:
-        stiff = mode.frequency**2 + 2j * mode.damping * mode.frequency * tone
-        expected += mode.gain * stiff / (stiff - tone**2)
+    for one in modes:
+        stiff = one["frequency"] ** 2 + 2j * one["damping"] * one["frequency"] * tone
+        expected += one["gain"] * stiff / (stiff - tone**2)
     assert found == pytest.approx(expected, abs=1e-4 * (1 + abs(expected)))
 
 
 @pytest.mark.parametrize("slope", [-0.3, 0.0, 1.0, 2.0])
 def test_the_noise_falls_with_the_drawn_slope_and_has_the_drawn_rms(recipe_with, slope):
     recipe = recipe_with(FLOAT | {"recording.duration_s": 20.0})
-    noise = background_of(recipe, replace(QUIET, slope=slope), background_rms=0.3)[0][0, 0]
+    noise = background_of(recipe, quiet(slope=slope), background_rms=0.3)[0][0, 0]
     frequency, density = welch(noise, FS, nperseg=4096)
     band = (frequency > 100) & (frequency < 4700)  # what the anti-alias filter passes
     fitted = np.polyfit(np.log(frequency[band]), np.log(density[band]), 1)[0]
@@ -156,10 +166,10 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
         FLOAT | {"recording.duration_s": 5.0, "operation.shaft_rpm": 1800, "path.modes": None, "path.direct": 1.0}
     )
     counts, powers = {}, {}
-    for kind, sound in (("knocks", Tone(2.0, 1e3)), ("impulses", Tone(40.0, 1e4))):
-        signal = background_of(recipe, replace(QUIET, **{kind: sound}))[0][0, 0]
+    for kind, sound in (("knocks", tone(2.0, 1e3)), ("impulses", tone(40.0, 1e4))):
+        signal = background_of(recipe, quiet(**{kind: sound}))[0][0, 0]
         counts[kind] = np.count_nonzero(np.abs(signal) > 300)
-        powers[kind] = np.sum((signal / sound.level) ** 2)
+        powers[kind] = np.sum((signal / sound["level"]) ** 2)
     assert counts["knocks"] == pytest.approx(2 * 30 * 5, abs=1)
     # a knock and an impulse of one size have one energy; the square of the size of a knock is 1 + 0.2^2 on average
     energy = powers["knocks"] / (1.04 * counts["knocks"])
@@ -170,10 +180,11 @@ def test_a_gear_and_impulses_are_both_in_a_record_whose_transform_is_longer(reci
     """A response of 6,600 samples, whose Fourier transform has 6,750."""
     recipe = recipe_with(FLOAT | {"recording.duration_s": 0.5, "operation.shaft_rpm": 1800})
     lines = ({"level": 1.0, "phase": 0.0},)
-    gear = Gear(20, 40, lines, 0.0, 0.0, 0.0, high_point=0.0, lead_point=0.0)
-    impulses = Tone(40.0, 1e3)
-    sources = {"gear": gear}, {"impulses": impulses}, {"gear": gear, "impulses": impulses}
-    powers = [rms(background_of(recipe, replace(QUIET, **some))[0]) ** 2 for some in sources]
+    gear = {"teeth": 20, "mate_teeth": 40, "lines": lines}
+    gear |= dict.fromkeys(("shaft_modulation", "mate_modulation", "phase_modulation", "high_point", "lead_point"), 0.0)
+    impulses = tone(40.0, 1e3)
+    sources = {"gear_mesh": gear}, {"impulses": impulses}, {"gear_mesh": gear, "impulses": impulses}
+    powers = [rms(background_of(recipe, quiet(**some))[0]) ** 2 for some in sources]
     assert powers[2] == pytest.approx(powers[0] + powers[1], rel=0.05)
 
 
@@ -181,13 +192,13 @@ def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
     recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800})
     plain = with_rig(
         draw_scenarios(recipe, 0, 1),
-        path=Path(1.0, (), ShaftModulation()),
+        path=path(1.0),
         background=QUIET,
         background_rms=0.0,
         gain=1.0,
     )
     moved = response(recipe, 1, lambda time: np.sqrt(2) * np.cos(2 * np.pi * 2000 * time))
-    signal = measure(moved, with_rig(plain, path=Path(1.0, (), ShaftModulation(0.6, 0.2)))).signal[0, 0].astype(float)
+    signal = measure(moved, with_rig(plain, path=path(1.0, (), 0.6, 0.2))).signal[0, 0].astype(float)
     assert line(signal, 2000) == pytest.approx(1.0, abs=1e-3)
     for order, depth in ((1, 0.6), (2, 0.2)):
         assert line(signal, 2000 + 30 * order) == pytest.approx(depth / 2, abs=1e-3)
@@ -197,7 +208,7 @@ def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
 def test_channels_on_the_common_path_share_its_modulation_and_a_path_of_its_own_has_another(recipe_with):
     three = [{"name": name, "body": "sensor"} for name in ("first", "second", "third")]
     recipe = recipe_with(FLOAT | {"recording.channels": three})
-    modulated = Path(1.0, (), ShaftModulation(0.6, 0.2))
+    modulated = path(1.0, (), 0.6, 0.2)
     changes = {"path": modulated, "own_paths": (None, None, modulated), "background": QUIET, "background_rms": 0.0}
     scenarios = with_rig(draw_scenarios(recipe, 0, 1), **changes)
     first, second, third = measure(response(recipe, 1, np.ones_like), scenarios).signal[0]

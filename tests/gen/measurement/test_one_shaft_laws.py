@@ -1,15 +1,14 @@
 """Laws of the one shaft: all that the machine locks to it stands at its orders, whatever course the speed takes."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from gen.measurement.rig import along, base_transmissibility
-from gen.scenarios import Mode, Path, ShaftModulation, Tone, settings_of
+from gen.mechanisms.path import transmissibility
+from gen.physics.orbit import along
+from gen.scenarios import settings_of
 from gen.simulation.shaft import scenario_angles
 from gen.simulation.timeline import timeline
-from tests.measuring import FLOAT, QUIET, background_of
+from tests.measuring import FLOAT, QUIET, background_of, mode, path, quiet, tone
 
 FAST = FLOAT | {"recording.duration_s": 1.0, "operation.shaft_rpm": 1800}
 COURSES = {
@@ -51,8 +50,8 @@ def nearest_line(spectrum, orders, order):
 def test_every_harmonic_stands_at_its_order(recipe_with, changes):
     """With 1 % wander the rate at the twelfth harmonic moves by many lines of the spectrum; its order does not."""
     recipe = recipe_with(FAST | changes)
-    harmonics = tuple(Tone(order, 1.0) for order in (1, 2, 5, 12))
-    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=harmonics), 2)
+    harmonics = tuple(tone(order, 1.0) for order in (1, 2, 5, 12))
+    signals, scenarios = background_of(recipe, quiet(harmonics=harmonics), 2)
     for signal, scenario in zip(signals[:, 0], scenarios, strict=True):
         spectrum, orders = by_order(signal, scenario, recipe)
         turns = turns_of(scenario, recipe)
@@ -65,19 +64,17 @@ def test_a_harmonic_passes_through_the_path_of_its_channel_at_its_own_frequency(
     channels = [{"name": name, "body": "housing", "angle_deg": 0} for name in ("direct", "resonant")]
     steady = {"operation.speed_wander_percent": 0, "operation.label_error_percent": 0}
     recipe = recipe_with(FAST | steady | {"recording.channels": channels})
-    modes = (Mode(150.0, 0.1, 3.0),)
-    paths = Path(1.0, (), ShaftModulation()), Path(0.5, modes, ShaftModulation())
-    (signal,), scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(5, 1e3),)), own_paths=paths)
+    modes = (mode(150.0, 0.1, 3.0),)
+    paths = path(1.0, ()), path(0.5, modes)
+    (signal,), scenarios = background_of(recipe, quiet(harmonics=(tone(5, 1e3),)), own_paths=paths)
     axis = timeline(settings_of(recipe))
     lines = signal @ np.exp(-5j * scenario_angles(scenarios[0], axis)[axis.kept])
-    assert lines[1] / lines[0] == pytest.approx(
-        complex(0.5 + base_transmissibility(modes, np.array([150.0]))[0]), rel=0.01
-    )
+    assert lines[1] / lines[0] == pytest.approx(complex(0.5 + transmissibility(modes, np.array([150.0]))[0]), rel=0.01)
 
 
 def test_the_knocks_of_all_records_of_a_rig_come_at_the_same_angles_of_the_shaft(recipe_with):
     recipe = recipe_with(FAST | {"path.modes": None, "operation.speed_wander_percent": 1})
-    signals, scenarios = background_of(recipe, replace(QUIET, knocks=Tone(3.0, 30.0)), 2)
+    signals, scenarios = background_of(recipe, quiet(knocks=tone(3.0, 30.0)), 2)
     axis, of_records = timeline(settings_of(recipe)), []
     for signal, scenario in zip(signals[:, 0], scenarios, strict=True):
         angles = scenario_angles(scenario, axis)[axis.kept][np.abs(signal) > 10]
@@ -90,8 +87,8 @@ def test_the_knocks_of_all_records_of_a_rig_come_at_the_same_angles_of_the_shaft
 @courses
 def test_knocks_and_the_modulation_of_the_noise_stand_at_their_orders(recipe_with, changes):
     recipe = recipe_with(FAST | changes | {"path.modes": None})
-    knocking = replace(QUIET, knocks=Tone(3.0, 30.0))
-    modulated = replace(QUIET, modulation=ShaftModulation(0.9, 0.0))
+    knocking = quiet(knocks=tone(3.0, 30.0))
+    modulated = quiet(modulation={"once": 0.9, "twice": 0.0})
     for background, order in ((knocking, 3), (modulated, 1)):
         signals, scenarios = background_of(recipe, background)
         power = signals[0, 0] ** 2
@@ -102,7 +99,7 @@ def test_knocks_and_the_modulation_of_the_noise_stand_at_their_orders(recipe_wit
 
 def test_harmonics_have_the_same_phase_to_the_shaft_in_every_record_of_a_rig(recipe_with):
     recipe = recipe_with(FAST)
-    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(1, 1.0), Tone(3, 1.0))), 2)
+    signals, scenarios = background_of(recipe, quiet(harmonics=(tone(1, 1.0), tone(3, 1.0))), 2)
     for order in (1, 3):
         phases = [
             np.angle(at_order(one, scenario, recipe, order))
@@ -124,7 +121,7 @@ def test_the_first_harmonic_is_in_phase_with_the_unbalance(recipe_with):
     recipe = recipe_with(
         FAST | {"recording.channels": CROSSED, "path": {"direct": 1.0}, "operation.speed_wander_percent": 0}
     )
-    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(1, 1.0),)))
+    signals, scenarios = background_of(recipe, quiet(harmonics=(tone(1, 1.0),)))
     horizontal, vertical = (at_order(one, scenarios[0], recipe, 1) for one in signals[0])
     forward = (horizontal + 1j * vertical) / 2  # the part that turns with the shaft
     assert np.angle(forward) == pytest.approx(0.0, abs=0.02)
@@ -142,8 +139,8 @@ def test_an_orbit_is_an_ellipse_with_the_drawn_flatness(flatness):
 
 def test_lines_have_their_level_on_average_over_the_channels_and_a_phase_of_their_own_in_each(recipe_with):
     recipe = recipe_with(FAST | {"recording.channels": CROSSED, "operation.speed_wander_percent": 0})
-    lines = {"harmonics": (Tone(1, 1.0), Tone(2, 2.0)), "tones": (Tone(1000.0, 3.0),)}
-    signals, scenarios = background_of(recipe, replace(QUIET, **lines))
+    lines = {"harmonics": (tone(1, 1.0), tone(2, 2.0)), "tones": (tone(1000.0, 3.0),)}
+    signals, scenarios = background_of(recipe, quiet(**lines))
     for order, level in ((1, 1.0), (2, 2.0)):
         x, y = (at_order(one, scenarios[0], recipe, order) for one in signals[0])
         assert np.sqrt((abs(x) ** 2 + abs(y) ** 2) / 2) == pytest.approx(np.sqrt(2) * level, rel=0.03)
@@ -157,7 +154,7 @@ def test_the_noise_of_two_channels_has_the_drawn_coherence(recipe_with, coherenc
     from scipy.signal import coherence as measured
 
     recipe = recipe_with(FAST | {"recording.channels": CROSSED, "recording.duration_s": 8.0})
-    signals, _ = background_of(recipe, replace(QUIET, coherence=coherence))
+    signals, _ = background_of(recipe, quiet(coherence=coherence))
     _, found = measured(*signals[0], 12000, nperseg=256)
     assert found[4:-4].mean() == pytest.approx(coherence, abs=0.02)
     assert np.std(signals[0], axis=1) == pytest.approx([1.0, 1.0], rel=0.03)
@@ -166,7 +163,7 @@ def test_the_noise_of_two_channels_has_the_drawn_coherence(recipe_with, coherenc
 def test_harmonics_grow_with_the_drawn_power_of_the_speed(recipe_with):
     steps = {"kind": "steps", "levels_percent": [50, 100], "step_s": 0.01}
     recipe = recipe_with(FAST | {"operation.speed_profile": steps, "operation.speed_wander_percent": 0})
-    signals, _ = background_of(recipe, replace(QUIET, harmonics=(Tone(4, 1.0),), growth=2.0))
+    signals, _ = background_of(recipe, quiet(harmonics=(tone(4, 1.0),), growth=2.0))
     slow, fast = np.std(signals[0, 0][:5500]), np.std(signals[0, 0][6500:])
     noise = np.std(background_of(recipe, QUIET)[0][0, 0])
     assert np.sqrt((slow**2 - noise**2) / (fast**2 - noise**2)) == pytest.approx(0.25, abs=0.05)

@@ -212,11 +212,11 @@ def test_resonances_are_damping_ratios_and_amplitudes(recipe_with):
     modes = {"count": 8, "frequency_hz": 2500, "damping_percent": 3, "gain_db": 6}
     recipe = recipe_with({"path.modes": modes, "background.modes": modes, "machine.resonator.damping_percent": 4})
     rig = draw_scenarios(recipe, 0, 1)[0].rig
-    for found in (rig.path.modes, rig.background.modes):
+    for found in (rig.path["modes"], rig.background["modes"]):
         assert len(found) == 8
-        assert {mode.frequency for mode in found} == {2500.0}
-        assert [mode.damping for mode in found] == pytest.approx([0.03] * 8)
-        assert [abs(mode.gain) for mode in found] == pytest.approx([10 ** (6 / 20)] * 8)
+        assert {mode["frequency"] for mode in found} == {2500.0}
+        assert [mode["damping"] for mode in found] == pytest.approx([0.03] * 8)
+        assert [abs(mode["gain"]) for mode in found] == pytest.approx([10 ** (6 / 20)] * 8)
     assert rig.resonator["damping"] == pytest.approx(0.04)
 
 

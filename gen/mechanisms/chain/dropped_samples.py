@@ -4,7 +4,7 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Drawn, Probability, within
-from gen.mechanisms.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 
 
 class DroppedSamples(SensorFault):

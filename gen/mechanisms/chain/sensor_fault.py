@@ -12,8 +12,6 @@ from gen.drawing import Drawn, Draws, Probability, Section
 FloatArray = NDArray[np.floating]
 Found = Mapping[str, float]
 """Values of the labels of a fault that is in a record, by name."""
-Faulty = Drawn | tuple[Drawn | None, ...]
-"""Drawn values of one fault, in SI units: of the whole fault, of each channel, or of each event."""
 
 
 class SensorFault(Section):
@@ -36,7 +34,7 @@ class SensorFault(Section):
 
     probability: Probability
 
-    def draw(self, draws: Draws, channels: int) -> Faulty | None:  # noqa: ARG002 - of each channel, for some faults
+    def draw(self, draws: Draws, channels: int) -> Any:  # noqa: ARG002 - of each channel, for some faults
         """Drawn values of this fault; None if it does not occur."""
         return draws.section(self) if draws.is_present(self) else None
 
@@ -52,7 +50,7 @@ class SensorFault(Section):
         return None
 
     @staticmethod
-    def has_form(drawn: Faulty, channels: int) -> bool:  # noqa: ARG004 - of each channel, for some faults
+    def has_form(drawn: Any, channels: int) -> bool:  # noqa: ARG004 - of each channel, for some faults
         """Whether drawn values, which may come from a file, have the form of those of this fault."""
         return isinstance(drawn, dict)
 

@@ -9,15 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from gen.mechanisms.drift import Drift
-from gen.mechanisms.dropped_samples import DroppedSamples
-from gen.mechanisms.emi_bursts import EmiBursts
-from gen.mechanisms.gain_steps import GainSteps
-from gen.mechanisms.loose_mount import LooseMount, through_mount
-from gen.mechanisms.mains_hum import MainsHum
-from gen.mechanisms.measuring_chain import CHAIN, LABELS, disturb
-from gen.mechanisms.rattle import rattling
-from gen.mechanisms.saturation import Saturation
+from gen.mechanisms.chain.drift import Drift
+from gen.mechanisms.chain.dropped_samples import DroppedSamples
+from gen.mechanisms.chain.emi_bursts import EmiBursts
+from gen.mechanisms.chain.gain_steps import GainSteps
+from gen.mechanisms.chain.loose_mount import LooseMount, through_mount
+from gen.mechanisms.chain.mains_hum import MainsHum
+from gen.mechanisms.chain.measuring_chain import CHAIN, LABELS, disturb
+from gen.mechanisms.chain.rattle import rattling
+from gen.mechanisms.chain.saturation import Saturation
 from gen.scenarios import Purpose, draw_scenarios
 from tests.sensor_faults import SENSOR_FAULTS, rarely
 

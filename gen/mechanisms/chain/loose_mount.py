@@ -1,12 +1,13 @@
 """Sensors that are not held firmly."""
 
 import math
+from typing import Any
 
 import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Drawn, Draws, Probability, within
-from gen.mechanisms.sensor_fault import Faulty, FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 from gen.physics.resonance import base_excited
 
 DECAYED = 7.0  # time constants after which a filter has settled to 1e-3
@@ -30,20 +31,20 @@ class LooseMount(SensorFault):
     holding_m_s2: Distribution = within(0, 1e6, open_low=True)
     """Force that holds the sensor over its mass; the sensor lifts off where it would have to follow with more than this acceleration."""
 
-    def draw(self, draws: Draws, channels: int) -> Faulty | None:
+    def draw(self, draws: Draws, channels: int) -> Any:
         """Mount of each channel, None for a firm one."""
         mounts = tuple(one.section(self) if one.is_present(self) else None for one in draws.spawn(channels))
         return mounts if any(mounts) else None
 
     @staticmethod
-    def has_form(drawn: Faulty, channels: int) -> bool:
+    def has_form(drawn: Any, channels: int) -> bool:
         """One mount, or None, for each channel."""
         return isinstance(drawn, tuple) and len(drawn) == channels
 
     @staticmethod
-    def disturb(drawn: Faulty, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG004
+    def disturb(drawn: Any, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG004
         """Signal of sensors that resonate and rattle."""
-        from gen.mechanisms.rattle import rattling  # compiled: a recipe is read without numba
+        from gen.mechanisms.chain.rattle import rattling  # compiled: a recipe is read without numba
 
         loose, impacts = signal.copy(), 0
         for channel, mount in enumerate(drawn):
@@ -56,7 +57,7 @@ class LooseMount(SensorFault):
     @staticmethod
     def compile() -> None:
         """Compile the rattling."""
-        from gen.mechanisms.rattle import rattling
+        from gen.mechanisms.chain.rattle import rattling
 
         rattling(np.zeros(2), 1000.0, 0.1, 1.0, 10_000.0)
 

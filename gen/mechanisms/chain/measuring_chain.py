@@ -13,29 +13,26 @@ Each fault has random streams of its own, so one that is added to a recipe or re
 """
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field, create_model
 
 from gen.corpus.schema import Variable
-from gen.drawing import Draws, Section
-from gen.mechanisms.drift import Drift
-from gen.mechanisms.dropped_samples import DroppedSamples
-from gen.mechanisms.emi_bursts import EmiBursts
-from gen.mechanisms.gain_steps import GainSteps
-from gen.mechanisms.loose_mount import LooseMount
-from gen.mechanisms.mains_hum import MainsHum
-from gen.mechanisms.saturation import Saturation
-from gen.mechanisms.sensor_fault import Faulty, FloatArray, SensorFault
+from gen.drawing import Drawn, Draws, Section
+from gen.mechanisms.chain.drift import Drift
+from gen.mechanisms.chain.dropped_samples import DroppedSamples
+from gen.mechanisms.chain.emi_bursts import EmiBursts
+from gen.mechanisms.chain.gain_steps import GainSteps
+from gen.mechanisms.chain.loose_mount import LooseMount
+from gen.mechanisms.chain.mains_hum import MainsHum
+from gen.mechanisms.chain.saturation import Saturation
+from gen.mechanisms.chain.sensor_fault import FloatArray, SensorFault
 
 CHAIN: tuple[type[SensorFault], ...] = (LooseMount, Drift, MainsHum, EmiBursts, GainSteps, Saturation, DroppedSamples)
 """All faults, in the order in which a signal meets them."""
 LABELS: tuple[Variable, ...] = tuple(label for fault in CHAIN for label in fault.labels)
 """Variables of the corpus that tell which faults a record has, 0 for none."""
-
-SensorFaultDraws = dict[str, Faulty]
-"""Drawn values of each fault that a rig, or a record, has."""
 
 
 def _meaning(fault: type[SensorFault]) -> str:
@@ -58,7 +55,7 @@ def faults_of(section: Section) -> Iterator[SensorFault]:
     return (fault for place in type(section).model_fields if (fault := getattr(section, place)) is not None)
 
 
-def draw_for_rig(section: Section, rng: np.random.Generator, rig: int, channels: int) -> SensorFaultDraws:
+def draw_for_rig(section: Section, rng: np.random.Generator, rig: int, channels: int) -> Drawn:
     """Faults that a rig has as long as it stands."""
     streams = rng.spawn(len(CHAIN))
     found = {
@@ -69,9 +66,9 @@ def draw_for_rig(section: Section, rng: np.random.Generator, rig: int, channels:
     return {place: drawn for place, drawn in found.items() if drawn is not None}
 
 
-def draw_for_record(section: Section, rng: np.random.Generator, record: int) -> SensorFaultDraws:
+def draw_for_record(section: Section, rng: np.random.Generator, record: int) -> Drawn:
     """Faults that come and go, and what faults of rigs have anew in each record."""
-    streams, found = rng.spawn(len(CHAIN)), dict[str, Faulty | None]()
+    streams, found = rng.spawn(len(CHAIN)), dict[str, Any]()
     for fault in faults_of(section):
         if fault.record_stream is not None:
             draws = Draws(streams[fault.record_stream], np.empty(0), record, f"record {record}")
@@ -79,7 +76,7 @@ def draw_for_record(section: Section, rng: np.random.Generator, record: int) -> 
     return {place: drawn for place, drawn in found.items() if drawn is not None}
 
 
-def foreign(of_rig: SensorFaultDraws, of_record: SensorFaultDraws, channels: int) -> str | None:
+def foreign(of_rig: Drawn, of_record: Drawn, channels: int) -> str | None:
     """Name of a drawn fault, which may come from a file, that is none of the chain, of its level or of its form; None without one."""
     by_place = {fault.place: fault for fault in CHAIN}
     for drawn, of_rigs in ((of_rig, True), (of_record, False)):
@@ -95,7 +92,7 @@ def foreign(of_rig: SensorFaultDraws, of_record: SensorFaultDraws, channels: int
 
 
 def disturb(
-    signal: FloatArray, of_rig: SensorFaultDraws, of_record: SensorFaultDraws, fs: float, rng: np.random.Generator
+    signal: FloatArray, of_rig: Drawn, of_record: Drawn, fs: float, rng: np.random.Generator
 ) -> tuple[FloatArray, dict[str, float]]:
     """Signal with all faults of a rig and a record, and the values of the labels of those that are in it.
 

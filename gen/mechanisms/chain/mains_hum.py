@@ -1,12 +1,13 @@
 """Hum of the power supply."""
 
 import math
+from typing import Any
 
 import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Drawn, Draws, Probability, within
-from gen.mechanisms.sensor_fault import Faulty, FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 from gen.support.units import decibel_to_ratio
 
 
@@ -29,7 +30,7 @@ class MainsHum(SensorFault):
     third_db: Distribution = within(-80, 20, default=-10.0)
     """Level of the third multiple relative to the mains frequency; the others fall as one over their order."""
 
-    def draw(self, draws: Draws, channels: int) -> Faulty | None:
+    def draw(self, draws: Draws, channels: int) -> Any:
         """All but the deviation."""
         drawn = super().draw(draws, channels)
         return {key: value for key, value in drawn.items() if key != "deviation"} if isinstance(drawn, dict) else None

@@ -6,8 +6,8 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Drawn, Probability, within
-from gen.mechanisms.filtering import recursive
-from gen.mechanisms.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.chain.filtering import recursive
+from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 
 
 class EmiBursts(SensorFault):

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gen.measurement.gear import gear_mesh
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.measurement.rig import rig_filters
-from gen.scenarios import Gear, draw_scenarios
+from gen.mechanisms.background.gear_mesh import GearMesh
+from gen.scenarios import draw_scenarios
 
 FS, RATE, N = 12_000.0, 25.0, 24_000  # two seconds: 50 turns of the shaft
 BIN = N / FS  # bins per Hz
@@ -23,7 +23,7 @@ def gear_with(**changes):
         "teeth": 20, "mate_teeth": 40, "lines": lines, "shaft_modulation": 0.0, "mate_modulation": 0.0, "phase_modulation": 0.0,
         "high_point": 0.0, "lead_point": 0.0,
     }  # fmt: skip
-    return Gear(**given | changes)
+    return given | changes
 
 
 def amplitude(signal, order):
@@ -32,7 +32,7 @@ def amplitude(signal, order):
 
 
 def mesh(gear, angles=STEADY, seed=0):
-    return gear_mesh(gear, angles, np.random.default_rng(seed))
+    return GearMesh.vibrations(gear, angles, np.random.default_rng(seed))[0]
 
 
 def test_the_lines_of_a_true_gear_are_at_multiples_of_its_teeth_and_nowhere_else():
@@ -53,13 +53,13 @@ def test_the_mesh_is_a_function_of_the_true_angle_of_the_shaft(seed):
     )  # fmt: skip
     angles = 5 * rng.random() + np.cumsum(2 * np.pi / FS * (RATE + 10 * np.sin(np.linspace(0, 6, N) + rng.random())))
     start = 2 * math.pi * np.random.default_rng(3).random()
-    turned = gear.teeth * angles + gear.phase_modulation * np.cos(angles - gear.lead_point)
-    lines = enumerate(gear.lines, start=1)
+    turned = gear["teeth"] * angles + gear["phase_modulation"] * np.cos(angles - gear["lead_point"])
+    lines = enumerate(gear["lines"], start=1)
     expected = sum(math.sqrt(2) * line["level"] * np.cos(k * turned + line["phase"]) for k, line in lines)
     expected *= (
         1
-        + gear.shaft_modulation * np.cos(angles - gear.high_point)
-        + gear.mate_modulation * np.cos(angles * gear.teeth / gear.mate_teeth + start)
+        + gear["shaft_modulation"] * np.cos(angles - gear["high_point"])
+        + gear["mate_modulation"] * np.cos(angles * gear["teeth"] / gear["mate_teeth"] + start)
     )
     np.testing.assert_allclose(mesh(gear, angles, seed=3), expected, atol=1e-8)
 

@@ -1,10 +1,12 @@
 """Sudden changes of the sensitivity."""
 
+from typing import Any
+
 import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Drawn, Draws, Probability, within
-from gen.mechanisms.sensor_fault import Faulty, FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 from gen.support.units import decibel_to_ratio
 
 
@@ -21,7 +23,7 @@ class GainSteps(SensorFault):
     step_db: Distribution = within(-60, 60)
     """Change of the gain at a step, drawn for each; the gain is 0 dB before the first."""
 
-    def draw(self, draws: Draws, channels: int) -> Faulty | None:  # noqa: ARG002
+    def draw(self, draws: Draws, channels: int) -> Any:  # noqa: ARG002
         """Place in the record [share of its length] and factor of the gain [1] of each step, in order of time."""
         if not draws.is_present(self):
             return None
@@ -33,7 +35,7 @@ class GainSteps(SensorFault):
         return tuple(steps)
 
     @staticmethod
-    def has_form(drawn: Faulty, channels: int) -> bool:  # noqa: ARG004
+    def has_form(drawn: Any, channels: int) -> bool:  # noqa: ARG004
         """Any number of steps."""
         return isinstance(drawn, tuple) and None not in drawn
 
