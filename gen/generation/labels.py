@@ -9,11 +9,9 @@ from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, FAULTS, OTHER_BEARING, SIMULATED, SPLITS, identity, make_dataset
 from gen.corpus.fault_classes import UNKNOWN_CODE
-from gen.drawing import Drawn
 from gen.measurement.measure import Measured
-from gen.mechanisms.background.section import LABELS as OF_SOURCES
-from gen.mechanisms.background.section import locked_of
-from gen.mechanisms.chain.measuring_chain import LABELS as OF_CHAIN
+from gen.mechanisms.background.section import labels_of
+from gen.mechanisms.labels import LABELS
 from gen.physics.bearing import FaultOrders, orders
 from gen.scenarios import Scenario, common_settings, scenario_texts
 from gen.simulation.simulate import Response
@@ -30,7 +28,8 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
         else:
             rows.append({**_drawn(scenario), **truth._asdict()})
     columns: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
-    columns |= {label.name: [found.get(label.name, 0) for found in measured.chain_labels] for label in OF_CHAIN}
+    found = [labels_of(one.rig.background) | chain for one, chain in zip(scenarios, measured.chain_labels, strict=True)]
+    columns |= {label.name: [of_record.get(label.name, 0) for of_record in found] for label in LABELS}
     columns |= {
         "clipped": measured.clipped,
         "snr": measured.snr,
@@ -52,7 +51,7 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
         settings.sample_rate,
         settings.channels,
         columns,
-        extra=SIMULATED + OF_SOURCES + OF_CHAIN + (OTHER_BEARING if two_bearings else ()),
+        extra=SIMULATED + LABELS + (OTHER_BEARING if two_bearings else ()),
         counts_per_unit=measured.counts_per_unit,
         attributes={
             "title": f"Records of recipe {settings.recipe}",
@@ -76,14 +75,6 @@ def _of_other(scenario: Scenario, truth: Truth | None) -> dict[str, Any]:
         "other_width": np.nan if truth is None else truth.width,
         "other_gain": np.nan if other is None else other.gain,
     }
-
-
-def _of_sources(background: Drawn) -> dict[str, float]:
-    """Values of the labels of sources that are locked to the shaft."""
-    labels = dict.fromkeys((label.name for label in OF_SOURCES), 0.0)
-    for source, drawn in locked_of(background):
-        labels |= source.found(drawn)
-    return labels
 
 
 def _drawn(scenario: Scenario) -> dict[str, Any]:
@@ -110,7 +101,6 @@ def _drawn(scenario: Scenario) -> dict[str, Any]:
         "split": SPLITS.index(specimen.split),
         "source": f"{settings.recipe}/{record.number}",
         "identity": identity(settings.corpus, rig.number, specimen.number, record.number, record.pair),
-        **_of_sources(rig.background),
         "diametral_clearance": specimen.properties["diametral_clearance"],
         "gain": rig.gain if record.snr is None else np.nan,
         "background_rms": rig.background_rms if record.snr is None else np.nan,

@@ -29,7 +29,7 @@ from gen.corpus.schema import NAMED, records_in_memory, schema_problems
 from gen.generation.corpus import facts_of
 from gen.generation.parts import part_attributes
 from gen.measurement.measure import LARGEST_COUNT
-from gen.mechanisms.chain.measuring_chain import LABELS
+from gen.mechanisms.labels import LABELS
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
 from gen.scenarios import Settings, read_scenario
 from gen.support.errors import CorpusError

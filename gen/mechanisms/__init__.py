@@ -6,5 +6,6 @@ module     responsibility
 path       transfer path from bearing to sensor: resonances and modulation
 background noise of a machine, and sources of vibration beside its bearings
 chain      faults of the measuring chain
+labels     variables of the corpus that tell what mechanisms did
 ========== =====================================================================
 """

@@ -83,3 +83,8 @@ def draw_locked(sections: Iterable[Section], stream_for: Callable[[Purpose], np.
 def locked_of(background: Drawn) -> Iterator[tuple[type[LockedSource], Drawn]]:
     """Sources of a drawn background that are locked to the shaft, with their values."""
     return ((source, drawn) for source in LOCKED if (drawn := background.get(source.place)) is not None)
+
+
+def labels_of(background: Drawn) -> dict[str, float]:
+    """Values of the labels of the sources that a drawn background has."""
+    return {name: value for source, drawn in locked_of(background) for name, value in source.found(drawn).items()}
