@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from gen.measurement.measure import compile_mixing
+from gen.mechanisms.background.section import sources_of
 from gen.mechanisms.chain.measuring_chain import faults_of
 from gen.physics.inputs import CONSTANT, ROUND, Waviness
 from gen.physics.kernel.batch import input_shape
@@ -55,8 +56,8 @@ def compile_kernels(recipe: Recipe, missing: list[Shape], report: Callable[[str]
     """Compile the missing kernels into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
     with keep_garbage():
         compile_mixing(draw_scenarios(recipe, 0, 1)[0])
-        for fault in faults_of(recipe.sensor_faults):
-            fault.compile()
+        for guest in (*sources_of(recipe.background), *faults_of(recipe.sensor_faults)):
+            guest.compile()
     at_once = min(cores(), MOST_AT_ONCE)
     sentences = (
         f"compiling kernel {number} of {len(missing)} ({shape_in_words(shape)}) for this machine"

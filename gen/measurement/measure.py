@@ -209,7 +209,7 @@ def _parts(
     impulses = impulses_of(filters, angles, rngs)
     for row, scenario in enumerate(scenarios):
         for source, drawn in locked_of(scenario.rig.background):
-            for vibration in source.vibrations(drawn, angles[row], scenario.rng(source.of_record)):
+            for vibration in source.vibrations(drawn, angles[row], axis.fs, scenario.rng(source.of_record)):
                 behind = filters[row].source_in_channels(vibration)
                 # impulses have the length of the Fourier transform
                 impulses[row] = impulses[row][:, : behind.shape[1]] + behind if impulses[row].size else behind

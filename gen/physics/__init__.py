@@ -12,6 +12,7 @@ rotor      machine constants, static equilibrium, bounds of its eigenfrequencies
 rating     static load rating and equivalent static load
 resonance  resonances that are excited at their base
 orbit      elliptical motion at one frequency
+rattle     bodies that lift off what holds them, and strike it; compiled
 lubricant  oil film and temperature: clearance, stiffness, damping
 axial      squeeze of the balls by an axial load
 profile    change of speed and load over a record

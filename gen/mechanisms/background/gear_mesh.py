@@ -70,7 +70,7 @@ class GearMesh(LockedSource):
         return {"gear_mesh": drawn["teeth"]}
 
     @staticmethod
-    def vibrations(drawn: Drawn, angles: FloatArray, rng: np.random.Generator) -> list[FloatArray]:
+    def vibrations(drawn: Drawn, angles: FloatArray, fs: float, rng: np.random.Generator) -> list[FloatArray]:  # noqa: ARG004
         """Vibration of the mesh. The angle of the mate at the first sample is random: other teeth meet there in each record.
 
         A multiple of the mesh above half the sample rate, which the anti-alias filter would remove, is left out.

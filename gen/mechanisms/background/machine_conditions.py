@@ -24,6 +24,13 @@ from gen.support.units import decibel_to_ratio
 MachineKind = Literal["unbalance", "bent_shaft", "misalignment", "looseness", "rub", "belt"]
 MACHINE_CONDITIONS: Mapping[int, str] = {**dict(enumerate(("sound", *get_args(MachineKind)))), UNKNOWN_CODE: UNKNOWN}
 """Classes of ``machine_condition``."""
+
+
+def code_of(kind: str) -> int:
+    """Code of a condition in ``machine_condition``."""
+    return 1 + get_args(MachineKind).index(kind)
+
+
 _PERIOD = 2**15  # samples of a table of one period: the 400th line is in it to 1e-3 of its amplitude
 
 
@@ -88,10 +95,10 @@ class MachineConditions(LockedSource):
     @staticmethod
     def found(drawn: Drawn) -> dict[str, float]:
         """Code of the condition."""
-        return {"machine_condition": 1 + get_args(MachineKind).index(drawn["kind"])}
+        return {"machine_condition": code_of(drawn["kind"])}
 
     @staticmethod
-    def vibrations(drawn: Drawn, angles: FloatArray, rng: np.random.Generator) -> list[FloatArray]:
+    def vibrations(drawn: Drawn, angles: FloatArray, fs: float, rng: np.random.Generator) -> list[FloatArray]:  # noqa: ARG004
         """Lines and bursts of the condition."""
         bursts = drawn["bursts"]
         return [lines_of(drawn, angles), *([] if bursts is None else [bursts_of(bursts, angles, rng)])]

@@ -54,6 +54,11 @@ else:
     )
 
 
+def sources_of(section: Section) -> Iterator[BackgroundSource]:
+    """Sources that a recipe has in its background."""
+    return (found for source in (*SOURCES, *LOCKED) if (found := getattr(section, source.place, None)) is not None)
+
+
 def draw_background(section: BackgroundSection, draws: Draws) -> Drawn:
     """Noise and sources of a rig but those that are locked to the shaft; levels are ratios of rms."""
     drawn: Drawn = {"slope": draws.value(section.slope), "floor": draws.ratio(section.floor_db)}

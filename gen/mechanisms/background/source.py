@@ -28,6 +28,10 @@ class BackgroundSource(Section):
         """Drawn values of a source that the rig has."""
         raise NotImplementedError
 
+    @staticmethod
+    def compile() -> None:
+        """Compile what the source needs, or fetch it from numba's cache on disk."""
+
 
 class LockedSource(BackgroundSource):
     """A source whose vibration follows from the angle of the shaft, ahead of the paths.
@@ -46,9 +50,9 @@ class LockedSource(BackgroundSource):
         raise NotImplementedError
 
     @staticmethod
-    def vibrations(drawn: Drawn, angles: FloatArray, rng: np.random.Generator) -> list[FloatArray]:
+    def vibrations(drawn: Drawn, angles: FloatArray, fs: float, rng: np.random.Generator) -> list[FloatArray]:
         """Vibrations over the rms of the background noise, for ``angles`` of the shaft [rad], shape (time,) each [1].
 
-        Each has its rms ahead of the paths and, over all channels, behind them.
+        Each has its rms ahead of the paths and, over all channels, behind them. ``fs`` is the sample rate [Hz].
         """
         raise NotImplementedError

@@ -4,7 +4,6 @@
 module          responsibility
 =============== =====================================================================
 filtering       filters that several faults use
-rattle          motion of a sensor that lifts off and strikes the machine
 sensor_fault    what a fault of the measuring chain is
 loose_mount     sensors that are not held firmly
 drift           baselines that move slowly

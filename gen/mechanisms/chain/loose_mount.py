@@ -44,7 +44,7 @@ class LooseMount(SensorFault):
     @staticmethod
     def disturb(drawn: Any, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG004
         """Signal of sensors that resonate and rattle."""
-        from gen.mechanisms.chain.rattle import rattling  # compiled: a recipe is read without numba
+        from gen.physics.rattle import rattling  # compiled: a recipe is read without numba
 
         loose, impacts = signal.copy(), 0
         for channel, mount in enumerate(drawn):
@@ -57,9 +57,9 @@ class LooseMount(SensorFault):
     @staticmethod
     def compile() -> None:
         """Compile the rattling."""
-        from gen.mechanisms.chain.rattle import rattling
+        from gen.physics.rattle import compile_rattling
 
-        rattling(np.zeros(2), 1000.0, 0.1, 1.0, 10_000.0)
+        compile_rattling()
 
 
 def through_mount(signal: FloatArray, mount: Drawn, fs: float) -> FloatArray:

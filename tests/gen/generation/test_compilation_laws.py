@@ -24,7 +24,7 @@ def test_kernels_work_where_numba_finds_no_folder():
 from numba.core.caching import CacheImpl
 CacheImpl._locator_classes = []
 from features.signal.rows import total
-from gen.mechanisms.chain.rattle import _rattle
+from gen.physics.rattle import _rattle
 from gen.physics.kernel.layout import make_shape
 from gen.simulation import kernels
 print(kernels.is_compiled(make_shape(9, 1)), _rattle.stats.cache_path, total.stats.cache_path)

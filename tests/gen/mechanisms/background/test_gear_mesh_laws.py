@@ -32,7 +32,7 @@ def amplitude(signal, order):
 
 
 def mesh(gear, angles=STEADY, seed=0):
-    return GearMesh.vibrations(gear, angles, np.random.default_rng(seed))[0]
+    return GearMesh.vibrations(gear, angles, FS, np.random.default_rng(seed))[0]
 
 
 def test_the_lines_of_a_true_gear_are_at_multiples_of_its_teeth_and_nowhere_else():

@@ -16,8 +16,8 @@ from gen.mechanisms.chain.gain_steps import GainSteps
 from gen.mechanisms.chain.loose_mount import LooseMount, through_mount
 from gen.mechanisms.chain.mains_hum import MainsHum
 from gen.mechanisms.chain.measuring_chain import CHAIN, LABELS, disturb
-from gen.mechanisms.chain.rattle import rattling
 from gen.mechanisms.chain.saturation import Saturation
+from gen.physics.rattle import rattling
 from gen.scenarios import Purpose, draw_scenarios
 from tests.sensor_faults import SENSOR_FAULTS, rarely
 

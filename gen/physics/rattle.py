@@ -1,4 +1,4 @@
-"""A sensor that lifts off and strikes the machine because its mount can push harder than it can pull.
+"""A sensor that lifts off and strikes the machine because its mount can push harder than it can pull; and a machine on its support.
 
 ``held`` is the acceleration of the sensor on a mount that never lets go, and ``d`` the distance from that motion. The mount pulls with the
 holding acceleration ``h`` (force over mass of the sensor) at most::
@@ -49,6 +49,11 @@ def rattling(
         -fading * omega**2 / turn * s, fading * (c - decay / turn * s),
     )  # fmt: skip
     return _rattle(held.astype(float), omega, 2 * decay, holding, step, steps, advance)
+
+
+def compile_rattling() -> None:
+    """Compile the flights, or fetch them from numba's cache on disk."""
+    rattling(np.zeros(2), 1000.0, 0.1, 1.0, 10_000.0)
 
 
 @compiled_to_disk

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.integrate import solve_ivp
 
-from gen.mechanisms.chain.rattle import rattling
+from gen.physics.rattle import rattling
 
 FS = 12_000.0
 REST = np.zeros(100_000)  # eight seconds: bounces of the hardest throw below take five
