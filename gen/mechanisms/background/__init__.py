@@ -11,6 +11,7 @@ impulses           impulses at random times
 knocks             impulses locked to the shaft
 gear_mesh          multiples of a tooth mesh with sidebands of both gears
 machine_conditions lines and bursts of machines that are not well
+looseness          machines whose support lifts off the ground
 section            all of them, as a recipe has them and as they are drawn
 ================== ==========================================================
 

@@ -17,6 +17,7 @@ from gen.mechanisms.background.gear_mesh import GearMesh
 from gen.mechanisms.background.harmonics import Harmonics
 from gen.mechanisms.background.impulses import Impulses
 from gen.mechanisms.background.knocks import Knocks
+from gen.mechanisms.background.looseness import Looseness
 from gen.mechanisms.background.machine_conditions import MachineConditions
 from gen.mechanisms.background.noise import Noise
 from gen.mechanisms.background.source import BackgroundSource, LockedSource
@@ -25,7 +26,7 @@ from gen.mechanisms.path import draw_modes, draw_modulation
 
 SOURCES: tuple[type[BackgroundSource], ...] = (Harmonics, Tones, Impulses, Knocks)
 """Sources of the stream of a rig, in the order in which they are drawn."""
-LOCKED: tuple[type[LockedSource], ...] = (GearMesh, MachineConditions)
+LOCKED: tuple[type[LockedSource], ...] = (GearMesh, MachineConditions, Looseness)
 """Sources that follow from the angle of the shaft, in the order in which they are added."""
 LABELS: tuple[Variable, ...] = tuple(label for source in LOCKED for label in source.labels)
 """Variables of the corpus that tell which sources a machine has, 0 for none."""

@@ -1,0 +1,75 @@
+"""Laws of a machine whose support lifts off the ground: how often it lands, its lines, its level, and its label."""
+
+import numpy as np
+import pytest
+
+from gen.mechanisms.background.looseness import Looseness
+from gen.mechanisms.background.machine_conditions import MACHINE_CONDITIONS
+from gen.mechanisms.background.section import labels_of
+from gen.scenarios import draw_scenarios
+from tests.measuring import background_of, quiet
+
+FS, RATE, N = 12_000.0, 25.0, 48_000  # four seconds: 100 turns of the shaft
+STEADY = 2 * np.pi * RATE / FS * np.arange(N)
+LOOSE = {"lift": 1.5, "frequency": 400.0, "damping": 0.7, "level": 2.0, "phase": 1.0}
+SECTION = {"probability": 1, "lift": 1.5, "frequency_hz": 400, "level_db": 6}
+
+
+def vibration(**changes):
+    (found,) = Looseness.vibrations(LOOSE | changes, STEADY, FS, np.random.default_rng(0))
+    return found
+
+
+def lines(signal, orders):
+    """Amplitudes at orders of the shaft over the largest of all lines, once the motion has settled."""
+    settled = np.abs(np.fft.rfft(signal[N // 2 :]))
+    return settled[np.round(np.asarray(orders) * RATE * N / 2 / FS).astype(int)] / settled.max()
+
+
+@pytest.mark.parametrize("lift", [1.2, 1.5, 2.0])
+def test_a_machine_that_lands_once_a_turn_has_harmonics_and_no_half_orders(lift):
+    found = vibration(lift=lift)
+    assert lines(found, [1, 2, 3, 4]).min() > 0.1
+    assert lines(found, [0.5, 1.5, 2.5]).max() < 1e-3
+
+
+def test_a_machine_that_flies_for_more_than_a_turn_lands_every_second_turn():
+    assert lines(vibration(lift=5.0), [0.5, 1.5, 2.5]).min() > 0.1
+
+
+def test_a_short_flight_follows_the_weight_and_the_force_of_the_shaft():
+    """Until it lands, the acceleration is ``g (lift cos(angle - phase) - 1)``; its level is its rms."""
+    lift = 1.1
+    found = vibration(lift=lift)
+    expected = 9.80665 * (lift * np.cos(STEADY - 1.0) - 1)
+    aloft = expected > 0.02
+    scale = np.median(found[aloft] / expected[aloft])
+    np.testing.assert_allclose(found[aloft], scale * expected[aloft], atol=1e-6 * scale)
+    assert np.sqrt(np.mean(found**2)) == pytest.approx(2.0)
+
+
+def test_a_stiffer_ground_makes_harder_impacts():
+    frequencies = np.fft.rfftfreq(N, 1 / FS)
+    powers = [np.abs(np.fft.rfft(vibration(frequency=frequency))) ** 2 for frequency in (300.0, 1200.0)]
+    soft, stiff = (np.sum(frequencies * power) / power.sum() for power in powers)
+    assert stiff > 2 * soft
+
+
+def test_a_loose_machine_moves_no_other_draw_and_is_labelled(recipe_with):
+    plain = draw_scenarios(recipe_with({}), 0, 4)
+    loose = draw_scenarios(recipe_with({"background.looseness": SECTION}), 0, 4)
+    for one, other in zip(plain, loose, strict=True):
+        drawn = other.rig.background["looseness"]
+        assert MACHINE_CONDITIONS[labels_of(other.rig.background)["machine_condition"]] == "looseness"
+        assert labels_of(other.rig.background)["looseness"] == 1.5
+        assert drawn["level"] == pytest.approx(10 ** (6 / 20))
+        assert {**other.rig.background, "looseness": None} == one.rig.background
+        assert (one.record, one.specimen) == (other.record, other.specimen)
+
+
+def test_it_passes_path_and_chain_at_its_level(recipe_with):
+    recipe = recipe_with({"recording.converter": {"kind": "float32"}, "recording.duration_s": 2.0})
+    firm, loose = (
+        background_of(recipe, quiet(**some))[0].std() for some in ({}, {"looseness": LOOSE | {"level": 3.0}})
+    )
+    assert np.sqrt(loose**2 - firm**2) == pytest.approx(3.0, rel=0.1)
