@@ -6,7 +6,10 @@ import pytest
 
 from tests.paths import ROOT
 
-TASKS = ("fault class", "feature group", "channel", "importer", "form of copy", "baseline", "bearing", "label")
+TASKS = (
+    "fault class", "source of vibration", "fault of the measuring chain", "command", "feature group", "channel", "importer",
+    "form of copy", "baseline", "bearing", "label",
+)  # fmt: skip
 PAGE = (ROOT / "docs" / "developing.md").read_text(encoding="utf-8")
 FILE = re.compile(r"^(\d+)\. `([\w/.-]+)`: (.+(?:\n   .+)*)", re.MULTILINE)
 
