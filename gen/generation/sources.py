@@ -3,7 +3,9 @@
 from gen.support.sources import hash_sources
 
 _MAKES_RECORDS = (
+    "gen/drawing",
     "gen/physics",
+    "gen/mechanisms",
     "gen/recipe",
     "gen/scenarios",
     "gen/simulation",

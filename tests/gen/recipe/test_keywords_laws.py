@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 import gen
 from gen.drawing.section import plain
-from gen.recipe import Recipe, read_recipe, recipe_hash, recipe_text, shipped_recipes
+from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_hash, recipe_text, shipped_recipes
 from gen.recipe.keywords import _places
 from gen.support.errors import RecipeError
+from tests.gen.conftest import small_with
 
 OUTER = gen.outer(width_mm=0.5)
 text = st.text(st.characters(codec="utf-8", exclude_characters="\0"), min_size=1, max_size=30)
@@ -176,6 +177,11 @@ def test_a_recipe_survives_its_text_and_its_dict(name, tmp_path):
     for same in (read_recipe(tmp_path / "r.yaml"), Recipe(**as_json), read_recipe(as_json)):
         assert same == recipe
         assert recipe_hash(same) == recipe_hash(recipe)
+
+
+def test_a_mechanism_that_a_recipe_does_not_have_leaves_its_hash_and_the_identity_of_its_machines():
+    recipe = Recipe(small_with({}))
+    assert (recipe_hash(recipe)[:12], corpus_identity(recipe)) == ("e25f4037c79b", "ba043cfb9562")
 
 
 @given(text, st.from_regex(r"[A-Za-z0-9_.-]{1,12}", fullmatch=True))
