@@ -48,14 +48,6 @@ class FaultCounts(NamedTuple):
     """Records whose first level hid the fault."""
 
 
-class Extent(NamedTuple):
-    """Least, median and largest known value."""
-
-    least: float
-    median: float
-    largest: float
-
-
 def unit_counts(columns: Columns) -> UnitCounts:
     """Counts of the records with the columns ``rig``, ``specimen`` and ``recording``.
 
@@ -95,14 +87,14 @@ def by_class(columns: Columns, names: Iterable[str]) -> dict[str, dict[str, NDAr
     }
 
 
-def extent(values: NDArray[Any]) -> Extent | None:
-    """Extent of the finite values; None if there are none.
+def extent(values: NDArray[Any]) -> tuple[float, float, float] | None:
+    """Least, median and largest finite value; None if there are none.
 
     >>> extent(np.array([2.0, np.nan, 4.0]))
-    Extent(least=2.0, median=3.0, largest=4.0)
+    (2.0, 3.0, 4.0)
     """
     known = values[np.isfinite(values)]
-    return Extent(*(float(f(known)) for f in (np.min, np.median, np.max))) if known.size else None
+    return (float(known.min()), float(np.median(known)), float(known.max())) if known.size else None
 
 
 def units_in_several_splits(columns: Columns) -> list[str]:

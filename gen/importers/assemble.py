@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gen.corpus import NewCorpus, Publication, Variable, check_new, identity, make_dataset, new_corpus
 from gen.importers.files import UnusableError
@@ -134,9 +135,9 @@ def _records(
         done(1)
 
 
-def _corpus_identity(importer: str, candidates: Sequence[Candidate], first: Record) -> str:
+def _corpus_identity(importer: str, candidates: Sequence[Candidate], first: NDArray[np.float32]) -> str:
     """First 12 digits of the SHA-256 of the importer, the names of all files and the first record: another set has another identity."""
-    digest = hashlib.sha256(first.signal.tobytes())
+    digest = hashlib.sha256(first.tobytes())
     for text in (importer, *(candidate.source for candidate in candidates)):
         digest.update(f"{text}\n".encode())
     return digest.hexdigest()[:12]
@@ -146,14 +147,14 @@ def _write_parts(
     records: Iterator[Record], collection: Collection, candidates: Sequence[Candidate], corpus: NewCorpus
 ) -> None:
     own = None
-    for first in records:
-        own = own or _corpus_identity(collection.importer, candidates, first)
-        size = max(1, min(_PART_RECORDS, _PART_BYTES // first.signal.nbytes))
-        batch = [first, *islice(records, size - 1)]
-        columns = {name: [record.columns[name] for record in batch] for name in first.columns}
+    for signal, known in records:
+        own = own or _corpus_identity(collection.importer, candidates, signal)
+        size = max(1, min(_PART_RECORDS, _PART_BYTES // signal.nbytes))
+        batch = [(signal, known), *islice(records, size - 1)]
+        columns = {name: [values[name] for _, values in batch] for name in known}
         numbers = zip(columns["rig"], columns["specimen"], columns["recording"], strict=True)
         dataset = make_dataset(
-            np.stack([record.signal for record in batch]),
+            np.stack([one for one, _ in batch]),
             collection.fs,
             collection.channels,
             columns | {"identity": [identity(own, *some) for some in numbers]},

@@ -9,7 +9,6 @@ and each gives a warning; no label is corrected.
 
 import math
 import re
-from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from functools import partial
 from pathlib import Path
@@ -89,14 +88,6 @@ _COLLECTION = Collection(
 )
 
 
-class _Label(NamedTuple):
-    """Published facts about a recording."""
-
-    number: int
-    specimen: int
-    motor_load: int
-
-
 def import_cwru(
     source: Path,
     output: Path,
@@ -131,8 +122,7 @@ def import_cwru(
     if subset not in ("all", "wang"):
         message = f"subset: {subset!r} is not known; choose all or wang."
         raise CorpusError(message)
-    published = {label.number for label in _labels("all")}
-    wanted = {label.number: label for label in _labels(subset)}
+    published, wanted = _labels("all"), _labels(subset)
     candidates: dict[int, Candidate] = {}
     skipped: list[str] = []
     for path in files_below(source, ".mat"):
@@ -142,7 +132,7 @@ def import_cwru(
         elif number in candidates:
             skipped.append(f"{name}: is recording {number} again, which {candidates[number].source} holds; skipped.")
         elif number in wanted:
-            candidates[number] = Candidate(name, partial(_read, path, wanted[number]))
+            candidates[number] = Candidate(name, partial(_read, path, number, *wanted[number]))
     return import_recordings(
         _COLLECTION,
         [candidates[number] for number in sorted(candidates)],
@@ -164,10 +154,14 @@ def recording_number(stem: str) -> int | None:
     return int(match[1]) if match else None
 
 
-def _labels(subset: Subset) -> Iterator[_Label]:
-    for index, specimen in enumerate(SPECIMENS):
-        if subset == "all" or (specimen.diameter != 28 and specimen.clock in (None, 6)):
-            yield from (_Label(number, index, load) for load, number in enumerate(specimen.numbers))
+def _labels(subset: Subset) -> dict[int, tuple[int, int]]:
+    """Number of the specimen, and motor load [hp], of each recording by its number."""
+    return {
+        number: (index, load)
+        for index, specimen in enumerate(SPECIMENS)
+        if subset == "all" or (specimen.diameter != 28 and specimen.clock in (None, 6))
+        for load, number in enumerate(specimen.numbers)
+    }
 
 
 def _warnings(present: AbstractSet[int], wanted: AbstractSet[int]) -> list[str]:
@@ -184,26 +178,26 @@ def _warnings(present: AbstractSet[int], wanted: AbstractSet[int]) -> list[str]:
     return warnings
 
 
-def _read(path: Path, label: _Label) -> Recording:
-    fault, diameter, clock, _ = SPECIMENS[label.specimen]
-    held = _HELD_AS.get(label.number, label.number)
+def _read(path: Path, number: int, specimen: int, motor_load: int) -> Recording:
+    fault, diameter, clock, _ = SPECIMENS[specimen]
+    held = _HELD_AS.get(number, number)
     warnings: list[str] = []
     signal = table_signal(read_matlab(path, f"X{held:03d}_DE_time"), None).values * STANDARD_GRAVITY
-    if held != label.number:
-        warnings.append(f"holds the variable X{held:03d}_DE_time, as published for recording {label.number}")
+    if held != number:
+        warnings.append(f"holds the variable X{held:03d}_DE_time, as published for recording {number}")
     if fault == "healthy":
         signal, warning = _at_12_khz(signal)
         warnings.append(warning)
-    shaft_rpm, complaints = _labelled_rpm(path, f"X{held:03d}RPM", _NOMINAL_RPM[label.motor_load])
+    shaft_rpm, complaints = _labelled_rpm(path, f"X{held:03d}RPM", _NOMINAL_RPM[motor_load])
     recording = Recording(
-        number=label.number,
+        number=number,
         rig=0,
-        specimen=label.specimen,
+        specimen=specimen,
         bearing=CATALOGUE["6205"],
         shaft_rate=rpm_to_hertz(shaft_rpm),
         fault=fault,
         signal=signal,
-        extra={"motor_load": label.motor_load * HORSEPOWER},
+        extra={"motor_load": motor_load * HORSEPOWER},
         warnings=(*warnings, *complaints),
     )
     if fault == "healthy":

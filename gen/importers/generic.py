@@ -8,7 +8,7 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -29,18 +29,6 @@ from gen.support.units import rpm_to_hertz, to_si
 
 _NO_RATE = 10_000.0  # Hz, if no file states one: each is then skipped with its own reason
 _OF_A_FILE = {"path", "delimiter", "channels", *SensorKeys.model_fields}
-
-
-class _Joined(NamedTuple):
-    """Values of each channel in the unit of the files, shape (time,), and their sample rate [Hz].
-
-    ``absolute`` tells whether the values have a unit; ``notes`` are sentences without their end.
-    """
-
-    values: list[FloatArray]
-    fs: float
-    absolute: bool
-    notes: list[str]
 
 
 def import_generic(
@@ -148,7 +136,7 @@ def _common_rate(recordings: Sequence[Sequence[Labels]], folder: Path) -> float:
     given = next((labels.sample_rate_hz for files in recordings for labels in files if labels.sample_rate_hz), None)
     for files in recordings if given is None else ():
         with suppress(UnusableError, OSError, MemoryError):
-            return _join(files, folder).fs
+            return _join(files, folder)[1]
     return given or _NO_RATE
 
 
@@ -174,7 +162,11 @@ def _read(files: Sequence[Labels], folder: Path, fs: float, number: int, rig: in
     return _recording(labels, signal, number, rig, specimen)._replace(warnings=tuple(notes))
 
 
-def _join(files: Sequence[Labels], folder: Path) -> _Joined:
+def _join(files: Sequence[Labels], folder: Path) -> tuple[list[FloatArray], float, bool, list[str]]:
+    """Values of each channel in the unit of the files, shape (time,), and their sample rate [Hz].
+
+    Then whether the values have a unit, and notes, which are sentences without their end.
+    """
     parts: list[list[FloatArray]] = []
     rates: set[float] = set()
     notes: list[str] = []
@@ -192,7 +184,7 @@ def _join(files: Sequence[Labels], folder: Path) -> _Joined:
         absolute = absolute and columns[0].absolute
     if len(rates) > 1:
         raise UnusableError("is joined of files at different sample rates; give each recording a name of its own")
-    return _Joined([np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), absolute, notes)
+    return [np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), absolute, notes
 
 
 def _recording(labels: Labels, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:

@@ -54,11 +54,8 @@ class Candidate(NamedTuple):
     read: Callable[[], Recording]
 
 
-class Record(NamedTuple):
-    """A window of a recording, shape (channel, elapsed_time) [m s-2], and the values of its per-record variables."""
-
-    signal: NDArray[np.float32]
-    columns: dict[str, Any]
+Record = tuple[NDArray[np.float32], dict[str, Any]]
+"""A window of a recording, shape (channel, elapsed_time) [m s-2], and the values of its per-record variables."""
 
 
 def read_recording(candidate: Candidate, length: int, fs: float, channels: tuple[str, ...]) -> Recording:
@@ -111,7 +108,7 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
     }
     signal = np.atleast_2d(recording.signal).astype(np.float32)
     starts = range(0, signal.shape[-1] - length + 1, length)
-    return [Record(signal[:, start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
+    return [(signal[:, start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
 
 
 def some_files(candidates: Iterable[Path], already: int, what: str) -> list[Path]:

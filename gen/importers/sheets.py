@@ -10,7 +10,7 @@ from typing import Any
 from gen.importers.columns import Values
 from gen.importers.files import UnusableError, guarded
 from gen.importers.numerals import POINT, is_number
-from gen.importers.table import Line, read_table
+from gen.importers.table import TableLine, read_table
 from gen.support.limits import check_limit
 
 _CELL = re.compile(rb"r\s*=\s*[\"']([A-Za-z]{1,3})(\d{1,7})[\"']")
@@ -82,9 +82,9 @@ def _chosen(names: list[str], visible: list[str], active: int, wanted: str | Non
     return name, (f"sheet {name} is read, and not {', '.join(others)}",) if others else ()
 
 
-def _lines(rows: list[list[Any]]) -> Iterator[Line]:
+def _lines(rows: list[list[Any]]) -> Iterator[TableLine]:
     for number, row in enumerate(rows, 1):
-        yield Line(number, [_text(cell) for cell in row])
+        yield TableLine(number, [_text(cell) for cell in row])
 
 
 def _text(cell: Any) -> str:

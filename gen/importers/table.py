@@ -34,7 +34,7 @@ _NO_VALUE = re.compile(
 _DIGIT = re.compile(r"[-+.,]?\d")
 
 
-class Line(NamedTuple):
+class TableLine(NamedTuple):
     """A line of a table: its number from 1, and its fields without blanks around them."""
 
     number: int
@@ -74,7 +74,7 @@ def is_flawed_row(fields: Iterable[str]) -> bool:
 
 
 def read_table(
-    lines: Iterator[Line], column: int | str | None, place: Callable[[int, int], str], form: Form | None = None
+    lines: Iterator[TableLine], column: int | str | None, place: Callable[[int, int], str], form: Form | None = None
 ) -> Values:
     """Signal in a table.
 
@@ -142,7 +142,7 @@ def _numbers(columns: Sequence[Sequence[str]], forms: Sequence[Form] | None) -> 
 
 
 def _load(
-    lines: Iterator[Line], places: Sequence[int], counts: range, place: Callable[[int, int], str]
+    lines: Iterator[TableLine], places: Sequence[int], counts: range, place: Callable[[int, int], str]
 ) -> tuple[list[list[str]], tuple[str, ...]]:
     """Blocks of numbers of each column to be loaded, and a sentence on notes that are left out."""
     loaded: list[list[str]] = []
@@ -169,7 +169,7 @@ def _load(
     return [*map(list, zip(*loaded, strict=True))], tuple(told)
 
 
-def _blocks(lines: Sequence[Line], places: Sequence[int], counts: range) -> list[str] | None:
+def _blocks(lines: Sequence[TableLine], places: Sequence[int], counts: range) -> list[str] | None:
     """Numbers of each column in lines; None if not all of them are rows of as many fields with numbers in these columns."""
     if not {len(line.fields) for line in lines} <= {*counts}:
         return None
@@ -180,8 +180,8 @@ def _blocks(lines: Sequence[Line], places: Sequence[int], counts: range) -> list
 
 
 def _flaw(
-    line: Line, end: Line, places: Sequence[int], counts: range, place: Callable[[int, int], str]
-) -> tuple[Line, str]:
+    line: TableLine, end: TableLine, places: Sequence[int], counts: range, place: Callable[[int, int], str]
+) -> tuple[TableLine, str]:
     """Reason why a line after the ``end`` of the rows is no note, and the line to be named; no reason if it is one, or empty."""
     if is_row(line.fields) and end is not line:
         what = "text" if any(end.fields) else "an empty line"

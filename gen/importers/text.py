@@ -11,7 +11,7 @@ from typing import IO
 from gen.importers.columns import Values
 from gen.importers.files import UnusableError, guarded
 from gen.importers.numerals import is_number
-from gen.importers.table import START, Line, is_value, read_table
+from gen.importers.table import START, TableLine, is_value, read_table
 
 _BEGINNING = 2_000_000  # bytes that tell the encoding
 _LONGEST_LINE = 50_000_000  # letters
@@ -60,7 +60,7 @@ def lines_of(text: IO[str]) -> Iterator[str]:
         yield line
 
 
-def _split(lines: Iterable[str], mark: str) -> Iterator[Line]:
+def _split(lines: Iterable[str], mark: str) -> Iterator[TableLine]:
     """Fields of lines; a field in quotes can hold marks, and in a header line breaks."""
     reader = csv.reader((_BLANKS.sub(" ", line.strip()) for line in lines) if mark == " " else lines, delimiter=mark)
     number = 1
@@ -68,7 +68,7 @@ def _split(lines: Iterable[str], mark: str) -> Iterator[Line]:
         plain = [field.strip() for field in fields]
         if reader.line_num > number:
             plain = [" ".join(field.split()) for field in plain]
-        yield Line(number, _with_units(plain) if mark == " " else plain)
+        yield TableLine(number, _with_units(plain) if mark == " " else plain)
         number = reader.line_num + 1
 
 

@@ -7,7 +7,7 @@ checked like any other.
 import difflib
 import functools
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, get_args, get_origin
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
 
@@ -32,12 +32,8 @@ FaultLike = Section | dict[str, Any] | str
 _COUNTED = ("rigs", "specimens_per_rig", "records_per_specimen")
 
 
-class _Place(NamedTuple):
-    """A place where a key can be."""
-
-    sections: tuple[str, ...]
-    kinds: frozenset[str]
-    """Values of ``kind`` of the last section that has the key; empty if the section has no kinds."""
+_Place = tuple[tuple[str, ...], frozenset[str]]
+"""Sections of a place where a key can be, and the values of ``kind`` of the last one that has it; empty if it has no kinds."""
 
 
 def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | None = None, **keys: Any) -> Recipe:
@@ -77,7 +73,7 @@ def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | N
         if name in Recipe.model_fields:
             data.setdefault(name, value)
         else:
-            section = data.setdefault(_places()[name][0].sections[0], {})
+            section = data.setdefault(_places()[name][0][0][0], {})
             if isinstance(section, dict):
                 section.setdefault(name, value)
     corpus = data.setdefault("corpus", {})
@@ -94,26 +90,26 @@ def _copied(value: Any) -> Any:
 
 def _set(data: dict[str, Any], name: str, value: Any) -> None:
     """Put a value into the only section that has a key of this name."""
-    place = _place(name)
+    sections, kinds = _place(name)
     section = data
-    for step in place.sections:
+    for step in sections:
         section = section.setdefault(step, {})
         if not isinstance(section, dict):
-            raise RecipeError(f"{name}: {'.'.join(place.sections)} is given and is no section; give one of the two.")
+            raise RecipeError(f"{name}: {'.'.join(sections)} is given and is no section; give one of the two.")
     if name in section:
-        raise RecipeError(f"{name}: is given twice, also in {'.'.join(place.sections)}; give it once.")
+        raise RecipeError(f"{name}: is given twice, also in {'.'.join(sections)}; give it once.")
     section[name] = value
-    if place.kinds:
-        section.setdefault("kind", _usual_kind(place))
+    if kinds:
+        section.setdefault("kind", _usual_kind(sections, kinds))
 
 
-def _usual_kind(place: _Place) -> str:
+def _usual_kind(sections: tuple[str, ...], kinds: frozenset[str]) -> str:
     """Kind of a section that has a key: the default of the section if it has the key too."""
-    default: Any = Recipe.model_fields[place.sections[0]].default
-    for step in place.sections[1:]:
+    default: Any = Recipe.model_fields[sections[0]].default
+    for step in sections[1:]:
         default = getattr(default, step, None)
     usual = getattr(default, "kind", None)
-    return usual if usual in place.kinds else min(place.kinds)
+    return usual if usual in kinds else min(kinds)
 
 
 def _place(name: str) -> _Place:
@@ -122,8 +118,8 @@ def _place(name: str) -> _Place:
         return found[0]
     if not found:
         raise RecipeError(f"{name}: no such key; {_advice(name)}")
-    sections = [".".join(place.sections) for place in found]
-    first, *inside = found[0].sections
+    sections = [".".join(place) for place, _ in found]
+    first, *inside = found[0][0]
     example = repr({name: ...}).replace("Ellipsis", "...")
     for step in reversed(inside):
         example = f"{{{step!r}: {example}}}"
@@ -165,8 +161,7 @@ def _places() -> dict[str, list[_Place]]:
 
     collect((Recipe,), ())
     return {
-        name: [_Place(sections, frozenset(kinds)) for sections, kinds in places.items()]
-        for name, places in found.items()
+        name: [(sections, frozenset(kinds)) for sections, kinds in places.items()] for name, places in found.items()
     }
 
 

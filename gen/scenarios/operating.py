@@ -31,12 +31,9 @@ class Operating(NamedTuple):
     """Level at which each quantity is drawn."""
 
 
-class CommonNumbers(NamedTuple):
-    """Random numbers that all records of a rig, or of a specimen, have in common: one for each operating quantity."""
-
-    numbers: Mapping[str, float]
-    combination: int
-    """Number that the grids of this level begin with."""
+CommonNumbers = tuple[Mapping[str, float], int]
+"""Random numbers that all records of a rig, or of a specimen, have in common, one for each operating quantity, and the number of the
+combination that the grids of this level begin with."""
 
 
 def operating_of(recipe: Recipe, number: int) -> Operating:
@@ -57,7 +54,7 @@ def _by_level(distributions: Distributions) -> dict[Level, Distributions]:
 
 def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -> CommonNumbers:
     """Draw the numbers that all records of a rig or a specimen have in common from a stream of that rig or specimen."""
-    return CommonNumbers({key: float(rng.random()) for key in quantities(recipe.operation)}, combination)
+    return {key: float(rng.random()) for key in quantities(recipe.operation)}, combination
 
 
 def draw_conditions(
@@ -75,8 +72,8 @@ def draw_conditions(
     wanted = operating.wanted
     u = {key: draws.u() for key in wanted}
     values = _values(operating, "record", u, draws.combination)
-    for level, common in commons.items():
-        for key, value in _values(operating, level, common.numbers, Combination(common.combination)).items():
+    for level, (numbers, combination) in commons.items():
+        for key, value in _values(operating, level, numbers, Combination(combination)).items():
             values[key] = wanted[key].at_scatter(value, u[key])
     return Conditions(**in_si(operating.section, wanted, {key: values[key] for key in wanted}, known, draws.item))
 

@@ -142,7 +142,7 @@ def _severities(labels: Columns) -> dict[str, dict[str, list[float]]]:
 def _range(values: NDArray[Any]) -> list[float] | None:
     """Smallest and largest known value; None if no value is known."""
     found = extent(values)
-    return None if found is None else [found.least, found.largest]
+    return None if found is None else [found[0], found[2]]
 
 
 def show_facts(facts: dict[str, Any]) -> None:

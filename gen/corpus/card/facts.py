@@ -10,7 +10,6 @@ import xarray as xr
 from gen.corpus.choice import per_record
 from gen.corpus.facts import (
     UNITS,
-    Extent,
     by_class,
     clipped_records,
     extent,
@@ -87,10 +86,10 @@ def ranges(corpus: xr.Dataset) -> dict[str, Any]:
     vary, same = dict[str, tuple[str, ...]](), dict[str, str]()
     for name, values in chosen.items():
         found, unit = extent(values), _unit(corpus[name].variable)
-        if found is not None and found.least < found.largest:
+        if found is not None and found[0] < found[2]:
             vary[name] = unit, *(_cell(extent(columns[name])) for columns in classes.values())
-        elif found is not None and found.largest:
-            same[name] = f"{found.largest:.6g} {unit}".removesuffix(" 1")
+        elif found is not None and found[2]:
+            same[name] = f"{found[2]:.6g} {unit}".removesuffix(" 1")
     return {"classes": list(classes), "vary": vary, "same": same}
 
 
@@ -100,7 +99,7 @@ def _unit(variable: xr.Variable) -> str:
     return "dB" if in_decibels else str(variable.attrs.get("units", ""))
 
 
-def _cell(found: Extent | None) -> str:
+def _cell(found: tuple[float, ...] | None) -> str:
     """Cell of a class: its least, median and largest value."""
     if found is None:
         return ""
