@@ -4,6 +4,7 @@ import numpy as np
 
 from gen.scenarios import settings_of
 from gen.simulation.inputs import kernel_input
+from gen.simulation.motion import draw_motion
 from gen.simulation.simulate import Response
 from gen.simulation.timeline import timeline
 from gen.simulation.truth import Truth, truth_of, with_loaded_hits
@@ -23,13 +24,14 @@ def response_of(scenarios, recipe, *, impossible=()):
     """Response of bodies at rest with the truth of every scenario; places in ``impossible`` have no machine."""
     n, axis = len(scenarios), timeline(settings_of(recipe))
     inputs = [None if n in impossible else kernel_input(scenario, axis) for n, scenario in enumerate(scenarios)]
-    truth = [truth_of(scenario, axis, given) for scenario, given in zip(scenarios, inputs, strict=True)]
-    none = [None] * n
-    return Response(still(recipe, n), np.arange(n) + 2, np.linspace(0.1, 0.3, n), {}, inputs, truth, None, none, none)
+    motions, none = [draw_motion(scenario) for scenario in scenarios], [None] * n
+    truth = [truth_of(motion, axis, given) for motion, given in zip(motions, inputs, strict=True)]
+    steps = np.arange(n) + 2, np.linspace(0.1, 0.3, n)
+    return Response(still(recipe, n), *steps, {}, inputs, motions, truth, [], none, none)
 
 
 def truth(scenario, recipe) -> Truth:
     """Truth of a scenario."""
     axis = timeline(settings_of(recipe))
     given = input_of(scenario)
-    return with_loaded_hits([truth_of(scenario, axis, given)], [given], axis)[0]
+    return with_loaded_hits([truth_of(draw_motion(scenario), axis, given)], [given], axis)[0]

@@ -22,6 +22,7 @@ from gen.physics.rotor import Machine, as_columns, ball_forces, rest
 from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.damage import largest_drop_over
 from gen.simulation.inputs import bare_inputs, only
+from gen.simulation.motion import draw_motion
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import Timeline, timeline
 from gen.support.errors import SimulationError
@@ -165,7 +166,7 @@ def unloads(scenario: Scenario, number: int = 0) -> bool | None:
     A spall that turns, on the inner race or on a ball, is taken where the load is largest.
     """
     try:
-        machine = only(bare_inputs([scenario])).machine
+        machine = only(bare_inputs([draw_motion(scenario)])).machine
     except (SimulationError, ValueError):
         return None
     spall = scenario.specimen.spalls[number]

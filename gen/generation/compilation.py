@@ -26,7 +26,7 @@ from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import is_wavy, untabulated_spalls
 from gen.simulation.inputs import bare_inputs
 from gen.simulation.kernels import is_compiled, load_kernel
-from gen.simulation.motion import is_scheduled
+from gen.simulation.motion import draw_motion, is_scheduled
 from gen.support.garbage import keep_garbage
 from gen.support.workers import cores
 
@@ -85,7 +85,7 @@ def needed_shapes(recipe: Recipe) -> list[Shape]:
     if recipe.truth.twins:
         scenarios = [one for scenario in scenarios for one in (scenario, scenario.without_fault())]
     # a record of which no machine is possible is left out when its part is made
-    inputs, _ = bare_inputs(scenarios)
+    inputs, _ = bare_inputs([draw_motion(scenario) for scenario in scenarios])
     shaped = [
         given._replace(
             spalls=untabulated_spalls(scenario),

@@ -19,6 +19,7 @@ from gen.scenarios import Scenario, draw_scenarios, first_records, settings_of
 from gen.simulation.batches import Group, filled_lanes, group_of
 from gen.simulation.inputs import kernel_inputs
 from gen.simulation.kernels import cache_folder
+from gen.simulation.motion import draw_motion
 from gen.simulation.simulate import integrations
 from gen.simulation.steps import steps_per_sample
 from gen.simulation.timeline import timeline
@@ -44,7 +45,7 @@ def groups_of(scenarios: Sequence[Scenario], recipe: Recipe) -> Iterator[Group |
     axis = timeline(settings_of(recipe))
     for first in range(0, len(scenarios), AT_ONCE):
         some = scenarios[first : first + AT_ONCE]
-        inputs, failures = kernel_inputs(some, axis)
+        inputs, failures = kernel_inputs([draw_motion(scenario) for scenario in some], axis)
         for place, (given, scenario) in enumerate(zip(inputs, some, strict=True)):
             if given is None:
                 yield failures[place]

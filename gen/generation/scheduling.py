@@ -164,7 +164,7 @@ class _Making(Generic[Result]):
             return partial(self._write, self._checked.popleft())
         if self._complete:
             return partial(self._check_steps, self._complete.popleft())
-        if sum(len(family.scenarios) for family in self._ready) >= _JUDGED:
+        if sum(len(family) for family in self._ready) >= _JUDGED:
             return self._judging()
         if self._waiting.has_full_batch():
             return partial(self._integrate, self._waiting.fullest())
@@ -185,12 +185,12 @@ class _Making(Generic[Result]):
     def _judging(self) -> Callable[[Report], Iterable[Result]]:
         self._growing += 1
         families, self._ready = self._ready, []
-        return partial(self._judge, sorted(families, key=lambda family: family.scenarios[0].record.number))
+        return partial(self._judge, sorted(families, key=lambda family: family[0].scenario.record.number))
 
     def _draw(self, numbers: range, _report: Report) -> Iterable[Result]:
         """Draw the next records."""
         families = self._families.draw(numbers)
-        waits = [(family.integrations, partial(self._make_ready, family)) for family in families]
+        waits = [(open_integrations(family), partial(self._make_ready, family)) for family in families]
         with self._change:
             self._growing -= 1
             for integrations, then in waits:
@@ -210,9 +210,9 @@ class _Making(Generic[Result]):
     def _judge(self, families: list[Family], report: Report) -> Iterable[Result]:
         """Measure and judge families; those that are final go to their parts."""
         made, again = self._families.judge(families)
-        made = MadeRecords(replace(made.response, twins=None), made.measured)
-        redrawn = {one.record.number for family in again for one in family.scenarios}
-        waits = [(family.integrations, partial(self._make_ready, family)) for family in again]
+        made = MadeRecords(replace(made.response, twins=[]), made.measured)
+        redrawn = {run.scenario.record.number for family in again for run in family}
+        waits = [(open_integrations(family), partial(self._make_ready, family)) for family in again]
         # copies, so that no part holds the accelerations of another
         pieces = [
             (

@@ -28,7 +28,7 @@ def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -
         own = _halved(Integration(number, usable[place], groups[place]))
         if other is not None and other.own is not None:
             other = other._replace(own=_halved(other.own), twin=None)
-        finer[place] = Run(scenarios[place], usable[place], "", own, None, other)
+        finer[place] = Run(response.motions[place], usable[place], "", own, None, other)
     return finer
 
 

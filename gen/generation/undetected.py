@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.measurement.measure import Measured, measure
-from gen.measurement.other_bearing import with_other_faults
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, common_settings, draw_scenarios, simulation_errors, with_level
-from gen.simulation.batches import Integration, integrate_all
+from gen.simulation.batches import integrate_all
 from gen.simulation.hits import felt_places
 from gen.simulation.simulate import Response, Run, open_integrations, response_of, runs_of
 from gen.simulation.timeline import timeline
@@ -34,17 +33,8 @@ class MadeRecords:
     measured: Measured
 
 
-@dataclass(eq=False)
-class Family:
-    """Records that are judged together, and the integrations that they wait for."""
-
-    scenarios: list[Scenario]
-    runs: list[Run]
-
-    @property
-    def integrations(self) -> list[Integration]:
-        """Those that have not been done yet."""
-        return open_integrations(self.runs)
+Family = list[Run]
+"""Records that are judged together."""
 
 
 class Families:
@@ -69,13 +59,13 @@ class Families:
 
     def judge(self, families: list[Family]) -> tuple[MadeRecords, list[Family]]:
         """Records of integrated families, and the families again whose fault is drawn again."""
-        made = made_of([run for family in families for run in family.runs], self._other_levels)
+        every = [run for family in families for run in family]
+        made = made_of(every, self._other_levels)
         if not self._redraws:
             return made, []
         unseen = _unseen_places(made)
         specimens = dict.fromkeys(made.measured.scenarios[place].specimen.number for place in unseen)
         again = sorted(number for number in specimens if self._tries.get(number, 0) < FAULT_TRIES - 1)
-        every = [run for family in families for run in family.runs]
         known = {
             run.scenario.record.number: run for place, run in enumerate(every) if place not in made.response.failures
         }
@@ -99,9 +89,7 @@ class Families:
         families: dict[tuple[int, int], Family] = {}
         for scenario, run in zip(scenarios, runs_of(scenarios, known) if scenarios else [], strict=True):
             group = 0 if self._redraws else scenario.record.number // self.size
-            family = families.setdefault((scenario.specimen.number, group), Family([], []))
-            family.scenarios.append(scenario)
-            family.runs.append(run)
+            families.setdefault((scenario.specimen.number, group), []).append(run)
         return list(families.values())
 
     def _redrawn(self, specimens: Iterable[int]) -> list[Scenario]:
@@ -141,8 +129,8 @@ def made_from(scenarios: list[Scenario]) -> MadeRecords:
 def made_of(runs: list[Run], other_levels: Callable[[Scenario], Iterable[Scenario]] = lambda _: ()) -> MadeRecords:
     """Records of scenarios that have been integrated; ``other_levels`` as for :func:`gen.measurement.measure.measure`."""
     response, scenarios = response_of(runs), [run.scenario for run in runs]
-    measured = measure(response.acceleration, scenarios, response.twins, other_levels=other_levels)
-    return MadeRecords(response, with_other_faults(measured, response.acceleration, response.twins))
+    options = {"motions": response.motions, "other_levels": other_levels}
+    return MadeRecords(response, measure(response.acceleration, scenarios, response.twins, **options))
 
 
 def pick(rows: list[tuple[MadeRecords, int]]) -> MadeRecords:
@@ -155,7 +143,7 @@ def pick(rows: list[tuple[MadeRecords, int]]) -> MadeRecords:
         {name: _column([getattr(getattr(made, of), name)[place] for made, place in rows]) for name in _columns(one)}
         for of, one in (("response", response), ("measured", measured))
     ]
-    return MadeRecords(replace(response, failures=failures, twins=None, **columns[0]), replace(measured, **columns[1]))
+    return MadeRecords(replace(response, failures=failures, twins=[], **columns[0]), replace(measured, **columns[1]))
 
 
 def _column(rows: list[Any]) -> NDArray[Any] | list[Any]:

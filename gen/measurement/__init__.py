@@ -9,6 +9,5 @@ background        noise, lines and impulses of the machine in one record
 levels            gains of bearing and background
 judging           whether the fault of a record can be seen in it
 measure           path, modulation, background, level and converter, record by record
-other_bearing     whether the fault of the bearing at the other end of the shaft can be seen
 ================= ======================================================================
 """

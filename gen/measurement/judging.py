@@ -42,9 +42,9 @@ class Parts(NamedTuple):
     """Parts of one record before their gains."""
 
     fault: Float32Array
-    """What the fault adds, shape (channel, time), as the next two [m s-2]."""
+    """What the fault adds, shape (channel, time), as the next two; (0, 0) if there is no fault or it is not known [m s-2]."""
     healthy: Float32Array
-    """The bearing without it [m s-2]."""
+    """The bearing without it, or the whole bearing [m s-2]."""
     background: Float32Array
     """[1]."""
     impulses: Float32Array
@@ -72,15 +72,6 @@ class Window(NamedTuple):
         return slice(max(LOWEST, self.first - AROUND), self.stop + AROUND)
 
 
-class EnvelopeLines(NamedTuple):
-    """Lines of the squared envelope of a band, before the gains."""
-
-    lines: list[tuple[Window, ComplexArray]]
-    """Windows with the lines around each, shape (product, channel, line), of the products of :func:`_products`."""
-    impulses: FloatArray
-    """Rms of the lines of impulses at random times, shape (channel,)."""
-
-
 class Judge:
     """Tells for any gains whether the fault of a record can be seen; a band is transformed once, when it is needed."""
 
@@ -98,7 +89,7 @@ class Judge:
         ]
         searched = len(record.fault) * sum(one.stop - one.first for _, some in self._searched for one in some)
         self._margin = math.sqrt(2 * math.log(max(searched, 1) / FALSE_ALARM))
-        self._bands: list[EnvelopeLines] = []
+        self._bands: list[tuple[list[tuple[Window, ComplexArray]], FloatArray]] = []
 
     def sees(self, gains: Gains) -> bool:
         """Whether every damaged part can be seen in some band of some channel."""
@@ -106,17 +97,23 @@ class Judge:
         for place, (frequencies, windows) in enumerate(self._searched):
             if place == len(self._bands):
                 self._bands.append(self._band(frequencies, windows))
-            band = self._bands[place]
-            for window, lines in band.lines:
-                if window.part not in seen and _stands_out(window, lines, gains, self._margin, band.impulses):
+            of_windows, impulses = self._bands[place]
+            for window, lines in of_windows:
+                if window.part not in seen and _stands_out(window, lines, gains, self._margin, impulses):
                     seen.add(window.part)
             if len(seen) == len(self._record.orders):
                 return True
         return False
 
-    def _band(self, band: tuple[int, int], windows: Sequence[Window]) -> EnvelopeLines:
+    def _band(
+        self, band: tuple[int, int], windows: Sequence[Window]
+    ) -> tuple[list[tuple[Window, ComplexArray]], FloatArray]:
+        """Lines of the squared envelope of a band around each window, before the gains, and rms of the lines of its impulses.
+
+        Shapes (product, channel, line), of the products of :func:`_products`, and (channel,).
+        """
         if not windows:
-            return EnvelopeLines([], np.empty(0))
+            return [], np.empty(0)
         n, impulses = self._record.fault.shape[1], self._record.impulses
         products = _products(self._spectra[..., slice(*band)])
         if not self._record.steady:
@@ -126,7 +123,7 @@ class Judge:
         share = n / 2 / (impulses.shape[1] - 1)  # of the frequencies of the record in those of the impulses
         places = slice(round(band[0] / share), round(band[1] / share))
         of_impulses = WINDOW_RMS * products.shape[-1] * share**1.5 * impulses[:, places].sum(axis=1)
-        return EnvelopeLines([(window, lines[..., window.around]) for window in windows], of_impulses)
+        return [(window, lines[..., window.around]) for window in windows], of_impulses
 
 
 def judges_of(records: Sequence[Parts]) -> list[Judge]:

@@ -30,14 +30,16 @@ from gen.measurement.rig import RigFilters, rig_filters
 from gen.mechanisms.background.section import locked_of
 from gen.mechanisms.chain.measuring_chain import disturb
 from gen.scenarios import Gains, Purpose, Scenario, common_settings
-from gen.simulation.shaft import scenario_angles
-from gen.simulation.simulate import Twins
+from gen.simulation.motion import Motion, draw_motion
+from gen.simulation.shaft import angles_of
+from gen.simulation.simulate import Twin
 from gen.simulation.timeline import Timeline, timeline
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
 LARGEST_COUNT = 32767
 SIGNIFICANT_RISE = 1.25  # of the rms by a fault without lines: ISO 20816-1:2016, criterion II
+_Part = tuple[Parts, Products]
 _ROWS = 8  # records times channels per pass: transforms run side by side, and their arrays fit the second-level cache
 
 
@@ -68,7 +70,7 @@ class Measured:
     gains: list[Gains]
     """Of each record."""
     other_fault_snr: FloatArray
-    """As ``fault_snr`` for the fault of the bearing at the other end of the shaft; see :mod:`gen.measurement.other_bearing`."""
+    """As ``fault_snr`` for the fault of the bearing at the other end of the shaft, at the gains of the record."""
     other_detectable: NDArray[np.int8]
     """As ``detectable`` for that fault."""
 
@@ -76,8 +78,9 @@ class Measured:
 def measure(
     acceleration: Float32Array,
     scenarios: list[Scenario],
-    twins: Twins | None = None,
+    twins: Sequence[Twin] = (),
     *,
+    motions: Sequence[Motion] | None = None,
     other_levels: Callable[[Scenario], Iterable[Scenario]] = lambda _: (),
 ) -> Measured:
     """Turn accelerations of the bodies into records.
@@ -88,13 +91,15 @@ def measure(
         Acceleration that each channel measures, from the lead ahead of the record on [m s-2].
     scenarios : list of Scenario
         The scenarios that were simulated, in the same order; of each group, the last one has the largest severity.
-    twins : Twins, optional
-        The same records without their faults, which tell what the faults add.
+    twins : sequence of Twin, optional
+        The same records without one of their faults, which tell what the faults add.
+    motions : sequence of Motion, optional
+        Courses of their shafts; by default drawn again.
     other_levels : callable
         Gives the same record with other levels, one after the other, until its fault can be seen.
     """
     settings = common_settings(scenarios)
-    axis = timeline(settings)
+    axis, motions = timeline(settings), motions or [*map(draw_motion, scenarios)]
     shape = len(scenarios), len(settings.channels), axis.record
     rigs = {scenario.rig.number: scenario.rig for scenario in scenarios}
     of_rig = {number: rig_filters(rig, axis.returned, axis.fs, settings.seed) for number, rig in rigs.items()}
@@ -104,24 +109,30 @@ def measure(
     )
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
     clipped, taken, labels = np.zeros(shape[0], np.int32), list(scenarios), [dict[str, float]()] * shape[0]
-    snr, fault_snr, fault_share = np.full((3, shape[0]), np.nan)
+    snr, fault_snr, fault_share, other_snr = np.full((4, shape[0]), np.nan)
     detectable, gains = np.empty(shape[0], np.int8), [Gains(1.0, 1.0)] * shape[0]
+    other_detectable = np.array([_unjudged(scenario) for scenario in scenarios], np.int8)
     # rms of an error that is uniform within half a count
     rounding = 0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
     several = max(1, _ROWS // shape[1])
+    own, others = ({one.place: one for one in twins if one.of_other == of_other} for of_other in (False, True))
     # Backwards: the last record of a group has the largest severity and sets the level of the group. One that diverged sets none.
     levels: dict[int, Levelled] = {}
     for first in reversed(range(0, shape[0], several)):
         some = slice(first, first + several)
         filters = [of_rig[scenario.rig.number] for scenario in scenarios[some]]
-        parts = _parts(acceleration[some], scenarios[some], filters, axis, twins, first)
-        for row, (part, judge) in reversed(list(enumerate(zip(parts, _judges(parts), strict=True), first))):
+        angles = [angles_of(motion, axis) for motion in motions[some]]
+        cases = [(row, own.get(first + row)) for row in range(len(filters))]
+        cases += [(row, others[first + row]) for row, _ in cases if first + row in others]
+        parts = _parts(acceleration[some], scenarios[some], filters, angles, axis, cases)
+        judged = [*zip(parts, _judges(parts), strict=True)]
+        for row, ((part, products), judge) in reversed(list(enumerate(judged[: len(filters)], first))):
             scenario = scenarios[row]
             pair = scenario.record.pair
             if pair in levels:
                 scenario = _with_level_of(levels[pair], scenario)
-            level = _choose_level(part, judge, scenario, rounding, other_levels)
-            if pair >= 0 and scenario.record.snr is not None and part.is_finite:
+            level = _choose_level(part, products, judge, scenario, rounding, other_levels)
+            if pair >= 0 and scenario.record.snr is not None and _is_finite(products):
                 level = level._replace(scenario=_with_level_of(level, level.scenario))
                 levels.setdefault(pair, level)
             mixed, labels[row] = _through_chain(_mix(part, level.gains), level.scenario, axis.fs)
@@ -132,10 +143,24 @@ def measure(
             taken[row], detectable[row], gains[row] = level.scenario, level.detectable, level.gains
             fault_snr[row], fault_share[row] = level.fault_snr, level.fault_share
             if signal[row].any():
-                snr[row] = bearing_over_background(part.products, level.gains, rounding)
-    others = np.full(shape[0], np.nan), np.array([_unjudged(scenario) for scenario in scenarios], np.int8)
+                snr[row] = bearing_over_background(products, level.gains, rounding)
+        for (_, twin), ((_, products), judge) in zip(cases, judged, strict=True):
+            if twin is not None and twin.of_other:
+                seen = _visibility(products, judge, gains[twin.place], rounding)
+                other_snr[twin.place], _, other_detectable[twin.place] = seen
     return Measured(
-        signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken, labels, gains, *others
+        signal,
+        counts_per_unit,
+        clipped,
+        snr,
+        fault_snr,
+        fault_share,
+        detectable,
+        taken,
+        labels,
+        gains,
+        other_snr,
+        other_detectable,
     )
 
 
@@ -144,29 +169,9 @@ def _unjudged(scenario: Scenario) -> int:
     return 0 if scenario.other is not None and scenario.other.specimen.fault == "healthy" else UNJUDGED
 
 
-class Part(NamedTuple):
-    """The parts of one record, filtered and modulated, before their gains."""
-
-    fault: Float32Array
-    """What the fault adds, shape (channel, time), or (0, 0) if there is no fault or it is not known [m s-2]."""
-    healthy: Float32Array
-    """The bearing without it, or the whole bearing, shape (channel, time) [m s-2]."""
-    background: Float32Array
-    """Shape (channel, time) [1]."""
-    impulses: Float32Array
-    """As for :class:`gen.measurement.judging.Parts`."""
-    products: Products
-    angles: FloatArray
-    """Angle of the shaft, shape (time,) [rad]."""
-    orders: tuple[float, ...]
-    """Orders at which the faults repeat [1]."""
-    steady: bool
-    """True if the speed follows no profile."""
-
-    @property
-    def is_finite(self) -> bool:
-        """False if the record diverged."""
-        return math.isfinite(sum(self.products))
+def _is_finite(products: Products) -> bool:
+    """False if the record diverged."""
+    return math.isfinite(sum(products))
 
 
 class Levelled(NamedTuple):
@@ -189,23 +194,19 @@ def _parts(
     acceleration: Float32Array,
     scenarios: Sequence[Scenario],
     filters: Sequence[RigFilters],
+    angles: Sequence[NDArray[np.float64]],
     axis: Timeline,
-    twins: Twins | None,
-    first: int,
-) -> list[Part]:
-    """The parts of some records, of which ``first`` is the place of the first one in ``twins``."""
-    count, n_channels, _ = acceleration.shape
-    faulty = [row for row in range(count) if twins is not None and scenarios[row].specimen.fault != "healthy"]
-    # the bearings without their faults, and then what the faults add
-    both = np.empty((count + len(faulty), *acceleration.shape[1:]), np.float32)
-    both[:count] = acceleration if twins is None else twins.acceleration[first : first + count]
-    for place, row in enumerate(faulty, count):
-        np.subtract(acceleration[row], both[row], out=both[place])
-    _through_paths(both, [*filters, *(filters[row] for row in faulty)])
+    cases: Sequence[tuple[int, Twin | None]],
+) -> list[_Part]:
+    """The parts of some records; a case is a row and the record without one of its faults, None without a fault or if that is not known."""
+    twins = [acceleration[row] if twin is None else twin.acceleration for row, twin in cases]
+    added = [acceleration[row] - twin.acceleration for row, twin in cases if twin is not None]
+    both = np.stack([*twins, *added])
+    _through_paths(both, [filters[row] for row, _ in [*cases, *(case for case in cases if case[1] is not None)]])
+    faults = iter(both[len(cases) :])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
-    angles = [scenario_angles(scenario, axis) for scenario in scenarios]
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
-    background = noise_of(filters, n_channels, rngs)
+    background = noise_of(filters, acceleration.shape[1], rngs)
     impulses = impulses_of(filters, angles, rngs)
     for row, scenario in enumerate(scenarios):
         for source, drawn in locked_of(scenario.rig.background):
@@ -214,19 +215,18 @@ def _parts(
                 # impulses have the length of the Fourier transform
                 impulses[row] = impulses[row][:, : behind.shape[1]] + behind if impulses[row].size else behind
     parts = []
-    for row in range(count):
-        fault = both[count + faulty.index(row)] if row in faulty else NO_SIGNAL
-        one = fault, both[row], background[row]
+    for (row, twin), healthy in zip(cases, both, strict=False):
+        # a copy, since a second fault is judged on the same noise
+        one = NO_SIGNAL if twin is None else next(faults), healthy, background[row].copy()
         products = Products(*mix(*one, impulses[row], angles[row], lines[row], axis.kept.start, axis.kept.stop))
         added, bearing, noise = (some[..., axis.kept] if some.size else some for some in one)
-        orders = twins.orders[first + row] if twins is not None else ()
-        steady = scenarios[row].record.speed_profile is None
-        lines_of_impulses = filters[row].impulse_lines
-        parts.append(Part(added, bearing, noise, lines_of_impulses, products, angles[row][axis.kept], orders, steady))
+        steady, orders = scenarios[row].record.speed_profile is None, () if twin is None else twin.orders
+        known = filters[row].impulse_lines, orders, angles[row][axis.kept], steady
+        parts.append((Parts(added, bearing, noise, *known), products))
     return parts
 
 
-def _mix(part: Part, gains: Gains) -> Float32Array:
+def _mix(part: Parts, gains: Gains) -> Float32Array:
     """Bearing plus background, shape (channel, time) [m s-2]."""
     whole = part.healthy + part.fault if part.fault.size else part.healthy
     mixed = np.float32(gains.bearing) * whole
@@ -259,15 +259,10 @@ def _to_counts(signal: Float32Array, counts_per_unit: float) -> int:
     return int(clipped)
 
 
-def _judges(parts: Sequence[Part]) -> list[Judge | None]:
+def _judges(parts: Sequence[_Part]) -> list[Judge | None]:
     """Judges of those records whose fault has a line."""
-    wanted = [bool(part.orders) and part.fault.size > 0 and part.is_finite for part in parts]
-    given = [
-        Parts(part.fault, part.healthy, part.background, part.impulses, part.orders, part.angles, part.steady)
-        for part, is_wanted in zip(parts, wanted, strict=True)
-        if is_wanted
-    ]
-    judges = iter(judges_of(given))
+    wanted = [bool(part.orders) and part.fault.size > 0 and _is_finite(products) for part, products in parts]
+    judges = iter(judges_of([part for (part, _), is_wanted in zip(parts, wanted, strict=True) if is_wanted]))
     return [next(judges) if is_wanted else None for is_wanted in wanted]
 
 
@@ -279,35 +274,32 @@ def _with_level_of(levelled: Levelled, scenario: Scenario) -> Scenario:
 
 
 def _choose_level(
-    part: Part,
+    part: Parts,
+    products: Products,
     judge: Judge | None,
     scenario: Scenario,
     rounding: float,
     other_levels: Callable[[Scenario], Iterable[Scenario]],
 ) -> Levelled:
     """Level of a record: the drawn one, or if its fault cannot be seen the first of some others at which it can."""
+    if not part.fault.size:
+        unseen = (0.0, 0) if scenario.specimen.fault == "healthy" else (math.nan, UNJUDGED)
+        return Levelled(scenario, gains_of(scenario, products), math.nan, *unseen)
     levels = []
-    known = scenario.record.gains is not None or not part.fault.size
-    for tried in chain([scenario], () if known else other_levels(scenario)):
-        gains = gains_of(tried, part.products)
-        levels.append(Levelled(tried, gains, *_visibility(part, judge, tried, gains, rounding)))
+    for tried in chain([scenario], () if scenario.record.gains is not None else other_levels(scenario)):
+        gains = gains_of(tried, products)
+        levels.append(Levelled(tried, gains, *_visibility(products, judge, gains, rounding)))
         if levels[-1].detectable:
             return levels[-1]
     return levels[0]
 
 
-def _visibility(
-    part: Part, judge: Judge | None, scenario: Scenario, gains: Gains, rounding: float
-) -> tuple[float, float, int]:
-    """Level of the fault over the rest [dB], its share of the power [1], and whether it can be seen: 1, 0 or ``UNJUDGED``."""
-    if scenario.specimen.fault == "healthy":
-        return math.nan, 0.0, 0
-    if not part.fault.size:
-        return math.nan, math.nan, UNJUDGED
-    level, share = fault_over_rest(part.products, gains, rounding)
+def _visibility(products: Products, judge: Judge | None, gains: Gains, rounding: float) -> tuple[float, float, int]:
+    """Level of a fault over the rest [dB], its share of the power [1], and 1 if it can be seen, else 0."""
+    level, share = fault_over_rest(products, gains, rounding)
     if judge is not None:
         return level, share, int(judge.sees(gains))
-    rise = mean_square(part.products, gains) >= SIGNIFICANT_RISE**2 * mean_square(part.products, gains, fault=False)
+    rise = mean_square(products, gains) >= SIGNIFICANT_RISE**2 * mean_square(products, gains, fault=False)
     return level, share, int(rise)
 
 

@@ -13,6 +13,7 @@ from gen.physics.inputs import KernelInput
 from gen.scenarios import Scenario
 from gen.simulation.damage import untabulated_spalls
 from gen.simulation.inputs import bare_inputs, resting
+from gen.simulation.motion import draw_motion
 
 
 class LoadZone(NamedTuple):
@@ -50,7 +51,7 @@ def felt_places(scenarios: Sequence[Scenario]) -> list[bool]:
     """False for each record whose only faults are spalls of the outer race that no loaded ball meets."""
     places = [place for place, scenario in enumerate(scenarios) if _only_outer_spalls(scenario)]
     felt = [True] * len(scenarios)
-    inputs, _ = bare_inputs([scenarios[place] for place in places])
+    inputs, _ = bare_inputs([draw_motion(scenarios[place]) for place in places])
     for place, given in zip(places, resting(inputs), strict=True):
         if given is not None:  # otherwise no such machine is possible; the simulation says so
             zone, spalls = load_zone(given), untabulated_spalls(scenarios[place])

@@ -9,11 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from gen.physics.inputs import KernelInput, at_rest
-from gen.physics.kernel.layout import SPEED_TERMS
 from gen.scenarios import Scenario
 from gen.simulation.damage import spall_inputs, waviness_of
 from gen.simulation.machine import check_load, heaviest_ball_load, machine_of, with_axial_loads
-from gen.simulation.motion import Start, schedule_of, start_of, turning_of
+from gen.simulation.motion import Motion, draw_motion, schedule_of, turning_of
 from gen.simulation.timeline import Timeline
 from gen.support.errors import SimulationError
 
@@ -23,37 +22,27 @@ Failures = dict[int, str]
 """A sentence for each scenario of which no machine is possible, by its place."""
 
 
-def kernel_inputs(scenarios: Sequence[Scenario], timeline: Timeline) -> tuple[list[KernelInput | None], Failures]:
-    """Everything the kernel needs of each scenario, None where no machine is possible."""
-    inputs, failures = bare_inputs(scenarios)
-    for place, (given, scenario) in enumerate(zip(inputs, scenarios, strict=True)):
+def kernel_inputs(motions: Sequence[Motion], timeline: Timeline) -> tuple[list[KernelInput | None], Failures]:
+    """Everything the kernel needs of each record, None where no machine is possible."""
+    inputs, failures = bare_inputs(motions)
+    for place, (given, motion) in enumerate(zip(inputs, motions, strict=True)):
+        scenario = motion.scenario
         if given is None:
             continue
         try:
             inputs[place] = given._replace(
                 spalls=spall_inputs(scenario, heaviest_ball_load(scenario)),
                 waviness=waviness_of(scenario, timeline.fs),
-                schedule=schedule_of(scenario, timeline),
+                schedule=schedule_of(motion.shaft, timeline),
             )
         except ValueError as error:
             inputs[place], failures[place] = None, _name(scenario, error)
     return resting(inputs), failures
 
 
-def on_shaft(given: KernelInput, first: KernelInput) -> KernelInput:
-    """Kernel input of the bearing at the other end of the shaft, which turns, and is loaded over time, as the ``first`` one."""
-    own = slice(SPEED_TERMS, None)
-    return given._replace(
-        turning=given.turning._replace(shaft_angle=first.turning.shaft_angle),
-        frequencies=np.concatenate([first.frequencies[:SPEED_TERMS], given.frequencies[own]]),
-        phases=np.concatenate([first.phases[:SPEED_TERMS], given.phases[own]]),
-        schedule=first.schedule,
-    )
-
-
 def kernel_input(scenario: Scenario, timeline: Timeline) -> KernelInput:
     """Everything the kernel needs of one scenario; SimulationError if no such machine is possible."""
-    return only(kernel_inputs([scenario], timeline))
+    return only(kernel_inputs([draw_motion(scenario)], timeline))
 
 
 def only(inputs: tuple[list[KernelInput | None], Failures]) -> KernelInput:
@@ -64,19 +53,19 @@ def only(inputs: tuple[list[KernelInput | None], Failures]) -> KernelInput:
     return given
 
 
-def bare_inputs(scenarios: Sequence[Scenario]) -> tuple[list[KernelInput | None], Failures]:
+def bare_inputs(motions: Sequence[Motion]) -> tuple[list[KernelInput | None], Failures]:
     """Kernel inputs without spalls, waviness, schedule and rest, which take most of the time to make; None as above."""
-    inputs: list[KernelInput | None] = [None] * len(scenarios)
+    inputs: list[KernelInput | None] = [None] * len(motions)
     failures: Failures = {}
     possible: dict[int, KernelInput] = {}
-    for place, scenario in enumerate(scenarios):
+    for place, motion in enumerate(motions):
         try:
-            possible[place] = _without_axial_load(scenario)
+            possible[place] = _without_axial_load(motion)
         except ValueError as error:
-            failures[place] = _name(scenario, error)
+            failures[place] = _name(motion.scenario, error)
     machines = with_axial_loads(
         [given.machine for given in possible.values()],
-        [scenarios[place] for place in possible],
+        [motions[place].scenario for place in possible],
         [given.turning.cage_angle for given in possible.values()],
     )
     for (place, given), machine in zip(possible.items(), machines, strict=True):
@@ -93,26 +82,24 @@ def resting(inputs: Sequence[KernelInput | None]) -> list[KernelInput | None]:
 def without_fault(given: KernelInput, scenario: Scenario, timeline: Timeline) -> KernelInput:
     """Kernel input of a record without its fault, from that with it: the machine is the same."""
     sound = scenario.without_fault()
-    turning = given.turning
-    start = Start(turning.shaft_angle, turning.cage_angle, turning.spin_angle, given.frequencies, given.phases)
-    return given._replace(spalls=(), turning=turning_of(sound, start), waviness=waviness_of(sound, timeline.fs))
+    angles = given.turning.shaft_angle, given.turning.cage_angle, given.turning.spin_angle
+    return given._replace(spalls=(), turning=turning_of(sound, *angles), waviness=waviness_of(sound, timeline.fs))
 
 
-def _without_axial_load(scenario: Scenario) -> KernelInput:
-    check_load(scenario)
-    start, bearing = start_of(scenario), scenario.specimen.bearing
-    channels = scenario.rig.channels
+def _without_axial_load(motion: Motion) -> KernelInput:
+    check_load(motion.scenario)
+    channels = motion.scenario.rig.channels
     pickups = np.zeros((len(channels), 6))
     for weights, channel in zip(pickups, channels, strict=True):
         first = _FIRST_COORDINATE[channel.body]
         weights[first : first + 2] = math.cos(channel.angle), math.sin(channel.angle)
     return KernelInput(
-        bearing=bearing,
-        machine=machine_of(scenario),
-        turning=turning_of(scenario, start),
+        bearing=motion.scenario.specimen.bearing,
+        machine=machine_of(motion.scenario),
+        turning=motion.turning,
         spalls=(),
-        frequencies=start.frequencies,
-        phases=start.phases,
+        frequencies=motion.frequencies,
+        phases=motion.phases,
         pickups=pickups,
     )
 

@@ -32,29 +32,39 @@ LEAVES_LOAD_ZONE = math.pi / 3  # angle from the load at which the pocket of a b
 LOAD_TERMS = 8
 
 
-class Start(NamedTuple):
-    """Random part of the motion of a record: angles at the start, and the cosine terms of all processes."""
+class Motion(NamedTuple):
+    """Course of shaft, cage and balls of one record, which tells kernel input, angles of the shaft and mean orders."""
 
-    shaft: float
-    """[rad], as are the next two."""
-    cage: float
-    spin: float
+    scenario: Scenario
+    shaft: Scenario
+    """Scenario whose speed and load vary over time as those of this record: that of the first bearing on the shaft."""
+    turning: Turning
     frequencies: FloatArray
-    """Shape (term,) [Hz]."""
+    """Of the cosine terms of all processes, shape (term,) [Hz]."""
     phases: FloatArray
     """Shape (term,) [rad]."""
 
 
-def start_of(scenario: Scenario, n_terms: int | None = None) -> Start:
-    """Draw the start of a record from its own random stream, with the first ``n_terms`` of its cosine terms, or all."""
+def draw_motion(scenario: Scenario) -> Motion:
+    """Draw the motion of a record from its own random stream."""
     rng = scenario.rng(Purpose.MOTION)
-    shaft, cage, spin = (2 * np.pi * rng.random(3)).tolist()
-    frequencies, phases = _processes(scenario.specimen.bearing, scenario.record.conditions.shaft_rate, rng, n_terms)
-    return Start(shaft, cage, spin, frequencies, phases)
+    turning = turning_of(scenario, *(2 * np.pi * rng.random(3)).tolist())
+    return Motion(scenario, scenario, turning, *_processes(scenario.specimen.bearing, turning.shaft_rate, rng))
 
 
-def turning_of(scenario: Scenario, start: Start) -> Turning:
-    """How shaft, cage and balls of a record turn."""
+def on_shaft(own: Motion, first: Motion) -> Motion:
+    """Motion of the bearing at the other end of the shaft, which turns, and is loaded over time, as the ``first`` one."""
+    rest = slice(SPEED_TERMS, None)
+    return own._replace(
+        shaft=first.scenario,
+        turning=own.turning._replace(shaft_angle=first.turning.shaft_angle),
+        frequencies=np.concatenate([first.frequencies[:SPEED_TERMS], own.frequencies[rest]]),
+        phases=np.concatenate([first.phases[:SPEED_TERMS], own.phases[rest]]),
+    )
+
+
+def turning_of(scenario: Scenario, shaft_angle: float, cage_angle: float, spin_angle: float) -> Turning:
+    """Rotation of a record from its angles at the start [rad]."""
     drawn, specimen, conditions = scenario.rig.machine, scenario.specimen, scenario.record.conditions
     return Turning(
         shaft_rate=conditions.shaft_rate,
@@ -67,9 +77,9 @@ def turning_of(scenario: Scenario, start: Start) -> Turning:
         axis_rms=specimen.axis.get("axis_wander", 0.0),
         axis_limit=specimen.axis.get("track", 0.0),
         unbalance=drawn["unbalance"],
-        shaft_angle=start.shaft,
-        cage_angle=start.cage,
-        spin_angle=start.spin,
+        shaft_angle=shaft_angle,
+        cage_angle=cage_angle,
+        spin_angle=spin_angle,
         bow=drawn["bow"],
         twice_x=drawn["misalignment"] * math.cos(drawn["misalignment_angle"]),
         twice_y=drawn["misalignment"] * math.sin(drawn["misalignment_angle"]),
@@ -86,14 +96,12 @@ def turning_of(scenario: Scenario, start: Start) -> Turning:
     )
 
 
-def _processes(
-    bearing: Bearing, shaft_rate: float, rng: np.random.Generator, n_terms: int | None
-) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [Hz] and phases [rad] of the first terms of all processes, shape (term,): log-uniform within each process's band."""
+def _processes(bearing: Bearing, shaft_rate: float, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] and phases [rad] of the terms of all processes, shape (term,): log-uniform within each process's band."""
     lowest, widths, unit = _bands(bearing.n_balls)
-    u = rng.random((2, n_process_terms(bearing.n_balls)))[:, :n_terms]
+    u = rng.random((2, n_process_terms(bearing.n_balls)))
     units = np.array([1.0, shaft_rate, orders(bearing).ftf * shaft_rate])
-    return lowest[:n_terms] * units[unit[:n_terms]] * exponential(widths[:n_terms] * u[0]), 2 * np.pi * u[1]
+    return lowest * units[unit] * exponential(widths * u[0]), 2 * np.pi * u[1]
 
 
 @functools.lru_cache(maxsize=64)
@@ -160,15 +168,6 @@ def cosine_sum(
     return np.einsum("bt,ts->bs", of_start, of_step).ravel()[: len(times)]
 
 
-class MeanMotion(NamedTuple):
-    """Means over the record, with speed profile, wander and slip."""
-
-    shaft_rate: float
-    """[Hz]."""
-    orders: FaultOrders
-    """Fault frequencies in orders of the mean shaft rate [1]."""
-
-
 def _walk(bearing: Bearing, turning: Turning, timeline: Timeline) -> FloatArray:
     """Slip of the random walk of the cage at the knots of the record, as the kernel draws it, shape (time,) [1]."""
     first, later = divmod(timeline.settle, STRIDE)
@@ -179,20 +178,16 @@ def _walk(bearing: Bearing, turning: Turning, timeline: Timeline) -> FloatArray:
     return np.repeat(slips, STRIDE)[later : later + timeline.record]
 
 
-def mean_motion(
-    scenario: Scenario, timeline: Timeline, turning: Turning, frequencies: FloatArray, phases: FloatArray
-) -> MeanMotion:
-    """Mean shaft rate and fault orders over a record with the motion ``turning``.
-
-    ``frequencies`` [Hz] and ``phases`` [rad] are those of the cosine terms of all processes, shape (term,).
-    """
-    conditions, profile, duration = scenario.record.conditions, scenario.record.speed_profile, timeline.duration
+def mean_motion(motion: Motion, timeline: Timeline) -> tuple[float, FaultOrders]:
+    """Mean shaft rate [Hz] and fault orders [1] over a record, with speed profile, wander and slip."""
+    turning, profile, duration = motion.turning, motion.scenario.record.speed_profile, timeline.duration
+    bearing = motion.scenario.specimen.bearing
     terms = slice(TILT_FIRST)  # speed, slip and spin
-    settle, turn, phase = timeline.settle / timeline.fs, 2 * np.pi * frequencies[terms], phases[terms]
+    settle, turn, phase = timeline.settle / timeline.fs, 2 * np.pi * motion.frequencies[terms], motion.phases[terms]
     if profile is None:
         means = (np.sin(turn * (settle + duration) + phase) - np.sin(turn * settle + phase)) / (turn * duration)
     else:  # weighted by the shaft rate, with 20 points per turn: ten to a cycle of the fastest process
-        points = int(np.clip(20 * conditions.shaft_rate * duration, 2**12, 2**17))
+        points = int(np.clip(20 * turning.shaft_rate * duration, 2**12, 2**17))
         times = (np.arange(points) + 0.5) * (duration / points)
         share = share_at(profile, times)
         means = np.einsum("t,tk->k", share, np.cos(np.outer(settle + times, turn) + phase)) / share.sum()
@@ -200,14 +195,14 @@ def mean_motion(
     def mean(first: int, count: int) -> float:
         return float(means[first : first + count].sum()) * math.sqrt(2 / count)
 
-    rate = conditions.shaft_rate * mean_share(profile, duration)
-    rate *= 1 + conditions.speed_wander * mean(0, SPEED_TERMS)
-    slip = conditions.mean_slip + conditions.slip * mean(SLIP_FIRST, SLIP_TERMS)
-    if conditions.slip_walk is not None:
-        walk, weights = _walk(scenario.specimen.bearing, turning, timeline), None
+    rate = turning.shaft_rate * mean_share(profile, duration)
+    rate *= 1 + turning.speed_rms * mean(0, SPEED_TERMS)
+    slip = turning.mean_slip + turning.slip_rms * mean(SLIP_FIRST, SLIP_TERMS)
+    if turning.walk > 0:
+        walk, weights = _walk(bearing, turning, timeline), None
         if profile is not None:
             weights = share_at(profile, (np.arange(timeline.record) + 0.5) / timeline.fs)
         slip += float(walk.mean() if weights is None else np.average(walk, weights=weights))
-    orders = slipping_orders(scenario.specimen.bearing, slip)
-    wander = conditions.spin_wander * mean(SPIN_FIRST, SPIN_TERMS)
-    return MeanMotion(rate, orders._replace(bsf=orders.bsf * (1 + wander)))
+    orders = slipping_orders(bearing, slip)
+    wander = turning.spin_rms * mean(SPIN_FIRST, SPIN_TERMS)
+    return rate, orders._replace(bsf=orders.bsf * (1 + wander))

@@ -14,8 +14,8 @@ from gen.corpus import DRAWS
 from gen.physics.kernel.layout import SPEED_TERMS
 from gen.physics.kernel.turning import STRIDE
 from gen.physics.profile import share_at
-from gen.scenarios import Scenario, read_scenarios
-from gen.simulation.motion import Start, cosine_sum, start_of
+from gen.scenarios import read_scenarios
+from gen.simulation.motion import Motion, cosine_sum, draw_motion
 from gen.simulation.timeline import Timeline, timeline
 from gen.support.errors import CorpusError
 
@@ -57,34 +57,34 @@ def _record_angles(row: xr.Dataset, place: int) -> FloatArray:
         except CorpusError as error:
             raise CorpusError(f"record {place}{str(error).removeprefix('record 0')}") from None
         axis = timeline(scenario.settings)
-        return scenario_angles(scenario, axis)[axis.kept]
+        return angles_of(draw_motion(scenario), axis)[axis.kept]
     rate = row["shaft_rate"].item()
     if not rate > 0:
         raise CorpusError(f"record {place} has no shaft rate, so that the angle of its shaft is not known.")
     return 2 * math.pi * rate / row["sample_rate"].item() * np.arange(row.sizes["elapsed_time"])
 
 
-def scenario_angles(scenario: Scenario, timeline: Timeline) -> FloatArray:
+def angles_of(motion: Motion, timeline: Timeline) -> FloatArray:
     """Angle of the shaft of a record from the lead ahead of it on, shape (time,) [rad].
 
     With a constant nominal speed it is ``angle + omega (t + s integral(eta))``, with the rms ``s`` of the wander and its cosine sum
     ``eta``. With a speed profile the product of profile and wander is summed from sample to sample, at the middle of each, as in the
     kernel.
     """
-    start, record = start_of(scenario, SPEED_TERMS), scenario.record
-    omega, wander = 2 * math.pi * record.conditions.shaft_rate, record.conditions.speed_wander
-    if record.speed_profile is None:
+    start, omega, wander = motion.turning.shaft_angle, 2 * math.pi * motion.turning.shaft_rate, motion.turning.speed_rms
+    profile = motion.scenario.record.speed_profile
+    if profile is None:
         nodes = np.arange(timeline.dropped, timeline.dropped + timeline.returned + STRIDE, STRIDE) / timeline.fs
-        turned = omega * (nodes + (wander * _integrated_wander(start, nodes) if wander > 0 else 0.0))
+        turned = omega * (nodes + (wander * _integrated_wander(motion, nodes) if wander > 0 else 0.0))
         angles = _between(turned)[: timeline.returned]
-        angles += start.shaft
+        angles += start
         return angles
     middles = (np.arange(timeline.dropped + timeline.returned - 1) + 0.5) / timeline.fs
-    speed = share_at(record.speed_profile, middles - timeline.settle / timeline.fs)
+    speed = share_at(profile, middles - timeline.settle / timeline.fs)
     if wander > 0:
-        speed *= 1 + wander * _wander(start, middles)
+        speed *= 1 + wander * _wander(motion, middles)
     turned = np.concatenate([[0.0], np.cumsum(speed)]) * (omega / timeline.fs)
-    return start.shaft + turned[timeline.dropped :]
+    return start + turned[timeline.dropped :]
 
 
 def _between(nodes: FloatArray) -> FloatArray:
@@ -98,19 +98,19 @@ def _between(nodes: FloatArray) -> FloatArray:
     return between.ravel()
 
 
-def _wander(start: Start, times: NDArray[np.floating]) -> FloatArray:
+def _wander(motion: Motion, times: NDArray[np.floating]) -> FloatArray:
     """Speed wander of unit rms at evenly spaced ``times`` since the kernel started [s], shape (time,) [1]."""
-    rates, phases = _speed_terms(start)
+    rates, phases = _speed_terms(motion)
     return math.sqrt(2 / SPEED_TERMS) * cosine_sum(times, rates, phases)
 
 
-def _integrated_wander(start: Start, times: NDArray[np.floating]) -> FloatArray:
+def _integrated_wander(motion: Motion, times: NDArray[np.floating]) -> FloatArray:
     """Integral of the speed wander of unit rms from the start of the kernel to ``times``, shape (time,) [s]."""
-    rates, phases = _speed_terms(start)
+    rates, phases = _speed_terms(motion)
     sines = cosine_sum(times, rates, phases - math.pi / 2, 1 / rates)
     return math.sqrt(2 / SPEED_TERMS) * (sines - float(np.sum(np.sin(phases) / rates)))
 
 
-def _speed_terms(start: Start) -> tuple[FloatArray, FloatArray]:
+def _speed_terms(motion: Motion) -> tuple[FloatArray, FloatArray]:
     """Rates [rad/s] and phases [rad] of the cosine terms of the speed wander, shape (term,)."""
-    return 2 * np.pi * start.frequencies, start.phases
+    return 2 * np.pi * motion.frequencies[:SPEED_TERMS], motion.phases[:SPEED_TERMS]

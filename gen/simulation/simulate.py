@@ -1,8 +1,8 @@
 """Scenarios integrated: accelerations of the bodies, and what is true of each record."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -13,29 +13,22 @@ from gen.physics.kernel.batch import lay_out
 from gen.physics.kernel.layout import Batch
 from gen.scenarios import Scenario, common_settings
 from gen.simulation.batches import Group, Integration, batches, group_of, integrate_all
-from gen.simulation.inputs import kernel_inputs, on_shaft, without_fault
+from gen.simulation.inputs import kernel_inputs, without_fault
+from gen.simulation.motion import Motion, draw_motion, on_shaft
 from gen.simulation.steps import failure, step_phase, steps_per_sample
-from gen.simulation.timeline import timeline
+from gen.simulation.timeline import Timeline, timeline
 from gen.simulation.truth import Truth, lines_of_faults, truth_of, with_loaded_hits
 
 FloatArray = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Twins:
-    """The same records without their faults."""
+class Twin(NamedTuple):
+    """A record without one of its faults."""
 
-    acceleration: NDArray[np.float32]
-    """Shape (record, channel, time); of a record without a fault its own [m s-2]."""
-    orders: list[tuple[float, ...]]
-    """Orders at which the faults of each record repeat [1]."""
-    others: "dict[int, OtherTwin]" = field(default_factory=dict)
-    """Of each record whose other bearing has a fault, by place."""
-
-
-class OtherTwin(NamedTuple):
-    """A record without the fault of the bearing at the other end of the shaft."""
-
+    place: int
+    """Of the record."""
+    of_other: bool
+    """True without the fault of the bearing at the other end of the shaft, False without that of the bearing at this end."""
     acceleration: NDArray[np.float32]
     """Shape (channel, time) [m s-2]."""
     orders: tuple[float, ...]
@@ -56,9 +49,11 @@ class Response:
     """A sentence for each record that is not possible or diverged, by its place among the scenarios."""
     inputs: list[KernelInput | None]
     """Kernel input of each record, None for a record that is not possible."""
+    motions: list[Motion]
+    """Course of shaft, cage and balls of each record."""
     truth: list[Truth]
-    twins: Twins | None
-    """None with ``truth.twins: false``."""
+    twins: list[Twin]
+    """Of the records that were made, one for each fault; empty with ``truth.twins: false``."""
     others: "list[Run | None]"
     """Bearings at the other ends of the shafts, None for a record without one."""
     other_truth: list[Truth | None]
@@ -66,9 +61,9 @@ class Response:
 
 
 class Run(NamedTuple):
-    """A scenario with the integrations that it needs."""
+    """A record with the integrations that it needs."""
 
-    scenario: Scenario
+    motion: Motion
     given: KernelInput | None
     """None if no such machine is possible."""
     impossible: str
@@ -79,6 +74,11 @@ class Run(NamedTuple):
     """Without the fault; None for a record without a fault, and with ``truth.twins: false``."""
     other: "Run | None" = None
     """The bearing at the other end of the shaft, if there is one."""
+
+    @property
+    def scenario(self) -> Scenario:
+        """Its scenario."""
+        return self.motion.scenario
 
     @property
     def integrations(self) -> list[Integration]:
@@ -127,19 +127,16 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] | None = None) -
         If a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
     """
     known, axis = known or {}, timeline(common_settings(scenarios))
-    inputs, failures = kernel_inputs(scenarios, axis)
-    runs = _runs_of_bearings(scenarios, inputs, failures, {number: run.healthy for number, run in known.items()})
+    healthy = {number: run.healthy for number, run in known.items()}
+    runs = _runs_of_bearings([draw_motion(scenario) for scenario in scenarios], axis, healthy)
     others = {_group_of(run.scenario): run.other for run in known.values()}
-    firsts = {_group_of(one): place for place, one in reversed(list(enumerate(scenarios))) if inputs[place] is not None}
+    firsts = {_group_of(run.scenario): run for run in reversed(runs) if run.given is not None}
     new = {
-        group: (of_other, inputs[place])
-        for group, place in firsts.items()
-        if group not in others and (of_other := scenarios[place].of_other) is not None
+        group: on_shaft(draw_motion(of_other), run.motion)
+        for group, run in firsts.items()
+        if group not in others and (of_other := run.scenario.of_other) is not None
     }
-    of_others = [of_other for of_other, _ in new.values()]
-    made, failures = kernel_inputs(of_others, axis)
-    made = [given and first and on_shaft(given, first) for given, (_, first) in zip(made, new.values(), strict=True)]
-    others |= dict(zip(new, _runs_of_bearings(of_others, made, failures, {}), strict=True))
+    others |= dict(zip(new, _runs_of_bearings([*new.values()], axis, {}), strict=True))
     return [run._replace(other=others.get(_group_of(run.scenario))) for run in runs]
 
 
@@ -148,19 +145,15 @@ def _group_of(scenario: Scenario) -> int:
     return scenario.record.pair if scenario.record.pair >= 0 else -1 - scenario.record.number
 
 
-def _runs_of_bearings(
-    scenarios: Sequence[Scenario],
-    inputs: Sequence[KernelInput | None],
-    failures: Mapping[int, str],
-    known: Mapping[int, Integration | None],
-) -> list[Run]:
+def _runs_of_bearings(motions: Sequence[Motion], axis: Timeline, known: Mapping[int, Integration | None]) -> list[Run]:
     """Integrations of one bearing each; ``known`` are records without their faults that were integrated before, by number."""
     runs: list[Run] = []
     of_group: dict[tuple[int, int], Integration | None] = {}
-    for place, (scenario, given) in enumerate(zip(scenarios, inputs, strict=True)):
-        number = scenario.record.number
+    inputs, failures = kernel_inputs(motions, axis)
+    for place, (motion, given) in enumerate(zip(motions, inputs, strict=True)):
+        scenario, number = motion.scenario, motion.scenario.record.number
         if given is None:
-            runs.append(Run(scenario, None, failures[place], None, None))
+            runs.append(Run(motion, None, failures[place], None, None))
             continue
         steps = steps_per_sample(given, scenario.record, scenario.settings)
         own, twin = Integration(number, given, group_of(given, steps)), None
@@ -175,7 +168,7 @@ def _runs_of_bearings(
                 twin = Integration(number, healthy, group_of(healthy, steps))
         elif before is not None:
             own = before
-        runs.append(Run(scenario, given, "", own, twin))
+        runs.append(Run(motion, given, "", own, twin))
         if scenario.record.pair >= 0:
             of_group.setdefault((scenario.record.pair, steps), runs[-1].healthy)
     return runs
@@ -191,7 +184,6 @@ def response_of(runs: Sequence[Run]) -> Response:
     settings = common_settings([run.scenario for run in runs])
     axis, full = timeline(settings), settings.twins
     acceleration = np.empty((len(runs), len(settings.channels), axis.returned), np.float32)
-    healthy = np.empty_like(acceleration) if full else acceleration
     oversampling, phases, failures = np.zeros(len(runs), np.int64), np.full(len(runs), np.nan), {}
     for place, run in enumerate(runs):
         oversampling[place], phases[place], sentence = _step_of(run, axis.fs)
@@ -200,19 +192,15 @@ def response_of(runs: Sequence[Run]) -> Response:
         if sentence:
             failures[place] = sentence
         acceleration[place] = np.nan if sentence else motion_of(run)
-        if full:
-            healthy[place] = (
-                acceleration[place] if sentence or run.twin is None else motion_of(run._replace(own=run.twin))
-            )
-    truth, inputs = [truth_of(run.scenario, axis, run.given) for run in runs], [run.given for run in runs]
-    others = [run.other for run in runs]
-    other_truth = [None if run is None else truth_of(run.scenario, axis, run.given) for run in others]
-    twins = None
+    inputs, others = [run.given for run in runs], [run.other for run in runs]
+    truth = [truth_of(run.motion, axis, run.given) for run in runs]
+    other_truth = [None if run is None else truth_of(run.motion, axis, run.given) for run in others]
     if full:
         truth = with_loaded_hits(truth, inputs, axis)
-        orders = [lines_of_faults(run.scenario, one.orders) for run, one in zip(runs, truth, strict=True)]
-        twins = Twins(healthy, orders, _other_twins(runs, other_truth, failures))
-    return Response(acceleration, oversampling, phases, failures, inputs, truth, twins, others, other_truth)
+    of_runs = enumerate(zip(runs, truth, other_truth, strict=True))
+    twins = [twin for place, of_run in of_runs if place not in failures for twin in _twins(place, *of_run)]
+    motions = [run.motion for run in runs]
+    return Response(acceleration, oversampling, phases, failures, inputs, motions, truth, twins, others, other_truth)
 
 
 def _step_of(run: Run, fs: float) -> tuple[int, float, str | None]:
@@ -226,17 +214,14 @@ def _step_of(run: Run, fs: float) -> tuple[int, float, str | None]:
     return steps, phase, failure(run.scenario.record.number, steps, diverged, phase)
 
 
-def _other_twins(
-    runs: Sequence[Run], truths: Sequence[Truth | None], failures: Mapping[int, str]
-) -> dict[int, OtherTwin]:
-    """Records without the fault of the other bearing, by place, of those that were made and have such a fault."""
-    twins = {}
-    for place, (run, truth) in enumerate(zip(runs, truths, strict=True)):
-        other = run.other
-        if other is not None and other.twin is not None and truth is not None and place not in failures:
-            healthy = motion_of(run._replace(other=other._replace(own=other.twin)))
-            twins[place] = OtherTwin(healthy, lines_of_faults(other.scenario, truth.orders))
-    return twins
+def _twins(place: int, run: Run, truth: Truth, other_truth: Truth | None) -> Iterator[Twin]:
+    if run.twin is not None:
+        healthy = motion_of(run._replace(own=run.twin))
+        yield Twin(place, False, healthy, lines_of_faults(run.scenario, truth.orders))
+    other = run.other
+    if other is not None and other.twin is not None and other_truth is not None:
+        healthy = motion_of(run._replace(other=other._replace(own=other.twin)))
+        yield Twin(place, True, healthy, lines_of_faults(other.scenario, other_truth.orders))
 
 
 def motion_of(run: Run) -> NDArray[np.float32]:

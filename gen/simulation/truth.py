@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,10 @@ from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
 from gen.simulation.damage import largest_drop_over
 from gen.simulation.hits import loaded_hits
-from gen.simulation.motion import mean_motion, start_of, turning_of
+from gen.simulation.motion import Motion, mean_motion
 from gen.simulation.timeline import Timeline
+
+_NO_SPALL: dict[str, Any] = {"width": 0.0, "depth": 0.0, "angle": math.nan, "largest_drop": 0.0, "width_share": 0.0}
 
 
 class Truth(NamedTuple):
@@ -49,22 +51,12 @@ class Truth(NamedTuple):
 
     def without_fault(self) -> "Truth":
         """The same without damage."""
-        return self._replace(**WidestSpall()._asdict(), loaded_hits=0)
+        return self._replace(**_NO_SPALL, loaded_hits=0)
 
     @property
     def orders(self) -> FaultOrders:
         """Mean fault orders, slip included [1]."""
         return FaultOrders(self.true_ftf, self.true_bpfo, self.true_bpfi, self.true_bsf)
-
-
-class WidestSpall(NamedTuple):
-    """The part of the truth that describes the widest spall."""
-
-    width: float = 0.0
-    depth: float = 0.0
-    angle: float = math.nan
-    largest_drop: float = 0.0
-    width_share: float = 0.0
 
 
 def with_loaded_hits(truths: Sequence[Truth], inputs: Sequence[KernelInput | None], timeline: Timeline) -> list[Truth]:
@@ -84,40 +76,35 @@ def lines_of_faults(scenario: Scenario, orders: FaultOrders) -> tuple[float, ...
     return (*lines, *([orders.ftf] if scenario.specimen.cage else []))
 
 
-def truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None) -> Truth:
-    """Truth of a scenario; ``given`` is its kernel input, None if no such machine is possible."""
-    record, duration = scenario.record, timeline.duration
-    if given is None:
-        start = start_of(scenario)
-        motion = mean_motion(scenario, timeline, turning_of(scenario, start), start.frequencies, start.phases)
-    else:
-        motion = mean_motion(scenario, timeline, given.turning, given.frequencies, given.phases)
-    nominal = record.conditions.shaft_rate
+def truth_of(motion: Motion, timeline: Timeline, given: KernelInput | None) -> Truth:
+    """Truth of a record; ``given`` is its kernel input, None if no such machine is possible."""
+    record, duration = motion.scenario.record, timeline.duration
+    nominal, (true_rate, orders) = record.conditions.shaft_rate, mean_motion(motion, timeline)
     ends = [1.0, 1.0] if record.speed_profile is None else share_at(record.speed_profile, np.array([0.0, duration]))
     return Truth(
         shaft_rate=nominal * mean_share(record.speed_profile, duration) * (1 + record.conditions.label_error),
         load=record.conditions.load * mean_share(record.load_profile, duration),
-        true_shaft_rate=motion.shaft_rate,
+        true_shaft_rate=true_rate,
         first_shaft_rate=nominal * ends[0],
         last_shaft_rate=nominal * ends[1],
-        **{f"true_{name}": order for name, order in motion.orders._asdict().items()},
+        **{f"true_{name}": order for name, order in orders._asdict().items()},
         operating_clearance=math.nan if given is None else 2 * given.machine.half_clearance,
-        **widest_spall(scenario)._asdict(),
+        **widest_spall(motion.scenario),
     )
 
 
-def widest_spall(scenario: Scenario) -> WidestSpall:
-    """Size and place of the widest spall of a scenario."""
+def widest_spall(scenario: Scenario) -> dict[str, Any]:
+    """Size and place of the widest spall of a scenario, by field of :class:`Truth`."""
     spalls, bearing = scenario.specimen.spalls, scenario.specimen.bearing
     if not spalls:
-        return WidestSpall()
+        return _NO_SPALL
     number = max(range(len(spalls)), key=lambda place: spalls[place].width)
     widest = spalls[number]
     circumference = 2 * math.pi * bearing.radius(widest.site)
-    return WidestSpall(
-        width=widest.width,
-        depth=widest.depth,
-        angle=widest.angle + (scenario.rig.machine["load_angle"] if widest.site == "outer" else 0.0),
-        largest_drop=largest_drop_over(scenario, number),
-        width_share=widest.width / (circumference if widest.site == "ball" else circumference / bearing.n_balls),
-    )
+    return {
+        "width": widest.width,
+        "depth": widest.depth,
+        "angle": widest.angle + (scenario.rig.machine["load_angle"] if widest.site == "outer" else 0.0),
+        "largest_drop": largest_drop_over(scenario, number),
+        "width_share": widest.width / (circumference if widest.site == "ball" else circumference / bearing.n_balls),
+    }

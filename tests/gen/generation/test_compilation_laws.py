@@ -15,6 +15,7 @@ from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_inputs
 from gen.simulation.kernels import signature
+from gen.simulation.motion import draw_motion
 from gen.simulation.simulate import laid_out
 from gen.simulation.timeline import timeline
 
@@ -43,7 +44,7 @@ def test_the_sample_needs_every_kernel_of_a_shipped_recipe(name):
     for first in range(0, min(480, recipe.n_records), 48):
         scenarios = draw_scenarios(recipe, first, min(first + 48, recipe.n_records))
         scenarios += [one.without_fault() for one in scenarios] if recipe.truth.twins else []
-        inputs, _ = kernel_inputs(scenarios, timeline(settings_of(recipe)))
+        inputs, _ = kernel_inputs([draw_motion(one) for one in scenarios], timeline(settings_of(recipe)))
         every |= {input_shape(given) for given in inputs if given is not None}
     assert set(needed_shapes(recipe)) == every
 

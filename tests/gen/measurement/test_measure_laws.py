@@ -10,7 +10,7 @@ from scipy.signal import welch
 
 from gen.measurement.measure import measure
 from gen.scenarios import draw_scenarios, settings_of, with_level
-from gen.simulation.simulate import Twins
+from gen.simulation.simulate import Twin
 from gen.simulation.timeline import timeline
 from tests.measuring import (
     FLOAT,
@@ -63,7 +63,11 @@ def test_wear_is_seen_if_it_raises_the_rms_by_a_quarter(recipe_with, rise, seen)
     quiet = {"level": {"kind": "physical", "background_m_s2": 1e-6}}
     recipe = recipe_with(FLOAT | quiet | {"faults": [{"kind": "distributed", "site": "inner"}]})
     twin = hiss(recipe, 2)
-    measured = measure(np.float32(rise * twin), draw_scenarios(recipe, 0, 2), Twins(np.float32(twin), [(), ()]))
+    measured = measure(
+        np.float32(rise * twin),
+        draw_scenarios(recipe, 0, 2),
+        [Twin(place, False, one, ()) for place, one in enumerate(np.float32(twin))],
+    )
     assert measured.detectable.tolist() == [seen, seen]
     np.testing.assert_allclose(measured.fault_snr, 20 * np.log10(rise - 1), atol=1e-3)
 

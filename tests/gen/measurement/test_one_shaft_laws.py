@@ -6,7 +6,8 @@ import pytest
 from gen.mechanisms.path import transmissibility
 from gen.physics.orbit import along
 from gen.scenarios import settings_of
-from gen.simulation.shaft import scenario_angles
+from gen.simulation.motion import draw_motion
+from gen.simulation.shaft import angles_of
 from gen.simulation.timeline import timeline
 from tests.measuring import FLOAT, QUIET, background_of, mode, path, quiet, tone
 
@@ -28,7 +29,7 @@ CROSSED = [
 def by_order(signal, scenario, recipe):
     """Spectrum over orders of the shaft, shape (line,), and orders of the lines [1]; along the true angle."""
     axis = timeline(settings_of(recipe))
-    turns = scenario_angles(scenario, axis)[axis.kept] / (2 * np.pi)
+    turns = angles_of(draw_motion(scenario), axis)[axis.kept] / (2 * np.pi)
     even = np.linspace(turns[0], turns[-1], 4 * len(turns))
     resampled = np.interp(even, turns, signal) * np.hanning(len(even))
     return np.abs(np.fft.rfft(resampled, 4 * len(even))), np.arange(2 * len(even) + 1) / (4 * (even[-1] - even[0]))
@@ -37,7 +38,7 @@ def by_order(signal, scenario, recipe):
 def turns_of(scenario, recipe):
     """Turns of the shaft in a record; one line of its order spectrum is one over this."""
     axis = timeline(settings_of(recipe))
-    return np.ptp(scenario_angles(scenario, axis)[axis.kept]) / (2 * np.pi)
+    return np.ptp(angles_of(draw_motion(scenario), axis)[axis.kept]) / (2 * np.pi)
 
 
 def nearest_line(spectrum, orders, order):
@@ -68,7 +69,7 @@ def test_a_harmonic_passes_through_the_path_of_its_channel_at_its_own_frequency(
     paths = path(1.0, ()), path(0.5, modes)
     (signal,), scenarios = background_of(recipe, quiet(harmonics=(tone(5, 1e3),)), own_paths=paths)
     axis = timeline(settings_of(recipe))
-    lines = signal @ np.exp(-5j * scenario_angles(scenarios[0], axis)[axis.kept])
+    lines = signal @ np.exp(-5j * angles_of(draw_motion(scenarios[0]), axis)[axis.kept])
     assert lines[1] / lines[0] == pytest.approx(complex(0.5 + transmissibility(modes, np.array([150.0]))[0]), rel=0.01)
 
 
@@ -77,7 +78,7 @@ def test_the_knocks_of_all_records_of_a_rig_come_at_the_same_angles_of_the_shaft
     signals, scenarios = background_of(recipe, quiet(knocks=tone(3.0, 30.0)), 2)
     axis, of_records = timeline(settings_of(recipe)), []
     for signal, scenario in zip(signals[:, 0], scenarios, strict=True):
-        angles = scenario_angles(scenario, axis)[axis.kept][np.abs(signal) > 10]
+        angles = angles_of(draw_motion(scenario), axis)[axis.kept][np.abs(signal) > 10]
         assert len(angles) == pytest.approx(3 * turns_of(scenario, recipe), abs=1)
         of_records.append(np.angle(np.mean(np.exp(3j * angles))))
     one_sample = 3 * 2 * np.pi * 30 / axis.fs
@@ -111,7 +112,7 @@ def test_harmonics_have_the_same_phase_to_the_shaft_in_every_record_of_a_rig(rec
 def at_order(signal, scenario, recipe, order):
     """Complex amplitude of a line at an order of the shaft, over the largest whole number of turns."""
     axis = timeline(settings_of(recipe))
-    angles = scenario_angles(scenario, axis)[axis.kept]
+    angles = angles_of(draw_motion(scenario), axis)[axis.kept]
     whole = angles - angles[0] < 2 * np.pi * np.floor(np.ptp(angles) / (2 * np.pi))
     return 2 * np.mean(signal[whole] * np.exp(-1j * order * angles[whole]))
 

@@ -8,6 +8,7 @@ import pytest
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.hits import felt_places, load_zone, loaded_hits
 from gen.simulation.inputs import kernel_inputs, without_fault
+from gen.simulation.motion import draw_motion
 from gen.simulation.timeline import timeline
 from tests.recipes import EVERYTHING
 from tests.responses import input_of, truth
@@ -88,7 +89,11 @@ def test_two_spalls_are_hit_twice_as_often(recipe_with):
 def test_the_input_of_a_record_does_not_depend_on_the_others(recipe_with):
     recipe = recipe_with(EVERYTHING)
     scenarios = draw_scenarios(recipe)
-    for scenario, together in zip(scenarios, kernel_inputs(scenarios, timeline(settings_of(recipe)))[0], strict=True):
+    for scenario, together in zip(
+        scenarios,
+        kernel_inputs([*map(draw_motion, scenarios)], timeline(settings_of(recipe)))[0],
+        strict=True,
+    ):
         for field, other in zip(input_of(scenario), together, strict=True):
             np.testing.assert_equal(field, other)
 
