@@ -42,6 +42,7 @@ from gen.generation.forecast import expected_work, forecast_in_words, leave_rate
 from gen.generation.parts import Outcome, made_by, make_parts, units
 from gen.generation.scheduling import Crew
 from gen.generation.sources import sources_sha256
+from gen.generation.step_checks import CHECKED_PARTS
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.progress import Progress
@@ -100,7 +101,7 @@ def generate(
         Recipe file, name of a recipe that ships with Raceway, the keys of a recipe, or a recipe that has been read.
     target : path
         Single file of the corpus if the name ends in ``.nc``, else its folder; created if it does not exist. It may hold the same corpus,
-        unfinished or finished.
+        unfinished or finished; a folder may also hold fewer of its records, and then the rest is made.
     workers : int
         Number of parts that are made at a time: 1 in this thread, some in threads of this process, more in processes on this machine.
     scheduler : str, optional
@@ -133,7 +134,7 @@ def generate(
         if folder is not target:
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
-        _prepare(folder, find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode(), facts)
+        _prepare(folder, find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode(), facts, checked)
         outcomes = _all_parts(Tally(checked, progress), folder, workers, client, notice)
         corpus = _finish(target, folder, outcomes, facts)
         if folder is not target:
@@ -156,6 +157,10 @@ def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, 
     corpus_files(file)
     manifest = read_manifest(file)
     _check_same(file, manifest, facts)
+    if manifest.records + len(manifest.failures) != recipe.n_records:
+        raise CorpusError(
+            f"{file}: holds {manifest.records} records and not {recipe.n_records}; a corpus grows in a folder: choose another name."
+        )
     with suppress(CorpusError):  # not left by a call that was killed between the last two steps
         left = read_manifest(folder)
         if not left.complete and left.recipe_sha256 == manifest.recipe_sha256:
@@ -209,17 +214,19 @@ def _claim(folder: Path) -> Iterator[None]:
         yield
 
 
-def _prepare(folder: Path, text: bytes, facts: dict[str, Any]) -> None:
+def _prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe) -> None:
     """Check what the folder holds, and write the manifest of an unfinished corpus.
 
     The manifest is written first: it tells a corpus without any part from a folder that holds something else.
     """
+    again: set[int] = set()
     with writing(folder):
         remove_temporary_files(folder)
         if (folder / MANIFEST_NAME).exists():
             manifest = read_manifest(folder)
             _check_same(folder, manifest, facts)
             _check_generated(folder, manifest)
+            again = _parts_again(folder, manifest, recipe)
             if not facts["publication"].stored:
                 facts["publication"] = manifest.publication  # given after the corpus was made
         elif any(folder.iterdir()):
@@ -227,6 +234,24 @@ def _prepare(folder: Path, text: bytes, facts: dict[str, Any]) -> None:
         write_manifest(folder, facts_of_parts([], facts, complete=False))
         write_durably(text, folder / RECIPE_NAME)
         (folder / "parts").mkdir(exist_ok=True)
+        for part in again:
+            (folder / "parts" / part_name(part)).unlink(missing_ok=True)
+
+
+def _parts_again(folder: Path, manifest: "Manifest", recipe: Recipe) -> set[int]:
+    """Parts that a larger corpus makes again: a last part that is not full, and one in which too few steps were checked."""
+    overrides = {} if manifest.overrides is None else dict(manifest.overrides)
+    begun = folder / RECIPE_NAME  # not there if a call was killed before its first part
+    before = read_recipe(begun, **overrides).n_records if begun.exists() else recipe.n_records
+    if recipe.n_records < before:
+        raise CorpusError(
+            f"{folder}: holds a corpus of {before} records and not {recipe.n_records}; a corpus grows and does not shrink: choose another "
+            "name."
+        )
+    if recipe.n_records == before:
+        return set()
+    last, rest = divmod(before, recipe.storage.records_per_part)
+    return {(last - (rest == 0)) // CHECKED_PARTS * CHECKED_PARTS, *([last] if rest else [])}
 
 
 def _check_same(place: Path, manifest: "Manifest", facts: dict[str, Any]) -> None:
@@ -236,7 +261,7 @@ def _check_same(place: Path, manifest: "Manifest", facts: dict[str, Any]) -> Non
             f"{place}: holds a corpus that was not generated from a recipe as a whole; choose another name."
         )
     if manifest.recipe_sha256 != facts["recipe_sha256"]:
-        raise CorpusError(f"{place}: holds a corpus of another recipe, seed or size; choose another name.")
+        raise CorpusError(f"{place}: holds a corpus of another recipe or seed; choose another name.")
     began = manifest.versions | {"sources": (manifest.sources_sha256 or "unknown")[:12]}
     now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
     other = [name for name in now if began.get(name) != now[name]]

@@ -35,6 +35,7 @@ def _check_sizes(recipe: Sections) -> None:
     # checked even if records: ends the corpus early, because the splits are drawn over all of its rigs
     place = "corpus: rigs * specimens_per_rig * records_per_specimen" + (" * rungs" if corpus.rungs else "")
     check_limit("records", corpus.n_records, f"{place} are", ValueError)
+    check_limit("records", recipe.n_records, "records: asks for", ValueError)
     check_limit("rig_specimens", corpus.specimens_per_rig, "corpus.specimens_per_rig: asks for", ValueError)
     seconds = recording.settle_s + recording.duration_s
     samples = round(seconds * recording.sample_rate_hz) * len(recording.channels)

@@ -72,8 +72,9 @@ _FIRST_GUESTS = {
 
 
 def recipe_hash(recipe: Recipe) -> str:
-    """SHA-256 of the values of a recipe that records depend on; ``publication``, layout and comments do not count."""
+    """SHA-256 of the values of a recipe that records depend on; ``publication``, ``records``, layout and comments do not count."""
     values = _values(recipe, {"publication": True})
+    values["records"] = None
     if recipe.corpus.fault_choice == "by_weight":
         del values["corpus"]["fault_choice"]
     return _hash(values)

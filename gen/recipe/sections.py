@@ -157,7 +157,8 @@ class Sections(Section):
     storage: StorageSection = StorageSection()
     """Size and compression of the files."""
     records: Annotated[StrictInt, Field(ge=1)] | None = None
-    """Number of records, if the corpus is to have fewer than rigs * specimens * records per specimen; the first ones are made."""
+    """Number of records, if the corpus is to have fewer or more than rigs * specimens * records per specimen: the first ones, or those of
+    further rigs. No record depends on it, so that a corpus can grow."""
 
     @property
     def own_bearings(self) -> Mapping[str, OwnBearing]:
@@ -172,8 +173,7 @@ class Sections(Section):
     @property
     def n_records(self) -> int:
         """Number of records of the corpus."""
-        whole = self.corpus.n_records
-        return whole if self.records is None else min(whole, self.records)
+        return self.corpus.n_records if self.records is None else self.records
 
     @property
     def n_specimens(self) -> int:

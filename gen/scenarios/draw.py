@@ -159,8 +159,9 @@ def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
     """Split of a specimen; if rigs are kept together, that of the rig."""
     split, corpus = recipe.corpus.split, recipe.corpus
     if split.by == "rig":
-        # the first of two or more rigs is in the test part, if there is one
-        u = _ranks(recipe.seed, 0, corpus.rigs)[rig] / corpus.rigs if corpus.rigs > 1 else 1.0
+        # the first of two or more rigs is in the test part, if there is one; rigs beyond them are divided in turns of as many
+        turn, place = divmod(rig, corpus.rigs)
+        u = _ranks(recipe.seed, turn, corpus.rigs)[place] / corpus.rigs if corpus.rigs > 1 else 1.0
     else:
         rank = _ranks(recipe.seed, rig, corpus.specimens_per_rig)[position]
         # the offset by the golden ratio distributes the parts evenly over the rigs

@@ -163,10 +163,11 @@ def generate(
     records: int | None,
     as_json: bool,
 ) -> int:
-    """Generate the corpus of RECIPE as TARGET, or complete one.
+    """Generate the corpus of RECIPE as TARGET, or complete or enlarge one.
 
     The corpus is a folder, or one netCDF file if TARGET ends in .nc. It is generated in parts; those of a file NAME.nc lie in the folder
     NAME.nc.parts until it is whole. If the command is interrupted, finished parts are kept, and the same command completes the corpus.
+    With a larger --records it grows: a finished corpus in a folder gets the records that it lacks, and is then the one made at once.
     The bytes of the parts do not depend on the number of workers. By default there is one worker per core, but at most four for up to
     1000 records: up to four workers are threads, which start at once; more are processes, which take seconds to start.
 
@@ -176,6 +177,7 @@ def generate(
       raceway generate quickstart -o corpus.nc
       raceway generate domain_randomised -o large --workers 8
       raceway generate my_recipe.yaml -o try --records 20 --seed 7
+      raceway generate my_recipe.yaml -o try --records 60 --seed 7
 
     Next: raceway info DIR, raceway benchmark DIR -o REPORT
     """

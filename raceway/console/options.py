@@ -62,7 +62,9 @@ record_option: Decorator = click.option(
     "--record", type=int, required=True, metavar="I", help="Number of the record, from 0."
 )
 seed_option: Decorator = click.option("--seed", type=int, metavar="S", help="Replaces the seed of the recipe.")
-records_option: Decorator = click.option("--records", type=int, metavar="N", help="Make only the first N records.")
+records_option: Decorator = click.option(
+    "--records", type=int, metavar="N", help="Make N records: the first ones of the recipe, or more from further rigs."
+)
 
 _workers: Decorator = click.option(
     "--workers",

@@ -1,0 +1,74 @@
+"""Laws of growth: a corpus with more records than it had is the one made at once, and no record depends on their number."""
+
+import pytest
+
+from gen.corpus import open_corpus
+from gen.generation.corpus import generate
+from gen.recipe import read_recipe
+from gen.scenarios import draw_scenarios
+from gen.support.errors import CorpusError
+from tests.same_corpora import assert_the_same_corpus
+
+CHANGES = {
+    "specimens": {},
+    "rigs": {"corpus.split": {"by": "rig", "test": 0.5}},
+    "groups": {"corpus.rungs": [0.5, 1], "corpus.records_per_specimen": 1},
+}
+
+
+@pytest.mark.parametrize("before", [8, 12])
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_grown_corpus_is_the_one_made_at_once(write_recipe, tmp_path, name, before):
+    """From full parts and from one that is not full, up to rigs beyond those of the recipe."""
+    recipe = write_recipe(tmp_path / "r.yaml", CHANGES[name])
+    assert read_recipe(recipe).n_records < 32
+    generate(recipe, tmp_path / "grown", records=before)
+    grown = generate(recipe, tmp_path / "grown", records=32)
+    assert grown.kept < before / 8
+    at_once = generate(recipe, tmp_path / "at_once", records=32)
+    assert_the_same_corpus(tmp_path / "grown", at_once)
+
+
+def test_a_growth_that_was_interrupted_is_completed(write_recipe, tmp_path):
+    recipe = write_recipe(tmp_path / "r.yaml", {"storage.records_per_part": 4})
+
+    def interrupted(done, _whole):
+        if done > 14:
+            raise KeyboardInterrupt
+
+    generate(recipe, tmp_path / "c", records=10)
+    with pytest.raises(KeyboardInterrupt):
+        generate(recipe, tmp_path / "c", records=24, progress=interrupted)
+    with pytest.raises(CorpusError, match="unfinished"):
+        open_corpus(tmp_path / "c")
+    generate(recipe, tmp_path / "c", records=24)
+    assert_the_same_corpus(tmp_path / "c", generate(recipe, tmp_path / "at_once", records=24))
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_no_drawn_value_depends_on_the_number_of_records(write_recipe, tmp_path, name):
+    path = write_recipe(tmp_path / "r.yaml", CHANGES[name])
+    few, many = (draw_scenarios(read_recipe(path, records=count)) for count in (12, 60))
+    assert [one.specimen for one in few] == [one.specimen for one in many[:12]]
+    assert [one.record for one in few] == [one.record for one in many[:12]]
+
+
+def test_rigs_beyond_those_of_the_recipe_have_its_classes_and_splits(write_recipe, tmp_path):
+    path = write_recipe(tmp_path / "r.yaml", {"corpus.split": {"by": "rig", "test": 0.3}})
+    own = read_recipe(path).corpus
+    many = draw_scenarios(read_recipe(path, records=10 * own.n_records))
+    splits = {scenario.rig.number: scenario.specimen.split for scenario in many}
+    assert (own.rigs, len(splits)) == (3, 30)
+    assert list(splits.values()).count("test") == 10
+    assert {scenario.specimen.fault for scenario in many[own.n_records :]} == {one.specimen.fault for one in many}
+
+
+def test_a_corpus_does_not_shrink_and_one_in_a_file_does_not_grow(write_recipe, tmp_path):
+    recipe = write_recipe(tmp_path / "r.yaml")
+    generate(recipe, tmp_path / "c", records=12)
+    with pytest.raises(CorpusError, match="holds a corpus of 12 records and not 8; a corpus grows and does not shrink"):
+        generate(recipe, tmp_path / "c", records=8)
+    generate(recipe, tmp_path / "c.nc", records=12)
+    with pytest.raises(CorpusError, match="holds 12 records and not 16; a corpus grows in a folder"):
+        generate(recipe, tmp_path / "c.nc", records=16)
+    assert open_corpus(tmp_path / "c.nc").sizes["record"] == 12
