@@ -163,7 +163,7 @@ def generate(
     records: int | None,
     as_json: bool,
 ) -> int:
-    """Generate the corpus of RECIPE as TARGET, or complete or enlarge one.
+    """Generate the corpus of RECIPE as TARGET, or complete one.
 
     The corpus is a folder, or one netCDF file if TARGET ends in .nc. It is generated in parts; those of a file NAME.nc lie in the folder
     NAME.nc.parts until it is whole. If the command is interrupted, finished parts are kept, and the same command completes the corpus.

@@ -13,7 +13,6 @@ from typing import Annotated, Literal, get_args
 
 import numpy as np
 from pydantic import Field, StrictInt
-from scipy.fft import irfft
 
 from gen.corpus.fault_classes import UNKNOWN, UNKNOWN_CODE
 from gen.corpus.schema import Variable
@@ -109,6 +108,8 @@ def lines_of(condition: Drawn, angles: FloatArray) -> FloatArray:
 
     A line that passes half the sample rate anywhere in the record, where the anti-alias filter would remove it, is left out.
     """
+    from scipy.fft import irfft  # loads for half a second, and few recipes need it
+
     fastest = float(np.abs(np.diff(angles)).max()) * condition["order"]
     lines = condition["lines"][: math.ceil(math.pi / fastest) - 1] if fastest > 0 else condition["lines"]
     if not lines:
