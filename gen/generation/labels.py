@@ -22,14 +22,15 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
     """Measured records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
     scenarios, rows = measured.scenarios, []
     settings = common_settings(scenarios)
-    for scenario, truth, seen in zip(scenarios, response.truth, measured.detectable, strict=True):
-        if settings.undetected == "healthy" and not seen:
-            rows.append({**_drawn(scenario.without_fault()), **truth.without_fault()._asdict()})
-        else:
-            rows.append({**_drawn(scenario), **truth._asdict()})
+    of_records = zip(scenarios, response.truth, measured.detectable, measured.chain_labels, strict=True)
+    for one, truth, seen, chain in of_records:
+        unseen = settings.undetected == "healthy" and not seen
+        scenario = one.without_fault() if unseen else one
+        labels = dict.fromkeys((label.name for label in LABELS), 0) | labels_of(scenario.rig.background) | chain
+        for drawn in scenario.specimen.damage.values():
+            labels |= {name: value for name, value in drawn.items() if name in labels}
+        rows.append(_drawn(scenario) | (truth.without_fault() if unseen else truth)._asdict() | labels)
     columns: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
-    found = [labels_of(one.rig.background) | chain for one, chain in zip(scenarios, measured.chain_labels, strict=True)]
-    columns |= {label.name: [of_record.get(label.name, 0) for of_record in found] for label in LABELS}
     columns |= {
         "clipped": measured.clipped,
         "snr": measured.snr,
@@ -90,9 +91,6 @@ def _drawn(scenario: Scenario) -> dict[str, Any]:
         "fault": FAULTS.index(specimen.fault),
         "parts": "+".join(specimen.damaged_parts),
         "n_spalls": len(specimen.spalls),
-        "wear": 0.0 if specimen.wear is None else specimen.wear.waviness,
-        "pitch_error": specimen.cage.get("pitch_error", 0.0),
-        "knock": specimen.cage.get("knock", 0.0),
         "rig": rig.number,
         "specimen": specimen.number,
         "recording": record.number,

@@ -4,6 +4,7 @@
 module     responsibility
 ========== =====================================================================
 path       transfer path from bearing to sensor: resonances and modulation
+faults     faults of a bearing
 background noise of a machine, and sources of vibration beside its bearings
 chain      faults of the measuring chain
 labels     variables of the corpus that tell what mechanisms did

@@ -2,6 +2,7 @@
 
 from gen.mechanisms.background import section
 from gen.mechanisms.chain import measuring_chain
+from gen.mechanisms.faults import kinds
 
-LABELS = section.LABELS + measuring_chain.LABELS
-"""Of the background, then of the measuring chain: 0 in a record without the mechanism."""
+LABELS = kinds.LABELS + section.LABELS + measuring_chain.LABELS
+"""Of faults, of the background, then of the measuring chain: 0 in a record without the mechanism."""

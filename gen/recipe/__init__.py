@@ -4,7 +4,7 @@
 module             responsibility
 ================== ========================================================
 machine            bearing, machine, lubricant, specimen
-faults             spalls, worn races, broken cages, several at once
+faults             entries of faults: one kind, several at once, or none
 operation          speed and load with their profiles, slip, temperature
 publication        licence, creators and references of the corpus
 sensing            sensors, level, converter

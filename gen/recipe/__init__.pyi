@@ -12,7 +12,6 @@ from .reading import (
 )
 from .sensing import MAX_OVERSAMPLING as MAX_OVERSAMPLING
 from .shares import (
-    BALL_SPACING as BALL_SPACING,
     FREE_ANGLE as FREE_ANGLE,
     LEAST_AXIAL_LOAD as LEAST_AXIAL_LOAD,
     STATIC_RATING as STATIC_RATING,

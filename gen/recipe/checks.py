@@ -1,7 +1,7 @@
 """Refuse recipes that cannot be made as a whole: keys that contradict each other, weights that cannot be met."""
 
 from gen.mechanisms.chain.measuring_chain import faults_of
-from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
+from gen.recipe.faults import fault_class
 from gen.recipe.loads import load_problem
 from gen.recipe.machine import CatalogueBearing, designation_problem
 from gen.recipe.operation import OperationSection, Steps, Table
@@ -52,17 +52,7 @@ def _numbers_of_a_record(recipe: Sections) -> int:
         operation = recipe.operation_of(entry)
         profiles = (operation.speed_profile, operation.load_profile)
         tables.append(sum(2 * len(profile.times_s) for profile in profiles if isinstance(profile, Table)))
-    traces = [
-        sum(round(spall.n_spalls.support()[1]) * len(spall.trace_um or ()) for spall in _spalls(fault))
-        for fault in recipe.faults
-    ]
-    return max(tables) + max(traces)
-
-
-def _spalls(fault: Fault) -> list[RaceFault | BallFault]:
-    """Parts of a fault that are spalls."""
-    parts = fault.parts if isinstance(fault, CompoundFault) else (fault,)
-    return [part for part in parts if isinstance(part, RaceFault | BallFault)]
+    return max(tables) + max(sum(part.n_numbers for part in fault.components) for fault in recipe.faults)
 
 
 def _faults_problem(recipe: Sections) -> str | None:

@@ -4,66 +4,43 @@ Each call takes the keys of the section of the same ``kind`` and gives the same 
 lists the keys with their units, ranges and defaults.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from gen.drawing import Choice, Grid, LogUniform, Normal, Section, Uniform, plain
 from gen.drawing.expressions import called
-from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Healthy, RaceFault
+from gen.recipe.faults import OF_KIND, Fault
 from gen.support.errors import RecipeError
 from gen.support.sentences import sentences
 
 _Of = TypeVar("_Of", bound=BaseModel)
 
 
-def healthy(**keys: Any) -> Healthy:
-    """A bearing without a fault."""
-    return _checked(Healthy, "healthy", keys)
+def _call_of(kind: str) -> Callable[..., Fault]:
+    model = OF_KIND[kind]
 
+    def call(*parts: Section, **keys: Any) -> Fault:
+        try:
+            return model.model_validate({**plain({"parts": parts, **keys} if parts else keys), "kind": kind})
+        except ValidationError as error:
+            raise RecipeError("\n".join(f"{kind} fault: {sentence}" for sentence in sentences(error, model))) from None
 
-def inner(**keys: Any) -> RaceFault:
-    """Spalls on the inner race; ``width_mm`` is required.
+    call.__name__ = call.__qualname__ = kind
+    call.__doc__ = f"""{model.__doc__}
 
     Raises
     ------
     RecipeError
-        If there are wrong keys or values; one sentence for each of them. All calls of this module raise it.
-
-    >>> inner(width_mm=0.8).kind
-    'inner'
+        If there are wrong keys or values; one sentence for each of them.
     """
-    return _checked(RaceFault, "inner", keys)
+    return call
 
 
-def outer(**keys: Any) -> RaceFault:
-    """Spalls on the outer race; ``width_mm`` is required, ``depth_um``, ``angle_deg`` and ``n_spalls`` are further keys."""
-    return _checked(RaceFault, "outer", keys)
-
-
-def ball(**keys: Any) -> BallFault:
-    """Spalls on one ball; ``width_mm`` is required."""
-    return _checked(BallFault, "ball", keys)
-
-
-def cage(**keys: Any) -> CageFault:
-    """A broken cage, with ``pitch_error_deg`` and ``knock_n``."""
-    return _checked(CageFault, "cage", keys)
-
-
-def distributed(**keys: Any) -> DistributedFault:
-    """A race worn over its whole circumference; ``site="inner"`` or ``site="outer"`` is required."""
-    return _checked(DistributedFault, "distributed", keys)
-
-
-def compound(*parts: Section, **keys: Any) -> CompoundFault:
-    """Several faults in one bearing.
-
-    >>> [part.kind for part in compound(inner(width_mm=0.4), cage()).parts]
-    ['inner', 'cage']
-    """
-    return _checked(CompoundFault, "compound", {"parts": parts, **keys})
+healthy, inner, outer, ball, cage, distributed, compound = map(
+    _call_of, ("healthy", "inner", "outer", "ball", "cage", "distributed", "compound")
+)
 
 
 def uniform(low: float, high: float, **keys: Any) -> Uniform:
@@ -102,10 +79,3 @@ def _called(model: type[_Of], values: Sequence[float], keys: dict[str, Any]) -> 
         return called(model, plain(values), plain(keys))
     except ValueError as error:
         raise RecipeError(str(error)) from None
-
-
-def _checked(model: type[_Of], kind: str, keys: dict[str, Any]) -> _Of:
-    try:
-        return model.model_validate({**plain(keys), "kind": kind})
-    except ValidationError as error:
-        raise RecipeError("\n".join(f"{kind} fault: {sentence}" for sentence in sentences(error, model))) from None

@@ -2,16 +2,12 @@
 
 import difflib
 from collections.abc import Mapping
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import ConfigDict
 
 from gen.drawing import Section
-from gen.recipe.faults import Fault
-
-_OF_KIND = {
-    kind: model for model in get_args(get_args(Fault)[0]) for kind in get_args(model.model_fields["kind"].annotation)
-}
+from gen.recipe.faults import OF_KIND, Fault
 
 
 class FaultList(Section):
@@ -61,5 +57,5 @@ def _fill(entry: dict[str, Any], defaults: Mapping[str, Any], taken: set[str]) -
 
 
 def _keys(entry: Mapping[str, Any]) -> set[str]:
-    model = _OF_KIND.get(str(entry.get("kind")))
+    model = OF_KIND.get(str(entry.get("kind")))
     return set() if model is None else set(model.model_fields) - {"kind", "parts"}

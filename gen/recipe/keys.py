@@ -71,7 +71,7 @@ def _keys_of(models: Iterable[type[BaseModel]], path: str, seen: set[type[BaseMo
             field = model.model_fields[name]
             yield _key(name, field, path, kinds)
             below = set() if model is Recipe else seen
-            inner = [section for section in _sections_of(field) if section not in below]
+            inner = [section for section in _sections_of(field) if not any(issubclass(one, section) for one in below)]
             below.update(inner)
             place = f"{path}{name}." + ("NAME." if get_origin(field.annotation) is dict else "")
             yield from _keys_of(inner, place, below)

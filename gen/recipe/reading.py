@@ -88,6 +88,8 @@ def _values(recipe: Recipe, excluded: dict[str, bool]) -> dict[str, Any]:
     values["contact"]["ball_mass"] = "none"
     for section, first in _FIRST_GUESTS.items():
         values[section] = {key: value for key, value in values[section].items() if value is not None or key in first}
+    for part in (part for fault in values["faults"] for part in fault.get("parts", ())):
+        part |= {"weight": 1.0, "operation": None, "level": None}
     return values
 
 

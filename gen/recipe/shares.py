@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from gen.drawing import Section, Support, interval, is_within, quantities
+from gen.mechanisms.faults.bearing_fault import BALL_SPACING, RACES
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.operation import OperationSection
 from gen.recipe.sections import Sections
@@ -17,7 +18,7 @@ from gen.support.units import UNITS, unit_suffix
 
 BEARING_QUANTITIES = ("pitch_diameter_mm", "ball_diameter_mm")
 """Dimensions of the bearing of the rig, for sections below it."""
-FREE_ANGLE, BALL_SPACING = "free_contact_angle_deg", "ball_spacing_mm"
+FREE_ANGLE = "free_contact_angle_deg"
 STATIC_RATING, LEAST_AXIAL_LOAD = "static_rating_n", "least_axial_load_n"
 _DEPENDS_ON = {LEAST_AXIAL_LOAD: "load_n"}  # quantity of the same section
 _COUNTS = ("n_balls", "n_spalls")
@@ -87,12 +88,10 @@ def _scopes(recipe: Sections) -> Iterator[_Scope]:
     rig = {**machine, **_bearing_supports(recipe)}
     yield _Scope("specimen", recipe.specimen, {**rig, FREE_ANGLE: None})
     for number, entry in enumerate(recipe.faults):
-        parts = getattr(entry, "parts", None)
-        for place, part in (
-            [(f"faults[{number}]", entry)] if parts is None else _numbered(f"faults[{number}].parts", parts)
-        ):
-            spacing = {BALL_SPACING: None} if part.kind in ("inner", "outer") else {}
-            yield _Scope(place, part, {**rig, **_supports(recipe.specimen), **spacing})
+        for place, part in enumerate(entry.components):
+            at = f"faults[{number}]" if part is entry else f"faults[{number}].parts[{place}]"
+            spacing = {BALL_SPACING: None} if part.part in RACES else {}
+            yield _Scope(at, part, {**rig, **_supports(recipe.specimen), **spacing})
     yield _Scope("operation", recipe.operation, _above_records(recipe))
 
 

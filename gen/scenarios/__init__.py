@@ -7,7 +7,6 @@ model         dataclasses of rig, specimen and record; random streams
 points        quasi-random points
 bearings      draw the bearing of a rig, its deviations as built, and the bearing at the other end of the shaft
 classes       choose the fault class of each specimen
-faults        draw the damage of a specimen
 operating     operating conditions: per rig, specimen or record, shares, changes
 records       records of a specimen, with rungs of severity
 draw          draw rigs and specimens, and with them all records
@@ -29,9 +28,7 @@ from gen.scenarios.model import (
     Rig,
     Scenario,
     Settings,
-    Spall,
     Specimen,
-    Wear,
     stream,
 )
 from gen.scenarios.records import with_level
@@ -47,9 +44,7 @@ __all__ = [
     "Rig",
     "Scenario",
     "Settings",
-    "Spall",
     "Specimen",
-    "Wear",
     "check_scenario",
     "common_settings",
     "draw_scenarios",

@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from gen.drawing import Drawn, Draws, Known, known_of, weighted_index
+from gen.mechanisms.faults.bearing_fault import draw_damage
 from gen.physics.bearing import Bearing, free_contact_angle
 from gen.recipe import FREE_ANGLE, CatalogueBearing, Recipe, fault_class
 from gen.recipe.machine import named_bearing
-from gen.scenarios.faults import draw_damage
 from gen.scenarios.model import OTHER_STREAMS, OtherBearing, Purpose, Rig, Specimen, stream
 from gen.support.errors import RecipeError
 from gen.support.units import decibel_to_ratio
@@ -94,13 +94,14 @@ def draw_other_bearing(recipe: Recipe, rig: Rig, specimen: Specimen, fault: str)
     drawing = rig.bearing if wanted.bearing is None else named_bearing(wanted.bearing, recipe.own_bearings)
     known = known_of_rig(recipe, replace(rig, bearing=drawing))
     bearing, properties = draw_as_built(recipe, drawing, known, draws(own, Purpose.SPECIMEN))
-    other = Specimen(specimen.number, bearing, properties, "healthy", spalls=(), axis={}, split=specimen.split)
+    other = Specimen(specimen.number, bearing, properties, "healthy", (), {}, specimen.split)
     if fault != "healthy":
         of_fault = draws(own, Purpose.FAULT)
         faults = [place for place, entry in enumerate(recipe.faults) if fault_class(entry) == fault]
         entry = faults[weighted_index(tuple(recipe.faults[place].weight for place in faults), of_fault.u())]
-        other = replace(other, fault=fault, entry=entry)
-        other = draw_damage(of_fault, recipe.faults[entry], other, {**known, **known_of(recipe.specimen, properties)})
+        known = {**known, **known_of(recipe.specimen, properties)}
+        spalls, damage = draw_damage(recipe.faults[entry].components, of_fault, bearing, known)
+        other = replace(other, fault=fault, entry=entry, spalls=spalls, damage=damage)
     return OtherBearing(drawing, other, mount["load"], decibel_to_ratio(-mount["attenuation"]))
 
 

@@ -3,13 +3,16 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from gen.corpus.fault_classes import CLASSES
 from gen.mechanisms.chain.measuring_chain import foreign
+from gen.mechanisms.faults.race_spalls import check_fits
 from gen.physics.bearing import Bearing
 from gen.physics.extent import MAX_BALLS
-from gen.scenarios.faults import check_fits
 from gen.scenarios.model import Scenario, Specimen
 from gen.support.errors import RecipeError, SimulationError
 from gen.support.limits import check_limit
+
+_LINES = {name: row.lines for name, row in CLASSES.items()}
 
 
 def check_scenario(scenario: Scenario) -> None:
@@ -44,7 +47,7 @@ def _check_damage(drawing: Bearing, specimen: Specimen) -> None:
         raise RecipeError(f"rig.bearing and specimen.bearing must have the same n_balls, {MAX_BALLS} at most.")
     parts = specimen.damaged_parts
     label = "compound" if len(parts) > 1 else (parts or ["healthy"])[0]
-    if specimen.fault != label:
+    if _LINES.get(specimen.fault, specimen.fault) != _LINES.get(label):
         raise RecipeError(
             f"specimen.fault is {specimen.fault}, and the damage of the specimen is {label}; change one of the two."
         )
@@ -53,7 +56,7 @@ def _check_damage(drawing: Bearing, specimen: Specimen) -> None:
             raise RecipeError(
                 "specimen.spalls: width and depth of a spall must be above 0; leave out a spall that is not there."
             )
-        check_fits(spall, specimen.bearing, specimen.number)
+        check_fits(spall, specimen.bearing, f"specimen {specimen.number}")
 
 
 @contextmanager

@@ -16,10 +16,10 @@ from gen.corpus import SPLITS
 from gen.drawing import Draws, Known, known_of, weighted_index
 from gen.mechanisms.background.section import draw_background, draw_later, draw_locked
 from gen.mechanisms.chain.measuring_chain import draw_for_rig
+from gen.mechanisms.faults.bearing_fault import draw_damage
 from gen.recipe import Fault, Recipe, operations
 from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_bearing, known_of_rig
 from gen.scenarios.classes import fault_of_each_specimen, other_fault_of_each_specimen, possible_entries
-from gen.scenarios.faults import draw_damage
 from gen.scenarios.model import Pickup, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Operating, operating_of
 from gen.scenarios.points import points_of
@@ -144,10 +144,9 @@ def _draw_specimen(
         first = recipe.faults[entry]
         wanted = [place for place in wanted if _same_conditions(recipe.faults[place], first)]
     split = _draw_split(recipe, rig.number, position)
-    specimen = Specimen(
-        number, bearing, properties, fault, spalls=(), axis={}, split=split, fault_try=fault_try, entry=entry
-    )
-    return draw_damage(draws, recipe.faults[entry], specimen, {**known, **known_of(recipe.specimen, properties)})
+    known = {**known, **known_of(recipe.specimen, properties)}
+    spalls, damage = draw_damage(recipe.faults[entry].components, draws, bearing, known)
+    return Specimen(number, bearing, properties, fault, spalls, damage, split, fault_try, entry)
 
 
 def _same_conditions(one: Fault, other: Fault) -> bool:

@@ -11,6 +11,8 @@ import numpy as np
 from pydantic import Field
 
 from gen.drawing import Drawn, Purpose, stream
+from gen.mechanisms.faults.bearing_fault import Damage, Spall
+from gen.mechanisms.faults.kinds import LABELS
 from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
 from gen.recipe import MAX_OVERSAMPLING
@@ -48,44 +50,6 @@ class Settings:
     """Whether records with a fault are also simulated without it."""
     undetected: Literal["redraw", "keep", "healthy"]
     """``healthy`` if a record in which its fault cannot be seen is labelled healthy."""
-
-
-@dataclass(frozen=True)
-class Spall:
-    """Drawn dimensions of one spall."""
-
-    site: Literal["inner", "outer", "ball"]
-    width: float
-    """Along the rolling direction [m]."""
-    depth: float
-    """[m]."""
-    angle: float
-    """Angle [rad]; on the outer race it counts from the direction of the load."""
-    ball: int = 0
-    """Number of the damaged ball, if ``site`` is ``ball``."""
-    profile: Literal["geometric", "half_sine", "raised_cosine", "rectangular", "trace"] = "geometric"
-    trace: tuple[float, ...] = ()
-    """Depths of a measured surface from edge to edge, evenly spaced [m]."""
-    roughness: float = 0.0
-    """Rms roughness of the floor [m]."""
-    scatter: float = 0.0
-    """Standard deviation of the logarithm of the drop from passage to passage [1]."""
-
-    def at_severity(self, share: float) -> "Spall":
-        """The same spall with a share of its width and depth; the roughness of its floor stays."""
-        trace = tuple(share * depth for depth in self.trace)
-        return replace(self, width=share * self.width, depth=share * self.depth, trace=trace)
-
-
-@dataclass(frozen=True)
-class Wear:
-    """Waviness of a worn race."""
-
-    site: Literal["inner", "outer"]
-    waviness: float
-    """Rms [m]."""
-    order: int | None
-    """Waves per turn; None for all orders, with amplitudes proportional to 1/order."""
 
 
 @dataclass(frozen=True)
@@ -135,13 +99,8 @@ class Specimen:
     properties: Drawn
     fault: str
     spalls: tuple[Spall, ...]
-    axis: Drawn
-    """Tilt of the spin axis of a damaged ball [rad]: mean, rms, and tilt beyond which the spall misses the track; probability [1] and
-    spread [rad] of its jumps."""
+    damage: Damage
     split: str
-    cage: Drawn = field(default_factory=dict)
-    """Pitch error [rad] and knock [N] of a broken cage."""
-    wear: Wear | None = None
     fault_try: int = 0
     """Number of faults that were drawn before this one and could not be seen."""
     entry: int = 0
@@ -149,22 +108,24 @@ class Specimen:
 
     @property
     def damaged_parts(self) -> list[str]:
-        """Parts that are damaged, each once: a worn race, the sites of spalls, the cage."""
-        worn = [] if self.wear is None else [self.wear.site]
-        return list(dict.fromkeys([*worn, *(spall.site for spall in self.spalls), *(["cage"] if self.cage else [])]))
+        """Parts that are damaged, each once."""
+        others = (drawn.get("site", kind) for kind, drawn in self.damage.items())
+        return list(dict.fromkeys([*(spall.site for spall in self.spalls), *others]))
 
     def at_severity(self, share: float) -> "Specimen":
-        """The same bearing with a share of its damage: of width and depth of spalls, of wear, and of pitch error and knock of a cage.
+        """The same bearing with a share of its damage: of width and depth of spalls, and of what labels tell.
 
         0 is the bearing before it was damaged.
         """
         if share == 1:
             return self
         if share == 0:
-            return replace(self, fault="healthy", spalls=(), axis={}, cage={}, wear=None)
-        wear = None if self.wear is None else replace(self.wear, waviness=share * self.wear.waviness)
-        cage = {key: share * value for key, value in self.cage.items()}
-        return replace(self, spalls=tuple(spall.at_severity(share) for spall in self.spalls), cage=cage, wear=wear)
+            return replace(self, fault="healthy", spalls=(), damage={})
+        damage = {
+            kind: drawn | {label.name: share * drawn[label.name] for label in LABELS if label.name in drawn}
+            for kind, drawn in self.damage.items()
+        }
+        return replace(self, spalls=tuple(spall.at_severity(share) for spall in self.spalls), damage=damage)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _SCENARIO = TypeAdapter(Scenario)
 _LONGEST_PLACE = 100
-_EARLIER = '"gear": '  # in every scenario from before 0.1.0
+_EARLIER = '"axis": {'  # in every scenario from before 0.1.0
 _ADVICE = "read the corpus with the version that wrote it."
 
 
@@ -89,10 +89,12 @@ def read_scenario(text: str) -> Scenario:
 
 
 def _of_today(text: str) -> str:
-    """Text of a scenario from before 0.1.0, when a ball could have a mass and each fault of the measuring chain was a field."""
+    """Text of a scenario from before 0.1.0, when each kind of damage and each fault of the measuring chain was a field."""
     try:
         values = json.loads(text)
         rig, record = values["rig"], values["record"]
+        for one in (values, values.get("other") or {"specimen": {}}):
+            _move_damage(one["specimen"])
         background = rig["background"]
         background["gear_mesh"], background["machine_conditions"] = background.pop("gear"), background.pop("condition")
         if "ball_mass" not in rig:  # of the last days before 0.1.0
@@ -106,9 +108,17 @@ def _of_today(text: str) -> str:
             of_record["mains_hum"] = {"deviation": of_record.pop("mains_deviation")}
         for part, faults in ((rig, of_rig), (record, of_record)):
             part["sensor_faults"] = {fault: drawn for fault, drawn in faults.items() if drawn}
-    except (ValueError, LookupError, TypeError, AttributeError):
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return text  # refused below
     return json.dumps(values)
+
+
+def _move_damage(specimen: dict[str, Any]) -> None:
+    fields = {"ball": "axis", "cage": "cage", "distributed": "wear"}
+    drawn = {kind: specimen.pop(field, None) for kind, field in fields.items()}
+    if drawn["distributed"]:
+        drawn["distributed"]["wear"] = drawn["distributed"].pop("waviness")
+    specimen["damage"] = {kind: values for kind, values in drawn.items() if values}
 
 
 def _holds_exactly(text: str, scenario: Scenario) -> bool:

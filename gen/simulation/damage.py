@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.mechanisms.faults.bearing_fault import RACES, Spall
 from gen.physics.bearing import Bearing, orders
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import footprints
@@ -14,7 +15,7 @@ from gen.physics.inputs import ROUND, SpallInput, Waviness
 from gen.physics.kernel.compiling import compiled_to_disk
 from gen.physics.kernel.drop import GEOMETRIC, PROFILES, drop
 from gen.physics.trace import ball_path, contact_mean, spall_positions, with_roughness
-from gen.scenarios import Purpose, Scenario, Spall, Wear, stream
+from gen.scenarios import Purpose, Scenario, stream
 
 FloatArray = NDArray[np.float64]
 
@@ -36,15 +37,8 @@ def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[SpallInput, ...]
     return tuple(made)
 
 
-def _races(bearing: Bearing, site: str) -> tuple[float, ...]:
-    """Radii of the races that a spall meets: a convex one (inner) positive, a concave one (outer) negative [m]."""
-    inner, outer = bearing.inner_radius, -bearing.outer_radius
-    return {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[site]
-
-
-def _half_widths(scenario: Scenario, site: str, ball_load: float) -> tuple[float, ...]:
-    """Half the width of the contact along the rolling direction, on each race that the spall meets [m]."""
-    inner, outer = footprints(scenario.specimen.bearing, ball_load)
+def _met(site: str, inner: float, outer: float) -> tuple[float, ...]:
+    """Value of each race that a spall meets, from those of both."""
     return {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[site]
 
 
@@ -72,7 +66,7 @@ def _tabulate(scenario: Scenario, number: int, bare: SpallInput, ball_load: floa
     paths = spall_paths(scenario, number)
     if not scenario.rig.footprint:
         return bare._replace(profile="table", table=tuple(tuple(path) for path in paths))
-    widths = _half_widths(scenario, bare.site, ball_load)
+    widths = _met(bare.site, *footprints(scenario.specimen.bearing, ball_load))
     margin = max(widths)
     table = tuple(tuple(contact_mean(path, bare.width, b, margin)) for path, b in zip(paths, widths, strict=True))
     return bare._replace(profile="table", width=bare.width + 2 * margin, table=table)
@@ -83,7 +77,9 @@ def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
     specimen, spall = scenario.specimen, scenario.specimen.spalls[number]
     bearing = specimen.bearing
     place = scenario.settings.seed, scenario.rig.number, specimen.number, number
-    return _paths(spall, bearing.ball_diameter / 2, _races(bearing, spall.site), place)
+    # radii of the races: a convex one (inner) is positive, a concave one (outer) negative
+    races = _met(spall.site, bearing.inner_radius, -bearing.outer_radius)
+    return _paths(spall, bearing.ball_diameter / 2, races, place)
 
 
 def largest_drop_over(scenario: Scenario, number: int) -> float:
@@ -120,10 +116,15 @@ def _paths(
     return tuple(ball_path(depths, spall.width, ball, race) for race in races)
 
 
+def _wear_of(scenario: Scenario) -> tuple[Any, ...]:
+    """Items of the drawn values of each worn race."""
+    return tuple(tuple(drawn.items()) for drawn in scenario.specimen.damage.values() if "wear" in drawn)
+
+
 def is_wavy(scenario: Scenario) -> bool:
     """Whether races or balls of a specimen are wavy, as made or as worn."""
     properties = scenario.specimen.properties
-    return bool(properties["waviness"] or properties["ball_waviness"] or scenario.specimen.wear is not None)
+    return bool(properties["waviness"] or properties["ball_waviness"] or _wear_of(scenario))
 
 
 def waviness_of(scenario: Scenario, fs: float) -> Waviness:
@@ -133,7 +134,7 @@ def waviness_of(scenario: Scenario, fs: float) -> Waviness:
     specimen, profile = scenario.specimen, scenario.record.speed_profile
     place = scenario.settings.seed, scenario.rig.number, specimen.number, 0
     rms, of_balls = specimen.properties["waviness"], specimen.properties["ball_waviness"]
-    whole, at_balls = _waves(place, specimen.bearing, rms, of_balls, specimen.wear)
+    whole, at_balls = _waves(place, specimen.bearing, rms, of_balls, _wear_of(scenario))
     highest_rate = scenario.record.conditions.shaft_rate * (1.0 if profile is None else max(profile.shares))
     highest_order = FASTEST_WAVE * fs / highest_rate
     races = np.where(at_balls.races <= highest_order, whole.races, 0j)
@@ -151,7 +152,7 @@ class Passages(NamedTuple):
 
 @functools.lru_cache(maxsize=256)
 def _waves(
-    place: tuple[int, int, int, int], bearing: Bearing, rms: float, of_balls: float, wear: Wear | None
+    place: tuple[int, int, int, int], bearing: Bearing, rms: float, of_balls: float, wear: tuple[Any, ...]
 ) -> tuple[Waviness, Passages]:
     """Amplitudes of a specimen, with random phases, and how often each wave passes a ball."""
     rng, n_balls, spinning = stream(*place, Purpose.WAVINESS), bearing.n_balls, orders(bearing)
@@ -159,10 +160,10 @@ def _waves(
     races = _falling(every) * rms * _phasors(rng, (2, len(every)))
     # in even orders the two contacts of a ball have the same height: together twice as much
     balls = 2 * of_balls * _falling(even)[:, None] * _phasors(rng, (len(even), n_balls))
-    if wear is not None:
-        rng = stream(*place, Purpose.WEAR)
-        worn = _falling(every) if wear.order is None else math.sqrt(2) * (every == wear.order)
-        races[("inner", "outer").index(wear.site)] += worn * wear.waviness * _phasors(rng, (len(every),))
+    for worn in map(dict, wear):
+        only, rng = worn["order"], stream(*place, Purpose.WEAR)
+        shape = _falling(every) if only is None else math.sqrt(2) * (every == only)
+        races[RACES.index(worn["site"])] += shape * worn["wear"] * _phasors(rng, (len(every),))
     passing = np.stack([every * (1 - spinning.ftf), every * spinning.ftf])
     if of_balls == 0:
         balls = ROUND.balls

@@ -60,7 +60,7 @@ def felt_places(scenarios: Sequence[Scenario]) -> list[bool]:
 
 
 def _only_outer_spalls(scenario: Scenario) -> bool:
-    return scenario.specimen.damaged_parts == ["outer"] and scenario.specimen.wear is None
+    return bool(scenario.specimen.spalls) and scenario.specimen.damaged_parts == ["outer"]
 
 
 def _reaches(given: KernelInput, angle: float, width: float, zone: LoadZone) -> bool:

@@ -81,6 +81,8 @@ def resting(inputs: Sequence[KernelInput | None]) -> list[KernelInput | None]:
 
 def without_fault(given: KernelInput, scenario: Scenario, timeline: Timeline) -> KernelInput:
     """Kernel input of a record without its fault, from that with it: the machine is the same."""
+    if not scenario.specimen.damage:
+        return given._replace(spalls=())  # there are spalls alone
     sound = scenario.without_fault()
     angles = given.turning.shaft_angle, given.turning.cage_angle, given.turning.spin_angle
     return given._replace(spalls=(), turning=turning_of(sound, *angles), waviness=waviness_of(sound, timeline.fs))

@@ -65,7 +65,8 @@ def on_shaft(own: Motion, first: Motion) -> Motion:
 
 def turning_of(scenario: Scenario, shaft_angle: float, cage_angle: float, spin_angle: float) -> Turning:
     """Rotation of a record from its angles at the start [rad]."""
-    drawn, specimen, conditions = scenario.rig.machine, scenario.specimen, scenario.record.conditions
+    drawn, conditions = scenario.rig.machine, scenario.record.conditions
+    damage = {name: x for values in scenario.specimen.damage.values() for name, x in values.items()}
     return Turning(
         shaft_rate=conditions.shaft_rate,
         speed_rms=conditions.speed_wander,
@@ -73,9 +74,9 @@ def turning_of(scenario: Scenario, shaft_angle: float, cage_angle: float, spin_a
         slip_rms=conditions.slip,
         spin_rms=conditions.spin_wander,
         jitter_rms=conditions.jitter,
-        axis_offset=specimen.axis.get("axis_offset", 0.0),
-        axis_rms=specimen.axis.get("axis_wander", 0.0),
-        axis_limit=specimen.axis.get("track", 0.0),
+        axis_offset=damage.get("axis_offset", 0.0),
+        axis_rms=damage.get("axis_wander", 0.0),
+        axis_limit=damage.get("track", 0.0),
         unbalance=drawn["unbalance"],
         shaft_angle=shaft_angle,
         cage_angle=cage_angle,
@@ -83,16 +84,16 @@ def turning_of(scenario: Scenario, shaft_angle: float, cage_angle: float, spin_a
         bow=drawn["bow"],
         twice_x=drawn["misalignment"] * math.cos(drawn["misalignment_angle"]),
         twice_y=drawn["misalignment"] * math.sin(drawn["misalignment_angle"]),
-        knock=specimen.cage.get("knock", 0.0),
+        knock=damage.get("knock", 0.0),
         knock_angle=drawn["load_angle"] + LEAVES_LOAD_ZONE,
-        knock_seed=int(scenario.rng(Purpose.KNOCKS).integers(2**52)) if specimen.cage else 0,
-        late_ball=0 if specimen.cage else -1,
-        late_by=specimen.cage.get("pitch_error", 0.0),
+        knock_seed=int(scenario.rng(Purpose.KNOCKS).integers(2**52)) if "knock" in damage else 0,
+        late_ball=0 if "knock" in damage else -1,
+        late_by=damage.get("pitch_error", 0.0),
         walk=conditions.slip_walk or 0.0,
         walk_seed=int(scenario.rng(Purpose.SLIP).integers(2**52)) if conditions.slip_walk is not None else 0,
-        axis_jumps=specimen.axis.get("jumps", 0.0),
-        axis_spread=specimen.axis.get("spread", 0.0),
-        axis_seed=int(scenario.rng(Purpose.AXIS).integers(2**52)) if "jumps" in specimen.axis else 0,
+        axis_jumps=damage.get("jumps", 0.0),
+        axis_spread=damage.get("spread", 0.0),
+        axis_seed=int(scenario.rng(Purpose.AXIS).integers(2**52)) if "jumps" in damage else 0,
     )
 
 

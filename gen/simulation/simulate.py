@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -163,7 +163,7 @@ def _runs_of_bearings(motions: Sequence[Motion], axis: Timeline, known: Mapping[
         if _has_twin(scenario):
             twin = before or of_group.get((scenario.record.pair, steps))
             if twin is None:
-                healthy = _healthy_input(scenario, given)
+                healthy = without_fault(given, scenario, axis)
                 # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
                 twin = Integration(number, healthy, group_of(healthy, steps))
         elif before is not None:
@@ -245,15 +245,6 @@ def integrations(scenarios: Sequence[Scenario]) -> int:
 
 def _has_twin(scenario: Scenario) -> bool:
     return scenario.settings.twins and scenario.specimen.fault != "healthy"
-
-
-def _healthy_input(scenario: Scenario, given: KernelInput) -> KernelInput:
-    """Kernel input of a record as it was without its fault."""
-    specimen, healthy = scenario.specimen, scenario.specimen.at_severity(0)
-    changed = {one.name for one in fields(specimen) if getattr(specimen, one.name) != getattr(healthy, one.name)}
-    if changed <= {"fault", "spalls", "axis"} and not specimen.axis.get("jumps"):
-        return given._replace(spalls=())  # without spalls a tilted spin axis changes nothing, but its jumps do
-    return without_fault(given, scenario, timeline(scenario.settings))
 
 
 def laid_out(scenarios: list[Scenario]) -> list[tuple[Group, Batch]]:

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gen.corpus.fault_classes import CLASSES
 from gen.physics.bearing import FaultOrders
 from gen.physics.inputs import KernelInput
 from gen.physics.profile import mean_share, share_at
@@ -71,9 +72,9 @@ def with_loaded_hits(truths: Sequence[Truth], inputs: Sequence[KernelInput | Non
 
 def lines_of_faults(scenario: Scenario, orders: FaultOrders) -> tuple[float, ...]:
     """Orders at which the faults of a record repeat; none for a worn race, which hits nothing [1]."""
-    of_site = {"inner": orders.bpfi, "outer": orders.bpfo, "ball": 2 * orders.bsf}
-    lines = dict.fromkeys(of_site[spall.site] for spall in scenario.specimen.spalls)
-    return (*lines, *([orders.ftf] if scenario.specimen.cage else []))
+    hitting = [*(spall.site for spall in scenario.specimen.spalls), *scenario.specimen.damage]
+    lines = dict.fromkeys(CLASSES[one].lines[0] for one in hitting if one in CLASSES)
+    return tuple(line.multiple * getattr(orders, line.base) for line in lines)
 
 
 def truth_of(motion: Motion, timeline: Timeline, given: KernelInput | None) -> Truth:

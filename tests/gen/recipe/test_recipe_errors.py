@@ -96,7 +96,7 @@ TABLE = [
     (OUTER, "{kind: compound, parts: [{kind: cage}, {kind: ball, width_mm: 6}]}",
      "does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     (OUTER, "{kind: compound, parts: [{kind: cage, weight: 1}, {kind: outer, width_mm: 1}]}",
-     "faults[1].parts: a weight of cage alone does nothing; give the compound one."),
+     "faults[1].parts[0].weight: no such key; allowed are kind, knock_n, pitch_error_deg."),
     # profiles
     (RPM, RPM + ", speed_profile: {kind: table, times_s: [0, 0], percent: [9, 9]}",
      "operation.speed_profile: times_s do not rise; sort them, each once."),
@@ -173,7 +173,7 @@ TABLE = [
      "faults[1].level: works with level.kind: snr alone, because a physical level is that of the rig;"),
     ("0.5}", "0.5, level: {gain: 3}}", "faults[1].level.gain: no such key; allowed are faulty_db, healthy_db, rms_m_s2."),
     (OUTER, "{kind: compound, parts: [{kind: cage, operation: {load_n: 9}}, {kind: outer, width_mm: 1}]}",
-     "faults[1].parts: an operation of cage alone does nothing; give the compound one."),
+     "faults[1].parts[0].operation: no such key; allowed are kind, knock_n, pitch_error_deg."),
     # rungs
     (
         "machine:",

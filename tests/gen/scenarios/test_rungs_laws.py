@@ -59,9 +59,9 @@ def test_a_rung_is_its_share_of_the_severity(recipe_with):
             for spall, of_whole in zip(one.specimen.spalls, whole.spalls, strict=True):
                 assert (spall.width, spall.depth) == pytest.approx((share * of_whole.width, share * of_whole.depth))
                 assert max(spall.trace, default=spall.depth) == pytest.approx(spall.depth)
-            if whole.wear is not None:
-                assert one.specimen.wear.waviness == pytest.approx(share * whole.wear.waviness)
-            assert one.specimen.cage == pytest.approx({key: share * value for key, value in whole.cage.items()})
+            for kind, drawn in whole.damage.items():
+                sizes = {name: share * x for name, x in drawn.items() if name in ("wear", "pitch_error", "knock")}
+                assert one.specimen.damage[kind] == pytest.approx(drawn | sizes)
     assert faults_seen == set(FAULTS) - {"healthy"}
 
 

@@ -41,7 +41,8 @@ def drawn(recipe_file):
 
 def kind_of(specimen):
     """Class of a specimen, or the site of its wear."""
-    return specimen.fault if specimen.wear is None else f"worn {specimen.wear.site}"
+    worn = specimen.damage.get("distributed")
+    return specimen.fault if worn is None else f"worn {worn['site']}"
 
 
 # parts, number of spalls, wear [m], pitch error [rad], knock [N], width of the widest spall [m] and what passes it [m]
@@ -122,16 +123,16 @@ def test_everything_at_once_needs_one_kernel_for_healthy_and_damaged(drawn):
 def test_a_broken_cage_displaces_one_ball_and_knocks_and_wear_is_on_its_race_alone(drawn):
     for scenario in drawn:
         damaged, twin = (input_of(one) for one in (scenario, scenario.without_fault()))
-        if scenario.specimen.cage:
+        if "cage" in scenario.specimen.damage:
             assert damaged.turning.late_by == pytest.approx(math.radians(3))
             assert damaged.turning.late_ball == 0
             assert damaged.turning.knock > 0 == twin.turning.knock
         grown = damaged.waviness.races - twin.waviness.races
         rms = np.sqrt(np.sum(np.abs(grown) ** 2, axis=1) / 2)
-        worn = scenario.specimen.wear
-        expected = [0.3e-6 * (worn is not None and worn.site == site) for site in ("inner", "outer")]
+        worn = scenario.specimen.damage.get("distributed", {})
+        expected = [0.3e-6 * (worn.get("site") == site) for site in ("inner", "outer")]
         assert rms == pytest.approx(expected, rel=1e-9, abs=1e-18)
-        if worn is not None and worn.order == 10:
+        if worn.get("order") == 10:
             assert np.flatnonzero(np.abs(grown[0]) > 1e-12).tolist() == [8]  # orders start at 2
 
 
@@ -147,7 +148,7 @@ def test_classes_come_by_weight_and_wear_counts_as_its_site(recipe_with):
     counts = Counter(fault for rig in range(40) for fault in fault_of_each_specimen(recipe, rig))
     assert counts == {"healthy": 160, "inner": 320, "cage": 160, "compound": 40}
     inner = [s for s in draw_scenarios(recipe) if s.specimen.fault == "inner" and s.record.number % 2 == 0]
-    worn = [scenario for scenario in inner if scenario.specimen.wear is not None]
+    worn = [scenario for scenario in inner if "distributed" in scenario.specimen.damage]
     assert all(not scenario.specimen.spalls for scenario in worn)
     assert len(worn) / len(inner) == pytest.approx(3 / 4, abs=0.08)  # 3 sigma of 320 coins
 

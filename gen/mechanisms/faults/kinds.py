@@ -1,0 +1,44 @@
+"""All kinds of faults of a bearing, and the compound of several."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from gen.corpus.schema import Variable
+from gen.mechanisms.faults.ball_spalls import BallFault
+from gen.mechanisms.faults.bearing_fault import BearingFault, Healthy
+from gen.mechanisms.faults.broken_cage import CageFault
+from gen.mechanisms.faults.race_spalls import RaceFault
+from gen.mechanisms.faults.worn_race import DistributedFault
+
+
+class CompoundFault(BearingFault):
+    """Faults of several components at once, labelled `compound`."""
+
+    kind: Literal["compound"]
+    """Combines faults of different components in one bearing."""
+    parts: Annotated[
+        tuple[Annotated[RaceFault | BallFault | CageFault, Field(discriminator="kind")], ...],
+        Field(min_length=2, max_length=4),
+    ]
+    """Faults of the components, all of different kinds, with the keys of `faults` but no weights."""
+
+    @model_validator(mode="after")
+    def _of_several_parts(self) -> Self:
+        kinds = [part.kind for part in self.parts]
+        if len(set(kinds)) < len(kinds):
+            raise ValueError(
+                f"parts: {', '.join(kinds)} are not all different; several spalls of one part need no compound."
+            )
+        return self
+
+    @property
+    def components(self) -> tuple[BearingFault, ...]:
+        """Its parts."""
+        return self.parts
+
+
+KINDS: tuple[type[BearingFault], ...] = (Healthy, RaceFault, BallFault, CageFault, DistributedFault, CompoundFault)
+"""In the order in which a recipe lists their keys."""
+LABELS: tuple[Variable, ...] = tuple(label for kind in KINDS for label in kind.labels)
+"""Variables of the corpus that tell the size of a damage."""

@@ -1,0 +1,97 @@
+"""Spalls on a race, and the keys that all spalls have."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from gen.drawing import Distribution, Drawn, Draws, Known, Number, Section, within
+from gen.mechanisms.faults.bearing_fault import BearingFault, Spall
+from gen.physics.bearing import Bearing
+from gen.support.errors import RecipeError
+from gen.support.units import to_si
+
+MAX_SPALLS = 16
+Trace = Annotated[tuple[Annotated[Number, Field(ge=0, le=5000)], ...], Field(min_length=3, max_length=2000)]
+_WIDEST = {"inner": 5.0, "outer": 5.0, "ball": 1.4}  # largest width of a spall over the radius of its surface
+
+
+class JaggedEdge(Section):
+    """A jagged edge, of which successive balls meet different points."""
+
+    scatter_percent: Distribution = within(0, 100, default=20.0)
+    """Scatter of the drop of a ball, and of its impact, from passage to passage: standard deviation of a log-normal factor."""
+
+
+class Spalls(BearingFault):
+    """Spalls of one part."""
+
+    n_spalls: Distribution = within(1, MAX_SPALLS, default=1)
+    """Number of spalls, each with its own draws; rounded to a whole number."""
+    width_mm: Distribution = within(0, 60, open_low=True)
+    """Width of a spall along the rolling direction; it sets how far the ball drops, and how hard it hits the trailing edge."""
+    depth_um: Distribution = within(0, 5000, open_low=True, default=280.0)
+    """Depth of the floor of a spall. A ball that bridges a narrow spall does not reach the floor."""
+    angle_deg: Distribution = within(-360, 360, default=0.0)
+    """Position of a spall: on the outer race from the direction of the load, on the inner race and on a ball from a mark that turns."""
+    profile: Literal["geometric", "half_sine", "raised_cosine", "rectangular", "trace"] = "geometric"
+    """Path of a ball through the spall: a rigid ball over two edges and a floor, a formula, or a measured trace."""
+    trace_um: Trace | None = None
+    """Measured depths of the surface from edge to edge, evenly spaced; for `profile: trace`, which scales them to `width_mm`."""
+    roughness_um: Distribution = within(0, 50, default=0.0)
+    """Rms roughness of the floor of a geometric or traced spall."""
+    jagged_edge: JaggedEdge | None = None
+    """Edge that each ball meets a little differently; the same for all balls if left out."""
+
+    @model_validator(mode="after")
+    def _traced(self) -> Self:
+        if (self.profile == "trace") != (self.trace_um is not None):
+            raise ValueError("profile: trace and trace_um belong together; give both or neither.")
+        if self.profile not in ("geometric", "trace") and self.roughness_um.support()[1] > 0:
+            raise ValueError(f"roughness_um: only a geometric or traced spall has a floor, not {self.profile}.")
+        return self
+
+    @property
+    def n_numbers(self) -> int:
+        """Of the traces of its spalls."""
+        return round(self.n_spalls.support()[1]) * len(self.trace_um or ())
+
+    def draw_spalls(self, draws: Draws, bearing: Bearing, known: Known) -> list[Spall]:
+        """Spalls of one part, on balls all of one.
+
+        Raises
+        ------
+        RecipeError
+            If one does not fit the bearing, or a share is outside the range of its key.
+        """
+        carrier = int(draws.u() * bearing.n_balls)
+        trace = tuple(to_si(depth, "um") for depth in self.trace_um or ())
+        spalls = []
+        for _ in range(round(draws.value(self.n_spalls))):
+            drawn = draws.section(self, known, ("width_mm", "depth_um", "angle_deg", "roughness_um"))
+            edge = {} if self.jagged_edge is None else draws.section(self.jagged_edge)
+            drawn |= {"depth": max(trace, default=drawn["depth"])} | edge
+            spalls.append(Spall(self.part, ball=carrier, profile=self.profile, trace=trace, **drawn))
+            check_fits(spalls[-1], bearing, draws.item)
+        return spalls
+
+    def draw(self, draws: Draws, known: Known) -> Drawn:  # noqa: ARG002
+        """Nothing but spalls."""
+        return {}
+
+
+class RaceFault(Spalls):
+    """Spalls on one race: lines at BPFI (inner) or BPFO (outer)."""
+
+    kind: Literal["inner", "outer"]
+    """Puts the spalls on the inner or on the outer race."""
+
+
+def check_fits(spall: Spall, bearing: Bearing, item: str) -> None:
+    """Refuse a spall that is too wide for its race or ball."""
+    radius = bearing.radius(spall.site)
+    widest = _WIDEST[spall.site] * radius
+    if spall.width > widest:
+        raise RecipeError(
+            f"{item}: a spall of {spall.width * 1e3:g} mm does not fit the {spall.site} radius of {radius * 1e3:.3g} mm; "
+            f"keep width_mm below {widest * 1e3:.3g}."
+        )
