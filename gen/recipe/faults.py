@@ -8,8 +8,8 @@ from pydantic import Field, create_model
 
 from gen.corpus import FAULTS
 from gen.drawing import Weight
+from gen.mechanisms.faults import KINDS
 from gen.mechanisms.faults.bearing_fault import BearingFault
-from gen.mechanisms.faults.kinds import KINDS
 from gen.recipe.changes import LevelChanges, OperationChanges
 
 

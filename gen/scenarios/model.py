@@ -11,8 +11,8 @@ import numpy as np
 from pydantic import Field
 
 from gen.drawing import Drawn, Purpose, stream
+from gen.mechanisms.faults import LABELS
 from gen.mechanisms.faults.bearing_fault import Damage, Spall
-from gen.mechanisms.faults.kinds import LABELS
 from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
 from gen.recipe import MAX_OVERSAMPLING

@@ -1,15 +1,13 @@
-"""All kinds of faults of a bearing, and the compound of several."""
+"""Faults of several components."""
 
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from gen.corpus.schema import Variable
 from gen.mechanisms.faults.ball_spalls import BallFault
-from gen.mechanisms.faults.bearing_fault import BearingFault, Healthy
+from gen.mechanisms.faults.bearing_fault import BearingFault
 from gen.mechanisms.faults.broken_cage import CageFault
 from gen.mechanisms.faults.race_spalls import RaceFault
-from gen.mechanisms.faults.worn_race import DistributedFault
 
 
 class CompoundFault(BearingFault):
@@ -36,9 +34,3 @@ class CompoundFault(BearingFault):
     def components(self) -> tuple[BearingFault, ...]:
         """Its parts."""
         return self.parts
-
-
-KINDS: tuple[type[BearingFault], ...] = (Healthy, RaceFault, BallFault, CageFault, DistributedFault, CompoundFault)
-"""In the order in which a recipe lists their keys."""
-LABELS: tuple[Variable, ...] = tuple(label for kind in KINDS for label in kind.labels)
-"""Variables of the corpus that tell the size of a damage."""
