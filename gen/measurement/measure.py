@@ -199,10 +199,10 @@ def _parts(
     cases: Sequence[tuple[int, Twin | None]],
 ) -> list[_Part]:
     """The parts of some records; a case is a row and the record without one of its faults, None without a fault or if that is not known."""
-    twins = [acceleration[row] if twin is None else twin.acceleration for row, twin in cases]
-    added = [acceleration[row] - twin.acceleration for row, twin in cases if twin is not None]
-    both = np.stack([*twins, *added])
-    _through_paths(both, [filters[row] for row, _ in [*cases, *(case for case in cases if case[1] is not None)]])
+    faulty = [(row, twin) for row, twin in cases if twin is not None]
+    twins = (acceleration[row] if twin is None else twin.acceleration for row, twin in cases)
+    both = np.stack([*twins, *(acceleration[row] - twin.acceleration for row, twin in faulty)])
+    _through_paths(both, [filters[row] for row, _ in (*cases, *faulty)])
     faults = iter(both[len(cases) :])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
