@@ -49,7 +49,7 @@ def _check_damage(drawing: Bearing, specimen: Specimen) -> None:
     label = "compound" if len(parts) > 1 else (parts or ["healthy"])[0]
     if _LINES.get(specimen.fault, specimen.fault) != _LINES.get(label):
         raise RecipeError(
-            f"specimen.fault is {specimen.fault}, and the damage of the specimen is {label}; change one of the two."
+            f"specimen.fault is {specimen.fault}, and the damage of the specimen is {label!s:.60}; change one of the two."
         )
     for spall in specimen.spalls:
         if spall.width <= 0 or spall.depth <= 0:

@@ -22,6 +22,7 @@ Number = Annotated[int, Field(ge=0, lt=2**31)]
 """Number of a rig, specimen or record."""
 OTHER_STREAMS = 2**31
 """Added to the number of a specimen in the random streams of the bearing at the other end of its shaft."""
+_SIZES = {label.name for label in LABELS}
 
 
 @dataclass(frozen=True)
@@ -108,8 +109,8 @@ class Specimen:
 
     @property
     def damaged_parts(self) -> list[str]:
-        """Parts that are damaged, each once."""
-        others = (drawn.get("site", kind) for kind, drawn in self.damage.items())
+        """Parts that are damaged, each once; the tilt of the spin axis of a ball is no damage without a spall."""
+        others = (drawn.get("site", kind) for kind, drawn in self.damage.items() if _SIZES & drawn.keys())
         return list(dict.fromkeys([*(spall.site for spall in self.spalls), *others]))
 
     def at_severity(self, share: float) -> "Specimen":
@@ -122,7 +123,7 @@ class Specimen:
         if share == 0:
             return replace(self, fault="healthy", spalls=(), damage={})
         damage = {
-            kind: drawn | {label.name: share * drawn[label.name] for label in LABELS if label.name in drawn}
+            kind: drawn | {name: share * drawn[name] for name in _SIZES & drawn.keys()}
             for kind, drawn in self.damage.items()
         }
         return replace(self, spalls=tuple(spall.at_severity(share) for spall in self.spalls), damage=damage)

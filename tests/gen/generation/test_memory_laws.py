@@ -268,6 +268,10 @@ MISFITS = {
         r"scenarios\[1\]: a record of all channels, settings\.settle included, has 1000000720 samples, and the limit",
     ),
     "another class": (changed("specimen", fault="outer"), "the damage of the specimen is inner; change"),
+    "a ball without its spall": (
+        changed("specimen", fault="ball", spalls=(), damage={"ball": {"track": 0.1}}),
+        "the damage of the specimen is healthy; change",
+    ),
     "no width": (with_width(0.0), "width and depth of a spall must be above 0"),
     "a width of 0.3 m": (with_width(0.3), "specimen 1: a spall of 300 mm does not fit the inner radius of"),
     "a seed of text": (changed("settings", seed="x"), r"scenarios\[1\]: is no scenario \(settings\.seed: .*; change drawn ones with"),
