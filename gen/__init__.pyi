@@ -3,6 +3,7 @@ from .exporting import copy as copy, torch_dataset as torch_dataset
 from .generation.corpus import generate as generate
 from .generation.memory import record as record, records as records, simulate as simulate
 from .generation.replaying import replay as replay
+from .generation.stream import stream as stream, torch_stream as torch_stream
 from .generation.writing import write_corpus as write_corpus
 from .importers.bearing_text import bearing_orders as bearing_orders
 from .recipe import make_recipe as make_recipe, read_recipe as read_recipe, write_recipe as write_recipe

@@ -14,6 +14,8 @@ compilation kernels of a recipe compiled before its first record
 corpus      a corpus, part by part, with dask
 replaying   any record made again from the scenario that it stores, bit for bit
 memory      records as one Dataset, from keys or from scenarios made by hand
+stream      records without end, straight into training
+torch_items the same for the data loader of PyTorch
 plan        counts, size and steps of a corpus before it is made
 writing     a Dataset of records as a corpus
 =========== ==================================================================

@@ -1,0 +1,247 @@
+"""Records without end, straight into training: drawn, simulated and measured as they are needed, and none of them twice.
+
+The records are those that :func:`gen.generate` makes of the same recipe, from the first on, and beyond its last one those of further rigs.
+They are made in parts of ``PART`` records, in this process or in several, and come out in the order of their numbers.
+"""
+
+import itertools
+import warnings
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+import xarray as xr
+
+from gen.corpus.schema import add_class_names
+from gen.drawing import Grid, Section, quantities
+from gen.generation.compilation import compile_kernels, missing_kernels
+from gen.generation.parts import dataset_of
+from gen.generation.scheduling import MadePart, made_parts
+from gen.recipe import Recipe, corpus_identity, read_recipe
+from gen.support.errors import RecipeError
+
+if TYPE_CHECKING:
+    from gen.generation.torch_items import TorchStream
+
+PART = 256  # records, of whole specimens
+_TOGETHER = 4  # parts that share the batches of the kernel: more fill them better, and the first records come later
+_LAST = 2**31 - 1  # number of a record
+
+
+def stream(
+    recipe: Path | str | Mapping[str, Any] | Recipe,
+    *,
+    batch: int = 64,
+    workers: int = 1,
+    seed: int | None = None,
+    start: int = 0,
+) -> "Stream":
+    """Batches of fresh records of a recipe, without end.
+
+    Parameters
+    ----------
+    recipe : path, str, mapping or Recipe
+        As for :func:`gen.read_recipe`. Its ``records`` and the number of its rigs do not end the stream.
+    batch : int
+        Number of records of a batch.
+    workers : int
+        Number of processes that make records; 1 is this one. A script that starts several needs ``if __name__ == "__main__":``.
+    seed : int, optional
+        Replaces that of the recipe.
+    start : int
+        Number of the first record.
+
+    Returns
+    -------
+    Stream
+        Iterator of Datasets with the variables of a corpus: ``acceleration (record, channel, elapsed_time)`` in single precision [m s-2],
+        labels and what is known on site. ``identity`` names each record, and ``gen.simulate(gen.read_scenarios(batch))`` makes it again.
+
+    Raises
+    ------
+    RecipeError
+        If the recipe cannot be simulated or has an end by nature (grids, quasi-random points), or a number is not allowed.
+    ClusterError
+        From the iterator, if several workers die on the same records.
+
+    Examples
+    --------
+    >>> for batch in stream("domain_randomised", workers=4):  # doctest: +SKIP
+    ...     train(batch["acceleration"].values, batch["fault"].values)
+    """
+    for name, value, least in (("batch", batch, 1), ("workers", workers, 1), ("start", start, 0)):
+        if type(value) is not int or value < least:
+            raise RecipeError(f"{name}: {value!r} is not allowed; give a whole number, {least} or more.")
+    return Stream(endless(read_recipe(recipe, seed=seed)), batch, workers, start)
+
+
+def torch_stream(
+    recipe: Path | str | Mapping[str, Any] | Recipe,
+    *,
+    label: str = "fault",
+    transform: Callable[[Any], Any] | None = None,
+    seed: int | None = None,
+    start: int = 0,
+) -> "TorchStream":
+    """Fresh records of a recipe without end, for the data loader of PyTorch.
+
+    ``DataLoader(gen.torch_stream("domain_randomised"), batch_size=64, num_workers=2)`` works as it is. Each item is a pair: the signal in
+    single precision, shape (channel, elapsed_time) [m s-2], and the label. The workers of the loader, and the ranks of
+    ``torch.distributed``, share the records out among them; none of them is made twice.
+
+    Parameters
+    ----------
+    recipe, seed, start :
+        As for :func:`gen.stream`.
+    label : str
+        Per-record variable that is the label; a class such as ``fault`` gives its code.
+    transform : callable, optional
+        Called with each signal, in the process that makes it.
+
+    Raises
+    ------
+    RecipeError
+        As from :func:`gen.stream`; or if PyTorch is not installed.
+    """
+    try:
+        from gen.generation.torch_items import TorchStream
+    except ModuleNotFoundError:
+        raise RecipeError(
+            "torch_stream: needs PyTorch, which is not installed; install torch, or use gen.stream."
+        ) from None
+    records = partial(records_from, endless(read_recipe(recipe, seed=seed)), start)
+    return TorchStream(records, label, transform)
+
+
+class Stream(Iterator[xr.Dataset]):
+    """Batches of records; made by :func:`stream`. It is closed when it ends its ``with`` block, or is no longer used."""
+
+    def __init__(self, recipe: Recipe, batch: int, workers: int, start: int) -> None:
+        self.recipe, self.batch, self.workers = recipe, batch, workers
+        self._next = start
+        self._made: Iterator[xr.Dataset] | None = None
+        self._ready: list[xr.Dataset] = []
+
+    def __repr__(self) -> str:
+        """Name of the recipe, and the next record."""
+        return f"Stream of {self.recipe.name}: batches of {self.batch} records, next record {self._next}"
+
+    def __next__(self) -> xr.Dataset:
+        """Return the next batch."""
+        if self._made is None:
+            compile_kernels(self.recipe, missing_kernels(self.recipe))
+            self._made = records_from(self.recipe, self._next, workers=self.workers)
+        while sum(some.sizes["record"] for some in self._ready) < self.batch:
+            self._ready.append(next(self._made))
+        whole = xr.concat(self._ready, "record", data_vars="minimal", coords="minimal", combine_attrs="override")
+        self._ready = [whole.isel(record=slice(self.batch, None))]
+        batch = whole.isel(record=slice(self.batch))
+        self._next = int(batch["recording"].values[-1]) + 1
+        return batch
+
+    def state_dict(self) -> dict[str, Any]:
+        """Where the stream is: the number of the next record, and the machines that it belongs to."""
+        return {"identity": corpus_identity(self.recipe), "next": self._next}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go on behind the last record of another stream of the same recipe and seed.
+
+        Raises
+        ------
+        RecipeError
+            If it was of another recipe or seed.
+        """
+        if state["identity"] != corpus_identity(self.recipe):
+            raise RecipeError(f"{self.recipe.name}: the state is of a stream of another recipe or seed; give the same.")
+        self.close()
+        self._next, self._ready = state["next"], []
+
+    def close(self) -> None:
+        """End the workers; the next batch would start others."""
+        if self._made is not None:
+            self._made.close()  # pyright: ignore[reportAttributeAccessIssue] - a generator
+            self._made = None
+
+    def __enter__(self) -> Self:
+        """Return the stream."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the workers."""
+        self.close()
+
+
+def endless(recipe: Recipe) -> Recipe:
+    """The recipe with as many records as numbers allow; RecipeError if it has an end by nature."""
+    if recipe.corpus.sampling != "random":
+        raise RecipeError(
+            f"corpus.sampling: {recipe.corpus.sampling} covers a number of records, and a stream has no end; use random."
+        )
+    if key := _grid_in(recipe, ""):
+        raise RecipeError(f"{key}: a grid is finite, and a stream has no end; use choice, or gen.generate.")
+    return recipe.model_copy(update={"records": _LAST // recipe.corpus.n_rungs * recipe.corpus.n_rungs})
+
+
+def _grid_in(section: Section, place: str) -> str | None:
+    """Key of the first grid of a recipe; None without one."""
+    for key, quantity in quantities(section).items():
+        if isinstance(quantity, Grid):
+            return place + key
+    for key, value in section:
+        items = value if isinstance(value, tuple) else (value,)
+        for item in items:
+            if isinstance(item, Section) and (found := _grid_in(item, f"{place}{key}.")):
+                return found
+    return None
+
+
+def records_from(
+    recipe: Recipe, first: int, *, workers: int = 1, shard: int = 0, shards: int = 1
+) -> Iterator[xr.Dataset]:
+    """Records from the number ``first`` on, some at a time, in rising order: every ``shards``-th part from that of ``shard`` on."""
+    size = -(-PART // recipe.corpus.records_of_a_specimen) * recipe.corpus.records_of_a_specimen
+    parts = (part for part in itertools.count(first // size) if part % shards == shard)
+    numbers = (range(part * size, min((part + 1) * size, recipe.n_records)) for part in parts)
+    warned = False
+    for records, failures in _made_here(recipe, numbers) if workers == 1 else _made_by(recipe, numbers, workers):
+        if failures and not warned:
+            warnings.warn(f"records that cannot be simulated are left out; the first: {failures[0]}", stacklevel=3)
+            warned = True
+        kept = records["recording"].values >= first
+        yield records if kept.all() else records.isel(record=kept)
+
+
+def _made_here(recipe: Recipe, numbers: Iterator[range]) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+    while row := list(itertools.islice(numbers, _TOGETHER)):
+        yield from _parts(recipe, row)
+
+
+def _made_by(recipe: Recipe, numbers: Iterator[range], workers: int) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+    """Parts made by processes of this machine, which are at most two tasks ahead."""
+    from gen.support.cluster import dask_pool  # distributed takes 0.3 s to load
+
+    with dask_pool(partial(_parts, recipe), (workers, 1), None) as (submit, _size):
+        running = deque[Any]()
+        while True:
+            while len(running) < 2 * workers:
+                running.append(submit(list(itertools.islice(numbers, _TOGETHER))))
+            yield from running.popleft().result()
+
+
+def _parts(recipe: Recipe, numbers: list[range]) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+    """Records of some parts in the order of their numbers, and a sentence for each that is left out."""
+
+    def finished(made: MadePart) -> tuple[int, xr.Dataset, tuple[str, ...]]:
+        return made.place, *dataset_of(made.records, made.step_error)
+
+    early: dict[int, tuple[xr.Dataset, tuple[str, ...]]] = {}
+    expected = 0
+    for place, dataset, failures in made_parts(recipe, numbers, finished):
+        decoded = xr.decode_cf(dataset, decode_times=False).load()
+        add_class_names(decoded)
+        early[place] = decoded, failures
+        while expected in early:
+            yield early.pop(expected)
+            expected += 1

@@ -1,0 +1,128 @@
+"""Laws of the stream: the records of the recipe in their order and then further ones, none twice, whoever makes them."""
+
+import itertools
+import sys
+from types import ModuleType, SimpleNamespace
+
+import numpy as np
+import pytest
+
+import gen
+from gen.generation.stream import endless, records_from
+from gen.recipe import Recipe
+from gen.support.errors import RecipeError
+from tests.gen.conftest import small_with
+
+
+@pytest.fixture(autouse=True)
+def _small_parts(monkeypatch):
+    monkeypatch.setattr("gen.generation.stream.PART", 16)
+
+
+@pytest.fixture(scope="module")
+def recipe():
+    return Recipe(small_with({}))
+
+
+def numbers_of(batches):
+    return [number for batch in batches for number in batch["recording"].values.tolist()]
+
+
+def test_the_stream_has_the_records_of_a_corpus_and_goes_on(recipe, tmp_path):
+    with gen.stream(recipe, batch=16) as fresh:
+        batches = list(itertools.islice(fresh, 3))
+    assert [batch.sizes["record"] for batch in batches] == [16] * 3
+    assert numbers_of(batches) == list(range(48))
+    corpus = gen.open_corpus(gen.generate(recipe, tmp_path / "c", records=40).path)
+    for name in ("acceleration", "fault", "rig", "identity", "width", "snr"):
+        made = np.concatenate([batch[name].values for batch in batches])[:40]
+        np.testing.assert_array_equal(made, corpus[name].values)
+
+
+def test_a_record_of_the_stream_is_made_again_from_itself(recipe):
+    with gen.stream(recipe, batch=4, start=30) as fresh:
+        batch = next(fresh)
+    again = gen.simulate(gen.read_scenarios(batch.isel(record=[1, 2])))
+    np.testing.assert_array_equal(again["acceleration"].values, batch["acceleration"].values[1:3])
+
+
+def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
+    with gen.stream(recipe, batch=7) as fresh:
+        next(fresh)
+        state = fresh.state_dict()
+        expected = next(fresh)
+    with gen.stream(recipe, batch=7) as other:
+        other.load_state_dict(state)
+        found = next(other)
+    assert numbers_of([found]) == list(range(7, 14))
+    np.testing.assert_array_equal(found["acceleration"].values, expected["acceleration"].values)
+    with pytest.raises(RecipeError, match="of another recipe or seed"):
+        gen.stream(recipe, seed=99).load_state_dict(state)
+
+
+def test_several_processes_give_the_same_batches(recipe):
+    with gen.stream(recipe, batch=20, workers=2) as by_two, gen.stream(recipe, batch=20) as by_one:
+        for one, two in itertools.islice(zip(by_one, by_two, strict=True), 2):
+            np.testing.assert_array_equal(one["acceleration"].values, two["acceleration"].values)
+            assert one["identity"].values.tolist() == two["identity"].values.tolist()
+
+
+def test_shards_share_all_records_out_and_have_none_in_common(recipe):
+    shares = [next(records_from(endless(recipe), 0, shard=shard, shards=3))["recording"].values for shard in range(3)]
+    assert [share[0] for share in shares] == [0, 16, 32]
+    assert sorted(np.concatenate(shares)) == list(range(48))
+
+
+FINITE = {
+    "a grid": ({"operation.load_n": "grid(500, 600)"}, "operation.load_n: a grid is finite, and a stream has no end"),
+    "a grid of a fault": ({"faults": [{"kind": "inner", "width_mm": "grid(0.5, 1)"}]}, "faults.width_mm: a grid is finite"),
+    "points": ({"corpus.sampling": "sobol"}, "corpus.sampling: sobol covers a number of records"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FINITE)
+def test_a_recipe_with_an_end_by_nature_is_refused(name):
+    changes, sentence = FINITE[name]
+    with pytest.raises(RecipeError, match=sentence):
+        gen.stream(Recipe(small_with(changes)))
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"batch": 0}, {"batch": 2.5}, {"workers": 0}, {"start": -1}, {"start": True}], ids=str
+)
+def test_a_wrong_number_is_refused(recipe, wrong):
+    with pytest.raises(RecipeError, match=f"{min(wrong)}: .* is not allowed; give a whole number"):
+        gen.stream(recipe, **wrong)
+
+
+def test_without_pytorch_its_stream_says_so(recipe, monkeypatch):
+    monkeypatch.setitem(sys.modules, "torch", None)
+    monkeypatch.delitem(sys.modules, "gen.generation.torch_items", raising=False)
+    with pytest.raises(RecipeError, match="needs PyTorch, which is not installed"):
+        gen.torch_stream(recipe)
+
+
+def test_workers_of_a_data_loader_and_ranks_have_no_record_in_common(recipe, monkeypatch):
+    """With the part of PyTorch that the stream uses in place of PyTorch, which the tests do not install."""
+    here = SimpleNamespace(id=1, num_workers=2)
+    torch, utils, data = (ModuleType(name) for name in ("torch", "torch.utils", "torch.utils.data"))
+    ranks = {
+        "is_available": lambda: True,
+        "is_initialized": lambda: True,
+        "get_rank": lambda: 1,
+        "get_world_size": lambda: 3,
+    }
+    torch.distributed = SimpleNamespace(**ranks)
+    data.IterableDataset = type("IterableDataset", (), {"__class_getitem__": classmethod(lambda cls, _: cls)})
+    data.get_worker_info = lambda: here
+    for module in (torch, utils, data):
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+    monkeypatch.delitem(sys.modules, "gen.generation.torch_items", raising=False)
+    signal, label = next(iter(gen.torch_stream(recipe, transform=np.negative)))
+    (expected,) = itertools.islice(
+        records_from(endless(recipe), 0, shard=3, shards=6), 1
+    )  # worker 1 of 2 on rank 1 of 3
+    np.testing.assert_array_equal(signal, -expected["acceleration"].values[0])
+    assert label == expected["fault"].values[0]
+    with pytest.raises(RecipeError, match="there is no variable colour"):
+        next(iter(gen.torch_stream(recipe, label="colour")))
