@@ -212,10 +212,12 @@ class Sections(Section):
     def item_of(self, record: int) -> int:
         """Number of the quasi-random point of a record of a healthy specimen, and of its combination of grids.
 
-        The first records of all groups of ``n_rungs`` records come first, then the second ones, and so on.
+        The first records of all groups of ``n_rungs`` records come first, then the second ones, and so on; likewise in each further turn
+        of the rigs.
         """
-        group, place = divmod(record, self.corpus.n_rungs)
-        return place * (self.corpus.n_records // self.corpus.n_rungs) + group
+        turn, number = divmod(record, self.corpus.n_records)
+        group, place = divmod(number, self.corpus.n_rungs)
+        return turn * self.corpus.n_records + place * (self.corpus.n_records // self.corpus.n_rungs) + group
 
     def operation_of(self, entry: int) -> OperationSection:
         """Operating conditions of the records of one entry of ``faults``."""

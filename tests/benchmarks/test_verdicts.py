@@ -40,7 +40,7 @@ def test_noise_tones_shafts_and_gears_are_no_race_fault_however_sure_the_classif
     for seed in range(SEEDS):
         recorded, given = without_fault(kind, seed)
         x = recorded.signals[""]
-        (pair,) = find_pairs(mean_spectra([x], recorded.fs, given), given).pairs
+        (pair,), _ = find_pairs(mean_spectra([x], recorded.fs, given), given)
         lines = find_evidence(band_spectra(x, recorded.fs, pair.rate), pair.rate, pair.orders)
         for fault in ("inner", "outer"):
             assert judge({fault: 0.99, "healthy": 0.01}, 0.5, lines)[0] == UNSURE

@@ -87,7 +87,7 @@ TABLE = [
     # where results go
     ("generate {recipe} -o {file}", "file.txt: is a file; give a folder, or a file that ends in .nc, for the corpus."),
     ("generate {recipe} -o {folder}", "folder: is not empty and holds no corpus; choose another folder."),
-    ("generate {recipe} -o {corpus} --seed 8", "holds a corpus of another recipe, seed or size; choose another name."),
+    ("generate {recipe} -o {corpus} --seed 8", "holds a corpus of another recipe or seed; choose another name."),
     ("generate {recipe} -o /proc/corpus", "/proc/corpus: could not be written"),
     ("explore {corpus} -o {new}.html --features {model}", "not a readable netCDF file"),
     ("explore {corpus} -o {new}.html --channel nose", "no channel 'nose'; give one of"),

@@ -59,7 +59,9 @@ def test_waveforms_pictures_and_pages_take_records_in_memory(records, corpus, tm
     np.testing.assert_array_equal(
         shown_record(records, 3, 0, DEFAULT_BAND).signal, shown_record(corpus, 3, 0, DEFAULT_BAND).signal
     )
-    pages = [write_explorer(given, tmp_path / f"{n}.html").page for n, given in enumerate((records, corpus))]
+    pages = [tmp_path / name for name in ("memory.html", "folder.html")]
+    for given, page in zip((records, corpus), pages, strict=True):
+        write_explorer(given, page)
     assert len({page.stat().st_size for page in pages}) == 1
     assert audit_splits(records) == [s.replace(str(corpus), records.attrs["title"]) for s in audit_splits(corpus)]
 
