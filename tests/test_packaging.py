@@ -47,7 +47,7 @@ def test_every_imported_package_is_declared():
     declared = {canonicalize_name(name) for one in stated for name in (one.name, *one.extras)}
     named = set().union(*(imports(path) for name in IMPORTED for path in (ROOT / name).rglob("*.py")))
     installed = packages_distributions()
-    owners = {name: {canonicalize_name(owner) for owner in installed[name]} for name in named}
+    owners = {name: {canonicalize_name(owner) for owner in installed.get(name, [name])} for name in named}
     assert {name for name, of in owners.items() if not of & declared} == set()
 
 
@@ -55,7 +55,7 @@ def all_requirements():
     """Requirements of Raceway and of what users can add."""
     optional = PROJECT["project"]["optional-dependencies"]
     return PROJECT["project"]["dependencies"] + [
-        line for name in ("parquet", "excel", "zarr") for line in optional[name]
+        line for name in ("parquet", "excel", "zarr", "torch") for line in optional[name]
     ]
 
 
