@@ -7,6 +7,7 @@ module      responsibility
 =========== ==================================================================
 support     errors, limits, units, YAML, progress, tasks on cores and clusters
 physics     pure: bearing, Hertz contact, spalls, machine, kernel
+life        pure: when a spall begins, how it grows until the end
 corpus      the netCDF format: write, index, open, validate
 exporting   corpora copied, joined, in the forms of other programs
 importers   real recordings into the same format
