@@ -38,6 +38,7 @@ Derived = Callable[[Callable[[str], float]], float]
 Known = Mapping[str, float | Derived]
 """Quantities by key [SI] that those of a section can be a share of, beside each other."""
 
+_NO_POINT = np.empty(0)
 _unit_of = functools.cache(split_unit)
 
 
@@ -63,7 +64,9 @@ class Draws:
     ``number`` of the item; several grids enumerate all combinations. Errors name the ``item``, such as ``specimen 3``.
     """
 
-    def __init__(self, rng: np.random.Generator, point: NDArray[np.float64], number: int, item: str) -> None:
+    def __init__(
+        self, rng: np.random.Generator, number: int, item: str, point: NDArray[np.float64] = _NO_POINT
+    ) -> None:
         self.item = item
         self._rng = rng
         self._point = list(point[::-1])
@@ -75,7 +78,7 @@ class Draws:
 
     def spawn(self, count: int) -> "list[Draws]":
         """Draws of the parts of the item, each from a stream of its own."""
-        return [Draws(rng, np.empty(0), self.combination.number, self.item) for rng in self._rng.spawn(count)]
+        return [Draws(rng, self.combination.number, self.item) for rng in self._rng.spawn(count)]
 
     def value(self, distribution: Any) -> float:
         """Next value of a distribution, in the unit of the recipe key; of a share, the share."""

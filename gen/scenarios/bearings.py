@@ -8,8 +8,6 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
 from gen.drawing import Drawn, Draws, Known, known_of, weighted_index
 from gen.mechanisms.faults.bearing_fault import draw_damage
 from gen.physics.bearing import Bearing, free_contact_angle
@@ -87,7 +85,7 @@ def draw_other_bearing(recipe: Recipe, rig: Rig, specimen: Specimen, fault: str)
 
     def draws(of: int, purpose: Purpose) -> Draws:
         rng = stream(recipe.seed, rig.number, of, 0, purpose)
-        return Draws(rng, np.empty(0), rig.number, f"other bearing of specimen {specimen.number}")
+        return Draws(rng, rig.number, f"other bearing of specimen {specimen.number}")
 
     own = OTHER_STREAMS + specimen.number
     mount = draws(0, Purpose.OTHER_BEARING).section(wanted)

@@ -50,7 +50,7 @@ def draw_scenarios(
     first_specimen, last_specimen = recipe.specimen_of(numbers[0]), recipe.specimen_of(numbers[-1])
     first_rig, last_rig = recipe.rig_of(first_specimen), recipe.rig_of(last_specimen)
     rig_draws = {
-        number: Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number, f"rig {number}")
+        number: Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), number, f"rig {number}", point)
         for number, point in points_of(recipe, Purpose.RIG, first_rig, last_rig + 1).items()
     }
     rigs = {number: _draw_rig(recipe, number, draws) for number, draws in rig_draws.items()}
@@ -61,7 +61,7 @@ def draw_scenarios(
     operating: dict[int, Operating] = {}
     for number, point in points_of(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items():
         rig = recipe.rig_of(number)
-        draws = Draws(stream(recipe.seed, rig, number, 0, Purpose.SPECIMEN), point, number, f"specimen {number}")
+        draws = Draws(stream(recipe.seed, rig, number, 0, Purpose.SPECIMEN), number, f"specimen {number}", point)
         fault_try, other_fault = tries.get(number, 0), others[rig][number % recipe.corpus.specimens_per_rig]
         specimen = _draw_specimen(recipe, rigs[rig], known[rig], number, draws, classes[rig], fault_try)
         if specimen.entry not in operating:
@@ -136,9 +136,7 @@ def _draw_specimen(
     fault = classes[position]
     wanted, entry = possible_entries(recipe, number, fault), 0
     for attempt in sorted({0, fault_try}):
-        draws = Draws(
-            stream(recipe.seed, rig.number, number, attempt, Purpose.FAULT), np.empty(0), number, f"specimen {number}"
-        )
+        draws = Draws(stream(recipe.seed, rig.number, number, attempt, Purpose.FAULT), number, f"specimen {number}")
         entry = wanted[weighted_index(tuple(recipe.faults[place].weight for place in wanted), draws.u())]
         # a fault that is drawn again leaves the conditions as they are
         first = recipe.faults[entry]

@@ -93,7 +93,7 @@ def draw_record(
     item = recipe.item_of(number if rung < 0 else group * n_rungs)
     specimen, first = source.rungs[max(rung, 0)], number - max(rung, 0)
     streams = functools.partial(stream, recipe.seed, source.rig.number, specimen.number, first)
-    draws = Draws(streams(Purpose.RECORD), points[item], item, f"record {number}")
+    draws = Draws(streams(Purpose.RECORD), item, f"record {number}", points[item])
     conditions = draw_conditions(source.operating, draws, source.commons, source.known)
     entry = recipe.faults[specimen.entry]
     snr, rms = _draw_level(draws, recipe, entry, source.rig.number)
@@ -102,7 +102,7 @@ def draw_record(
     for key, purpose in (("speed_profile", Purpose.SPEED_PROFILE), ("load_profile", Purpose.LOAD_PROFILE)):
         profile = _draw_profile(draws, getattr(recipe.operation, key), recipe.recording.duration_s)
         if key in changes:  # from a stream of its own, so that it moves no draw of the other profile
-            own = Draws(streams(purpose), np.empty(0), item, draws.item)
+            own = Draws(streams(purpose), item, draws.item)
             profile = _draw_profile(own, changes[key], recipe.recording.duration_s)
         profiles.append(profile)
     if recipe.operation.slip_walk is not None:
