@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 
 from gen.measurement.measure import compile_mixing
-from gen.mechanisms.background.section import sources_of
-from gen.mechanisms.chain.measuring_chain import faults_of
+from gen.mechanisms.mechanism import mechanisms_of
 from gen.physics.inputs import CONSTANT, ROUND, Waviness
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.layout import Shape
@@ -56,7 +55,7 @@ def compile_kernels(recipe: Recipe, missing: list[Shape], report: Callable[[str]
     """Compile the missing kernels into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
     with keep_garbage():
         compile_mixing(draw_scenarios(recipe, 0, 1)[0])
-        for guest in (*sources_of(recipe.background), *faults_of(recipe.sensor_faults)):
+        for guest in (*mechanisms_of(recipe.background), *mechanisms_of(recipe.sensor_faults)):
             guest.compile()
     at_once = min(cores(), MOST_AT_ONCE)
     sentences = (

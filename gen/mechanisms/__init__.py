@@ -3,6 +3,7 @@
 ========== =====================================================================
 module     responsibility
 ========== =====================================================================
+mechanism  what a mechanism of a recipe is
 path       transfer path from bearing to sensor: resonances and modulation
 faults     faults of a bearing
 background noise of a machine, and sources of vibration beside its bearings

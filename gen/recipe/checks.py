@@ -1,6 +1,6 @@
 """Refuse recipes that cannot be made as a whole: keys that contradict each other, weights that cannot be met."""
 
-from gen.mechanisms.chain.measuring_chain import faults_of
+from gen.mechanisms.mechanism import mechanisms_of
 from gen.recipe.faults import fault_class
 from gen.recipe.loads import load_problem
 from gen.recipe.machine import CatalogueBearing, designation_problem
@@ -110,7 +110,7 @@ def _corpus_problem(recipe: Sections) -> str | None:
 def _sensor_faults_problem(recipe: Sections) -> str | None:
     converter = recipe.recording.converter
     full_scale = None if converter.kind == "float32" else converter.full_scale_m_s2
-    for fault in faults_of(recipe.sensor_faults):
+    for fault in mechanisms_of(recipe.sensor_faults):
         problem = fault.problem(full_scale, recipe.recording.duration_s)
         if problem is not None:
             return f"sensor_faults.{fault.place}.{problem}"

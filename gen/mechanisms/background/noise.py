@@ -14,7 +14,7 @@ Float32Array = NDArray[np.float32]
 
 
 class Noise(Section):
-    """Noise of the machine without the bearing."""
+    """Vibration of the machine without the bearing: drawn per rig, the same for healthy and faulty records."""
 
     slope: Distribution = within(-2, 4, default=0.0)
     """Exponent of the noise: its power spectral density falls with frequency to this power above 10 Hz; 0 is white."""

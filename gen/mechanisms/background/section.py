@@ -9,7 +9,6 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
-from pydantic import Field, create_model
 
 from gen.corpus.schema import Variable
 from gen.drawing import Drawn, Draws, Purpose, Section
@@ -22,6 +21,7 @@ from gen.mechanisms.background.machine_conditions import MachineConditions
 from gen.mechanisms.background.noise import Noise
 from gen.mechanisms.background.source import BackgroundSource, LockedSource
 from gen.mechanisms.background.tones import Tones
+from gen.mechanisms.mechanism import section_with
 from gen.mechanisms.path import draw_modes, draw_modulation
 
 SOURCES: tuple[type[BackgroundSource], ...] = (Harmonics, Tones, Impulses, Knocks)
@@ -40,24 +40,10 @@ if TYPE_CHECKING:
         harmonics: Harmonics | None = None
 
 else:
-    BackgroundSection = create_model(
-        "BackgroundSection",
-        __base__=Noise,
-        __doc__="Vibration of the machine without the bearing: drawn per rig, the same for healthy and faulty records.",
-        **{
-            source.place: (
-                source | None,
-                Field(default=None, description=f"{source.__doc__.rstrip('.')}; none if left out."),
-            )
-            for source in (*SOURCES, *LOCKED)
-            if source is not MachineConditions
-        },
-    )
-
-
-def sources_of(section: Section) -> Iterator[BackgroundSource]:
-    """Sources that a recipe has in its background."""
-    return (found for source in (*SOURCES, *LOCKED) if (found := getattr(section, source.place, None)) is not None)
+    _OF_BACKGROUND = [source for source in (*SOURCES, *LOCKED) if source is not MachineConditions]  # it has a section
+    BackgroundSection = section_with("BackgroundSection", Noise, _OF_BACKGROUND)
+KEYS = frozenset({*Noise.model_fields, "floor", "growth", *(source.place for source in (*SOURCES, *LOCKED))})
+"""Names of the drawn values of a background."""
 
 
 def draw_background(section: BackgroundSection, draws: Draws) -> Drawn:
@@ -82,7 +68,7 @@ def draw_locked(sections: Iterable[Section], stream_for: Callable[[Purpose], np.
     for section, source in product(sections, LOCKED):
         wanted = getattr(section, source.place, None)
         if wanted is not None:
-            drawn[source.place] = wanted.draw(Draws(stream_for(source.of_rig), np.empty(0), rig, f"rig {rig}"))
+            drawn[source.place] = wanted.draw(Draws(stream_for(source.of_rig), rig, f"rig {rig}"))
     return drawn
 
 

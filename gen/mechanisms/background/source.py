@@ -4,21 +4,13 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gen.corpus.schema import Variable
-from gen.drawing import Drawn, Draws, Probability, Purpose, Section
-
-FloatArray = NDArray[np.floating]
+from gen.drawing import Drawn, Draws, Purpose
+from gen.mechanisms.mechanism import FloatArray, Mechanism
 
 
-class BackgroundSource(Section):
+class BackgroundSource(Mechanism):
     """A source that some rigs have. It is drawn from the stream of the rig; its levels are relative to the rms of the noise."""
-
-    place: ClassVar[str]
-    """Its key in a recipe, and in the drawn background of a rig."""
-
-    probability: Probability
 
     def draw(self, draws: Draws) -> Any:
         """Drawn values in SI units, levels as ratios; None if the rig has no such source."""
@@ -27,10 +19,6 @@ class BackgroundSource(Section):
     def draw_present(self, draws: Draws) -> Any:
         """Drawn values of a source that the rig has."""
         raise NotImplementedError
-
-    @staticmethod
-    def compile() -> None:
-        """Compile what the source needs, or fetch it from numba's cache on disk."""
 
 
 class LockedSource(BackgroundSource):
@@ -41,8 +29,6 @@ class LockedSource(BackgroundSource):
 
     of_rig: ClassVar[Purpose]
     of_record: ClassVar[Purpose]
-    labels: ClassVar[tuple[Variable, ...]] = ()
-    """What the corpus says of it, 0 without it."""
 
     @staticmethod
     def found(drawn: Drawn) -> Mapping[str, float]:

@@ -7,6 +7,7 @@ import numpy as np
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Drawn, Draws, Probability, within
 from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.mechanism import is_flat
 from gen.support.units import decibel_to_ratio
 
 
@@ -37,7 +38,7 @@ class GainSteps(SensorFault):
     @staticmethod
     def has_form(drawn: Any, channels: int) -> bool:  # noqa: ARG004
         """Any number of steps."""
-        return isinstance(drawn, tuple) and None not in drawn
+        return isinstance(drawn, tuple) and all(map(is_flat, drawn))
 
     @staticmethod
     def disturb(

@@ -8,6 +8,7 @@ import numpy as np
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Drawn, Draws, Probability, within
 from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.mechanism import is_flat
 from gen.physics.resonance import base_excited
 
 DECAYED = 7.0  # time constants after which a filter has settled to 1e-3
@@ -39,7 +40,7 @@ class LooseMount(SensorFault):
     @staticmethod
     def has_form(drawn: Any, channels: int) -> bool:
         """One mount, or None, for each channel."""
-        return isinstance(drawn, tuple) and len(drawn) == channels
+        return isinstance(drawn, tuple) and len(drawn) == channels and all(one is None or is_flat(one) for one in drawn)
 
     @staticmethod
     def disturb(drawn: Any, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG004

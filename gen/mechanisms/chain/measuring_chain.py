@@ -12,11 +12,9 @@ into its limit. Gaps come last; a converter acts on each sample by itself, so th
 Each fault has random streams of its own, so one that is added to a recipe or removed from it moves no value of another.
 """
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pydantic import Field, create_model
 
 from gen.corpus.schema import Variable
 from gen.drawing import Drawn, Draws, Section
@@ -27,40 +25,33 @@ from gen.mechanisms.chain.gain_steps import GainSteps
 from gen.mechanisms.chain.loose_mount import LooseMount
 from gen.mechanisms.chain.mains_hum import MainsHum
 from gen.mechanisms.chain.saturation import Saturation
-from gen.mechanisms.chain.sensor_fault import FloatArray, SensorFault
+from gen.mechanisms.chain.sensor_fault import SensorFault
+from gen.mechanisms.mechanism import FloatArray, is_flat, mechanisms_of, section_with
 
 CHAIN: tuple[type[SensorFault], ...] = (LooseMount, Drift, MainsHum, EmiBursts, GainSteps, Saturation, DroppedSamples)
 """All faults, in the order in which a signal meets them."""
+
+
+class _SensorFaults(Section):
+    """Faults of the measuring chain, each with variables in the corpus; a fault that is left out does not occur."""
+
+
 LABELS: tuple[Variable, ...] = tuple(label for fault in CHAIN for label in fault.labels)
 """Variables of the corpus that tell which faults a record has, 0 for none."""
-
-
-def _meaning(fault: type[SensorFault]) -> str:
-    return f"{str(fault.__doc__).rstrip('.')}; none if left out."
 
 
 if TYPE_CHECKING:
     SensorFaultsSection = Section
 else:
-    SensorFaultsSection = create_model(
-        "SensorFaultsSection",
-        __base__=Section,
-        __doc__="Faults of the measuring chain, each with variables in the corpus; a fault that is left out does not occur.",
-        **{fault.place: (fault | None, Field(default=None, description=_meaning(fault))) for fault in CHAIN},
-    )
-
-
-def faults_of(section: Section) -> Iterator[SensorFault]:
-    """Faults that a recipe has."""
-    return (fault for place in type(section).model_fields if (fault := getattr(section, place)) is not None)
+    SensorFaultsSection = section_with("SensorFaultsSection", _SensorFaults, CHAIN)
 
 
 def draw_for_rig(section: Section, rng: np.random.Generator, rig: int, channels: int) -> Drawn:
     """Faults that a rig has as long as it stands."""
     streams = rng.spawn(len(CHAIN))
     found = {
-        fault.place: fault.draw(Draws(streams[fault.rig_stream], np.empty(0), rig, f"rig {rig}"), channels)
-        for fault in faults_of(section)
+        fault.place: fault.draw(Draws(streams[fault.rig_stream], rig, f"rig {rig}"), channels)
+        for fault in mechanisms_of(section)
         if fault.rig_stream is not None
     }
     return {place: drawn for place, drawn in found.items() if drawn is not None}
@@ -69,9 +60,9 @@ def draw_for_rig(section: Section, rng: np.random.Generator, rig: int, channels:
 def draw_for_record(section: Section, rng: np.random.Generator, record: int) -> Drawn:
     """Faults that come and go, and what faults of rigs have anew in each record."""
     streams, found = rng.spawn(len(CHAIN)), dict[str, Any]()
-    for fault in faults_of(section):
+    for fault in mechanisms_of(section):
         if fault.record_stream is not None:
-            draws = Draws(streams[fault.record_stream], np.empty(0), record, f"record {record}")
+            draws = Draws(streams[fault.record_stream], record, f"record {record}")
             found[fault.place] = fault.draw(draws, 0) if fault.rig_stream is None else fault.draw_anew(draws)
     return {place: drawn for place, drawn in found.items() if drawn is not None}
 
@@ -86,7 +77,7 @@ def foreign(of_rig: Drawn, of_record: Drawn, channels: int) -> str | None:
                 return place
             anew = not of_rigs and fault.rig_stream is not None and fault.record_stream is not None
             its_level = of_rigs == (fault.rig_stream is not None)
-            if not (isinstance(values, dict) if anew else its_level and fault.has_form(values, channels)):
+            if not (is_flat(values) if anew else its_level and fault.has_form(values, channels)):
                 return place
     return None
 

@@ -4,35 +4,27 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gen.corpus.schema import Variable
-from gen.drawing import Drawn, Draws, Probability, Section
+from gen.drawing import Drawn, Draws
+from gen.mechanisms.mechanism import FloatArray, Mechanism, is_flat
 
-FloatArray = NDArray[np.floating]
 Found = Mapping[str, float]
 """Values of the labels of a fault that is in a record, by name."""
 
 
-class SensorFault(Section):
+class SensorFault(Mechanism):
     """A fault of mount, cable, amplifier or data transfer.
 
     One that lasts as long as an installation is drawn for the rig, one that comes and goes for the record. The numbers of its random
     streams are part of their seeds: they must not change, and a new fault takes the next free ones.
     """
 
-    place: ClassVar[str]
-    """Key of ``sensor_faults`` in a recipe."""
-    labels: ClassVar[tuple[Variable, ...]]
-    """What the corpus says of it, 0 in a record without it."""
     rig_stream: ClassVar[int | None] = None
     """Number of the stream from which it is drawn for a rig; None for a fault of records."""
     record_stream: ClassVar[int | None] = None
     """The same for a record; a fault of rigs with one is drawn in part anew for each record."""
     noise_stream: ClassVar[int]
     """Number of the stream of its random times and phases in a record."""
-
-    probability: Probability
 
     def draw(self, draws: Draws, channels: int) -> Any:  # noqa: ARG002 - of each channel, for some faults
         """Drawn values of this fault; None if it does not occur."""
@@ -52,13 +44,9 @@ class SensorFault(Section):
     @staticmethod
     def has_form(drawn: Any, channels: int) -> bool:  # noqa: ARG004 - of each channel, for some faults
         """Whether drawn values, which may come from a file, have the form of those of this fault."""
-        return isinstance(drawn, dict)
+        return is_flat(drawn)
 
     @staticmethod
     def disturb(drawn: Any, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
         """New signal with the fault, of the shape (channel, time) of ``signal`` [m s-2], and the values of its labels."""
         raise NotImplementedError
-
-    @staticmethod
-    def compile() -> None:
-        """Compile what the fault needs, or fetch it from numba's cache on disk."""

@@ -1,0 +1,47 @@
+"""What a mechanism of a recipe is: a section that some rigs or records have, with its key and its labels."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, create_model
+
+from gen.corpus.schema import Variable
+from gen.drawing import Probability, Section
+
+FloatArray = NDArray[np.floating]
+
+
+class Mechanism(Section):
+    """Keys of a mechanism; it is left out of a recipe, or occurs with a probability."""
+
+    place: ClassVar[str]
+    """Its key in a recipe, and its name among drawn values."""
+    labels: ClassVar[tuple[Variable, ...]] = ()
+    """What the corpus says of it, 0 in a record without it."""
+
+    probability: Probability
+
+    @staticmethod
+    def compile() -> None:
+        """Compile what the mechanism needs, or fetch it from numba's cache on disk."""
+
+
+def section_with(name: str, base: type[Section], mechanisms: Iterable[type[Mechanism]]) -> Any:
+    """Section of a recipe with the keys of ``base``, and one for each mechanism."""
+    keys: dict[str, Any] = {
+        one.place: (one | None, Field(default=None, description=f"{str(one.__doc__).rstrip('.')}; none if left out."))
+        for one in mechanisms
+    }
+    return create_model(name, __base__=base, __doc__=base.__doc__, **keys)
+
+
+def mechanisms_of(section: Section) -> Iterator[Any]:
+    """Mechanisms that a section of a recipe has."""
+    return (value for _, value in section if isinstance(value, Mechanism))
+
+
+def is_flat(drawn: Any) -> bool:
+    """Whether drawn values, which may come from a file, are numbers by name."""
+    return isinstance(drawn, dict) and all(type(value) in (int, float) for value in drawn.values())
