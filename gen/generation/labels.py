@@ -13,11 +13,12 @@ from gen.measurement.measure import Measured
 from gen.mechanisms.background.section import labels_of
 from gen.mechanisms.labels import LABELS
 from gen.physics.bearing import FaultOrders, orders
-from gen.scenarios import Scenario, common_settings, scenario_texts
+from gen.scenarios import Scenario, common_settings, scenario_texts, simulation_errors
 from gen.simulation.simulate import Response
 from gen.simulation.truth import Truth
 
 
+@simulation_errors()
 def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.float64] | None = None) -> xr.Dataset:
     """Measured records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
     scenarios, rows = measured.scenarios, []

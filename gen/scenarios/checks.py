@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from gen.corpus.fault_classes import CLASSES
+from gen.mechanisms.background.section import KEYS
 from gen.mechanisms.chain.measuring_chain import foreign
 from gen.mechanisms.faults.race_spalls import check_fits
 from gen.physics.bearing import Bearing
@@ -31,6 +32,9 @@ def check_scenario(scenario: Scenario) -> None:
         raise RecipeError(f"rig.channels and rig.own_paths need one entry for each of {channels} settings.channels.")
     if (record.snr is None) != (record.rms is None):
         raise RecipeError("record.snr and record.rms must both be given, or both be None.")
+    unknown = rig.background.keys() - KEYS
+    if unknown:
+        raise RecipeError(f"rig.background: {min(unknown)[:60]!r} is not drawn by any recipe; leave it out.")
     strange = foreign(rig.sensor_faults, record.sensor_faults, channels)
     if strange is not None:
         raise RecipeError(

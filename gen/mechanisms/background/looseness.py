@@ -61,7 +61,8 @@ class Looseness(LockedSource):
         lifting = drawn["lift"] * STANDARD_GRAVITY * np.cos(angles - drawn["phase"])
         ground, _ = rattling(-lifting, drawn["frequency"], drawn["damping"], STANDARD_GRAVITY, fs)
         moved = ground + lifting
-        return [moved * (drawn["level"] / np.sqrt(np.mean(moved**2)))]
+        rms = float(np.sqrt(np.mean(moved**2)))
+        return [moved * (drawn["level"] / rms)] if rms > 0 else []  # less than a turn, without a flight
 
     @staticmethod
     def compile() -> None:

@@ -32,6 +32,10 @@ def with_width(width):
     return lambda one: changed("specimen", spalls=(replace(one.specimen.spalls[0], width=width),))(one)
 
 
+def with_background(**values):
+    return lambda one: changed("rig", background={**one.rig.background, **values})(one)
+
+
 def with_rate(rate):
     return lambda one: changed("record", conditions=replace(one.record.conditions, shaft_rate=rate))(one)
 
@@ -255,6 +259,7 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
     assert replayed(gen.write_corpus(made.isel(record=[0, 1]), tmp_path / "cut"))
 
 
+ILL = {"kind": "ill", "order": 1.0, "lines": (), "bursts": None}
 MISFITS = {
     "another gain": (changed("rig", gain=2.0), r"scenarios\[1\]: rig 0 is not that of scenarios\[0\]; give another machine"),
     "no channels": (changed("rig", channels=()), r"need one entry for each of 1 settings\.channels"),
@@ -274,6 +279,7 @@ MISFITS = {
     ),
     "no width": (with_width(0.0), "width and depth of a spall must be above 0"),
     "a width of 0.3 m": (with_width(0.3), "specimen 1: a spall of 300 mm does not fit the inner radius of"),
+    "a source that no recipe has": (with_background(hum=1.0), "rig.background: 'hum' is not drawn by any recipe; leave it out"),
     "a seed of text": (changed("settings", seed="x"), r"scenarios\[1\]: is no scenario \(settings\.seed: .*; change drawn ones with"),
     "no rate": (changed("record", conditions={"shaft_rate": float("nan")}), r"scenarios\[1\]: is no scenario \("),
 }  # fmt: skip
@@ -300,6 +306,11 @@ def test_scenarios_of_different_settings_are_simulated_in_different_calls(ladder
     [
         (changed("rig", machine={}), r"cannot be simulated \(KeyError: .*\); keep all"),
         (with_rate(0.0), r"cannot be simulated \(ZeroDivisionError"),
+        (with_background(tones=({"level": 1.0},)), r"cannot be simulated \(KeyError"),
+        (
+            with_background(machine_conditions={"kind": "ill", "order": 1.0, "lines": (), "bursts": None}),
+            r"cannot be simulated \(ValueError",
+        ),
     ],
 )
 def test_missing_and_absurd_drawn_values_are_one_sentence(ladder, change, sentence):

@@ -48,6 +48,11 @@ def test_a_short_flight_follows_the_weight_and_the_force_of_the_shaft():
     assert np.sqrt(np.mean(found**2)) == pytest.approx(2.0)
 
 
+def test_a_record_without_a_flight_has_no_vibration():
+    standing = np.full(100, 1.0 + np.pi)  # the force of the shaft presses the machine down
+    assert Looseness.vibrations(LOOSE, standing, FS, np.random.default_rng(0)) == []
+
+
 def test_a_stiffer_ground_makes_harder_impacts():
     frequencies = np.fft.rfftfreq(N, 1 / FS)
     powers = [np.abs(np.fft.rfft(vibration(frequency=frequency))) ** 2 for frequency in (300.0, 1200.0)]
