@@ -13,8 +13,8 @@ import xarray as xr
 
 from gen.corpus import RECIPE_TEXT
 from gen.corpus.schema import add_class_names
-from gen.generation.parts import dataset_of, library_versions, part_attributes
-from gen.generation.scheduling import Crew, MadePart, made_parts
+from gen.generation.parts import dataset_of, library_versions, part_attributes, parts_in_order
+from gen.generation.scheduling import Crew
 from gen.generation.undetected import made_from
 from gen.recipe import Recipe, make_recipe, recipe_text
 from gen.recipe.keywords import FaultLike
@@ -158,16 +158,10 @@ def _checked(scenarios: Sequence[Scenario]) -> list[Scenario]:
 
 def _made(recipe: Recipe, workers: int) -> xr.Dataset:
     """Records of a recipe, made in parts as those of a corpus."""
-
-    def finished(made: MadePart) -> tuple[int, xr.Dataset, tuple[str, ...]]:
-        return made.place, *dataset_of(made.records, made.step_error)
-
-    size, stop = recipe.storage.records_per_part, recipe.n_records
-    numbers = [range(first, min(first + size, stop)) for first in range(0, stop, size)]
-    parts = sorted(made_parts(recipe, numbers, finished, crew=Crew(workers)), key=lambda part: part[0])
-    failures = [text for *_, texts in parts for text in texts]
+    parts = list(parts_in_order(recipe, map(recipe.records_of_part, range(recipe.n_parts)), Crew(workers)))
+    failures = [text for _, texts in parts for text in texts]
     attributes = part_attributes(recipe, failures) | {RECIPE_TEXT: recipe_text(recipe)}
-    return _decoded([part for _, part, _ in parts], failures, attributes)
+    return _decoded([part for part, _ in parts], failures, attributes)
 
 
 def _decoded(parts: list[xr.Dataset], failures: Sequence[str], attributes: dict[str, str]) -> xr.Dataset:

@@ -7,7 +7,7 @@ import functools
 import itertools
 import json
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -116,6 +116,23 @@ def dataset_of(
     if failures:
         dataset = dataset.isel(record=[at for at in range(dataset.sizes["record"]) if at not in response.failures])
     return dataset, failures
+
+
+def parts_in_order(
+    recipe: Recipe, numbers: Iterable[range], crew: Crew = ALONE
+) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+    """Records of parts as from :func:`dataset_of`, in the order of their ``numbers``."""
+
+    def finished(made: MadePart) -> tuple[int, tuple[xr.Dataset, tuple[str, ...]]]:
+        return made.place, dataset_of(made.records, made.step_error)
+
+    early: dict[int, tuple[xr.Dataset, tuple[str, ...]]] = {}
+    following = 0
+    for place, part in made_parts(recipe, list(numbers), finished, crew=crew):
+        early[place] = part
+        while following in early:
+            yield early.pop(following)
+            following += 1
 
 
 def part_attributes(recipe: Recipe, failures: Sequence[str]) -> dict[str, str]:

@@ -1,7 +1,7 @@
 """Records without end, straight into training: drawn, simulated and measured as they are needed, and none of them twice.
 
 The records are those that :func:`gen.generate` makes of the same recipe, from the first on, and beyond its last one those of further rigs.
-They are made in parts of ``PART`` records, in this process or in several, and come out in the order of their numbers.
+They are made in the parts of its corpus, in this process or in several, and come out in the order of their numbers.
 """
 
 import itertools
@@ -17,15 +17,13 @@ import xarray as xr
 from gen.corpus.schema import add_class_names
 from gen.drawing import Grid, Section, quantities
 from gen.generation.compilation import compile_kernels, missing_kernels
-from gen.generation.parts import dataset_of
-from gen.generation.scheduling import MadePart, made_parts
+from gen.generation.parts import parts_in_order
 from gen.recipe import Recipe, corpus_identity, read_recipe
-from gen.support.errors import RecipeError
+from gen.support.errors import RecipeError, SimulationError
 
 if TYPE_CHECKING:
     from gen.generation.torch_items import TorchStream
 
-PART = 256  # records, of whole specimens
 _TOGETHER = 4  # parts that share the batches of the kernel: more fill them better, and the first records come later
 _LAST = 2**31 - 1  # number of a record
 
@@ -65,6 +63,8 @@ def stream(
         If the recipe cannot be simulated or has an end by nature (grids, quasi-random points), or a number is not allowed.
     ClusterError
         From the iterator, if several workers die on the same records.
+    SimulationError
+        From the iterator, if no record of a part can be simulated.
 
     Examples
     --------
@@ -111,8 +111,9 @@ def torch_stream(
         raise RecipeError(
             "torch_stream: needs PyTorch, which is not installed; install torch, or use gen.stream."
         ) from None
-    records = partial(records_from, endless(read_recipe(recipe, seed=seed)), start)
-    return TorchStream(records, label, transform)
+    fresh = endless(read_recipe(recipe, seed=seed))
+    compile_kernels(fresh, missing_kernels(fresh))  # once, ahead of the workers of the loader
+    return TorchStream(partial(records_from, fresh, start), label, transform)
 
 
 class Stream(Iterator[xr.Dataset]):
@@ -151,10 +152,12 @@ class Stream(Iterator[xr.Dataset]):
         Raises
         ------
         RecipeError
-            If it was of another recipe or seed.
+            If it is not the state of a stream of this recipe and seed.
         """
-        if state["identity"] != corpus_identity(self.recipe):
-            raise RecipeError(f"{self.recipe.name}: the state is of a stream of another recipe or seed; give the same.")
+        if state.keys() != self.state_dict().keys() or state["identity"] != corpus_identity(self.recipe):
+            raise RecipeError(
+                f"{self.recipe.name}: not a state of a stream of this recipe and seed; give what its state_dict gave."
+            )
         self.close()
         self._next, self._ready = state["next"], []
 
@@ -200,48 +203,39 @@ def _grid_in(section: Section, place: str) -> str | None:
 def records_from(
     recipe: Recipe, first: int, *, workers: int = 1, shard: int = 0, shards: int = 1
 ) -> Iterator[xr.Dataset]:
-    """Records from the number ``first`` on, some at a time, in rising order: every ``shards``-th part from that of ``shard`` on."""
-    size = -(-PART // recipe.corpus.records_of_a_specimen) * recipe.corpus.records_of_a_specimen
-    parts = (part for part in itertools.count(first // size) if part % shards == shard)
-    numbers = (range(part * size, min((part + 1) * size, recipe.n_records)) for part in parts)
+    """Records from the number ``first`` on, in rising order, a part at a time: every ``shards``-th part, beginning with ``shard``."""
+    parts = (part for part in itertools.count(first // recipe.storage.records_per_part) if part % shards == shard)
+    made = _made_here(recipe, parts) if workers == 1 else _made_by(recipe, parts, workers)
     warned = False
-    for records, failures in _made_here(recipe, numbers) if workers == 1 else _made_by(recipe, numbers, workers):
+    for records, failures in made:
+        if not records.sizes["record"]:
+            raise SimulationError(failures[0])
         if failures and not warned:
             warnings.warn(f"records that cannot be simulated are left out; the first: {failures[0]}", stacklevel=3)
             warned = True
-        kept = records["recording"].values >= first
-        yield records if kept.all() else records.isel(record=kept)
+        yield records.isel(record=records["recording"].values >= first)
 
 
-def _made_here(recipe: Recipe, numbers: Iterator[range]) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
-    while row := list(itertools.islice(numbers, _TOGETHER)):
-        yield from _parts(recipe, row)
+def _made_here(recipe: Recipe, parts: Iterator[int]) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+    while some := list(itertools.islice(parts, _TOGETHER)):
+        yield from _decoded_parts(recipe, some)
 
 
-def _made_by(recipe: Recipe, numbers: Iterator[range], workers: int) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+def _made_by(recipe: Recipe, parts: Iterator[int], workers: int) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
     """Parts made by processes of this machine, which are at most two tasks ahead."""
     from gen.support.cluster import dask_pool  # distributed takes 0.3 s to load
 
-    with dask_pool(partial(_parts, recipe), (workers, 1), None) as (submit, _size):
+    with dask_pool(partial(_decoded_parts, recipe), (workers, 1), None) as (submit, _size):
         running = deque[Any]()
         while True:
             while len(running) < 2 * workers:
-                running.append(submit(list(itertools.islice(numbers, _TOGETHER))))
+                running.append(submit(list(itertools.islice(parts, _TOGETHER))))
             yield from running.popleft().result()
 
 
-def _parts(recipe: Recipe, numbers: list[range]) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
-    """Records of some parts in the order of their numbers, and a sentence for each that is left out."""
-
-    def finished(made: MadePart) -> tuple[int, xr.Dataset, tuple[str, ...]]:
-        return made.place, *dataset_of(made.records, made.step_error)
-
-    early: dict[int, tuple[xr.Dataset, tuple[str, ...]]] = {}
-    expected = 0
-    for place, dataset, failures in made_parts(recipe, numbers, finished):
-        decoded = xr.decode_cf(dataset, decode_times=False).load()
-        add_class_names(decoded)
-        early[place] = decoded, failures
-        while expected in early:
-            yield early.pop(expected)
-            expected += 1
+def _decoded_parts(recipe: Recipe, parts: list[int]) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+    """Records of parts in m s-2, and a sentence for each that is left out."""
+    for made, failures in parts_in_order(recipe, map(recipe.records_of_part, parts)):
+        records = xr.decode_cf(made, decode_times=False).load()
+        add_class_names(records)
+        yield records, failures

@@ -37,7 +37,6 @@ def results(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.setenv("RACEWAY_CACHE", str(folder / "cache"))
-        patch.setattr("gen.generation.stream.PART", 16)
         patch.setattr("features.baselines.estimators.TREES", 2)
         names = run_blocks("python.md", folder, SMALLER)
         (recipe,) = blocks("python.md", "yaml")

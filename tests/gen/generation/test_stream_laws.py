@@ -10,13 +10,8 @@ import pytest
 import gen
 from gen.generation.stream import endless, records_from
 from gen.recipe import Recipe
-from gen.support.errors import RecipeError
+from gen.support.errors import RecipeError, SimulationError
 from tests.gen.conftest import small_with
-
-
-@pytest.fixture(autouse=True)
-def _small_parts(monkeypatch):
-    monkeypatch.setattr("gen.generation.stream.PART", 16)
 
 
 @pytest.fixture(scope="module")
@@ -56,8 +51,10 @@ def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
         found = next(other)
     assert numbers_of([found]) == list(range(7, 14))
     np.testing.assert_array_equal(found["acceleration"].values, expected["acceleration"].values)
-    with pytest.raises(RecipeError, match="of another recipe or seed"):
+    with pytest.raises(RecipeError, match="not a state of a stream of this recipe and seed"):
         gen.stream(recipe, seed=99).load_state_dict(state)
+    with pytest.raises(RecipeError, match="not a state of a stream of this recipe and seed"):
+        gen.stream(recipe).load_state_dict({})
 
 
 def test_several_processes_give_the_same_batches(recipe):
@@ -69,8 +66,14 @@ def test_several_processes_give_the_same_batches(recipe):
 
 def test_shards_share_all_records_out_and_have_none_in_common(recipe):
     shares = [next(records_from(endless(recipe), 0, shard=shard, shards=3))["recording"].values for shard in range(3)]
-    assert [share[0] for share in shares] == [0, 16, 32]
-    assert sorted(np.concatenate(shares)) == list(range(48))
+    assert [share[0] for share in shares] == [0, 8, 16]
+    assert sorted(np.concatenate(shares)) == list(range(24))
+
+
+def test_a_part_without_a_record_ends_the_stream():
+    impossible = Recipe(small_with({"operation.shaft_rpm": 100_000, "recording.oversampling": 1}))
+    with pytest.raises(SimulationError), gen.stream(impossible) as fresh:
+        next(fresh)
 
 
 FINITE = {
