@@ -117,9 +117,9 @@ def value(tmp_path, text):
 
 @pytest.mark.parametrize(("text", "sentence"), REFUSED.values(), ids=REFUSED)
 def test_what_swells_or_is_of_no_plain_type_is_refused_within_seconds(tmp_path, text, sentence):
-    start = time.monotonic()
+    start = time.process_time()
     assert refusal(tmp_path, text).startswith(sentence)
-    assert time.monotonic() - start < 5  # each took 20 s or more, or all memory, or was an error of another type
+    assert time.process_time() - start < 5  # each took 20 s or more, or all memory, or was an error of another type
 
 
 @pytest.mark.parametrize("read", [read_recipe, keys_of_yaml])
