@@ -80,12 +80,17 @@ async function drawRecord(row) {
   drawWaterfall(arrays, fault, nominal);
 }
 
+// Values of the record in the units that people read, with the stored values beside them.
 async function tellLabels(row) {
-  for (const [name] of about.quantities) {
-    if (!byId(`value_${name}`).closest("details").open) continue;
+  for (const { name, unit, numeric, shown_unit: shownUnit, factor } of about.quantities) {
+    const cell = byId(`value_${name}`);
+    if (!cell.closest("details").open) continue;
     const value = (await valuesOf(name))[row];
     if (row !== current) return;
-    byId(`value_${name}`).textContent = Number.isNaN(value) ? "–" : value;
+    const known = !Number.isNaN(value);
+    cell.textContent = !known ? "–" : numeric ? +(value / factor).toPrecision(5) : value;
+    cell.nextElementSibling.textContent = shownUnit;
+    cell.parentElement.querySelector("small").textContent = known && unit !== shownUnit ? `${value} ${unit}` : "";
   }
 }
 
@@ -103,19 +108,46 @@ async function play() {
   sounding.start();
 }
 
-// Tests of a condition such as "shaft_rate > 20 and split == train".
+// Allowed name that differs from a wrong one in the fewest letters.
+function nearestName(wrong) {
+  const distance = (one, other) => {
+    let row = [...Array(other.length + 1).keys()];
+    for (const [k, letter] of [...one].entries()) {
+      const next = [k + 1];
+      for (const [n, found] of [...other].entries())
+        next.push(Math.min(row[n] + (letter !== found), row[n + 1] + 1, next[n] + 1));
+      row = next;
+    }
+    return row.at(-1);
+  };
+  const names = Object.keys(numbers);
+  return names.reduce((best, name) => (distance(wrong, name) < distance(wrong, best) ? name : best));
+}
+
+// Stored value of a number with or without a unit.
+function storedNumber(name, text) {
+  const [, number, given] = /^([-+.\deE]+)\s*(\D\S*)?$/.exec(text) ?? [];
+  const { unit } = quantity(name);
+  const units = about.readable[unit] ?? { [unit]: 1 };
+  const factor = given ? units[given.replace(/[µμ]/, "u")] : 1;
+  const allowed = unit ? `a number, with a unit (${Object.keys(units).join(", ")}) or in ${unit}` : "a number";
+  if (number === undefined || Number.isNaN(+number) || factor === undefined) {
+    throw new Error(`${name}: ${text} is not ${allowed}.`);
+  }
+  return number * factor;
+}
+
+// Tests of a condition such as "width > 0.5 mm and split == train".
 async function conditions(text) {
   const tests = [];
   for (const part of text.split(/\band\b/).map((one) => one.trim()).filter(Boolean)) {
     const found = /^(\w+)\s*(==|!=|<=|>=|<|>|=)\s*(?:'([^']*)'|"([^"]*)"|(\S.*))$/.exec(part);
-    if (!found) throw new Error(`${part}: write a quantity, a sign and a value, such as shaft_rate > 20.`);
+    if (!found) throw new Error(`${part}: write a quantity, a sign and a value, such as width > 0.5 mm.`);
     const [, name, sign, ...given] = found;
     const wanted = given.find((one) => one !== undefined);
-    if (!(name in numbers)) throw new Error(`${name}: no such quantity.`);
-    const numeric = about.quantities[numbers[name]][4];
-    if (numeric && Number.isNaN(+wanted)) throw new Error(`${name} has numbers, and ${wanted} is none.`);
+    if (!(name in numbers)) throw new Error(`${name}: no such quantity; the nearest is ${nearestName(name)}.`);
+    const against = quantity(name).numeric ? storedNumber(name, wanted) : wanted;
     const values = await valuesOf(name);
-    const against = numeric ? +wanted : wanted;
     const compare = COMPARE[sign === "=" ? "==" : sign];
     tests.push((row) => !Number.isNaN(values[row]) && compare(values[row], against));
   }
@@ -131,7 +163,7 @@ function withinRange(axis, values) {
 async function choose() {
   const turn = ++choices;
   const quantities = [byId("x").value, byId("y").value];
-  const [across, upwards, faults] = await Promise.all([...quantities, "fault"].map(valuesOf));
+  const [across, upwards, faults] = await Promise.all([...quantities.map(shownValues), valuesOf("fault")]);
   const classes = new Set([...document.querySelectorAll("#classes input:checked")].map((box) => box.value));
   const tests = [(row) => classes.has(faults[row]), withinRange("x", across), withinRange("y", upwards)];
   let complaint = "";
@@ -145,7 +177,8 @@ async function choose() {
   const sorted = { x: across, y: upwards }[byId("order").value];
   const key = (row) => (Number.isNaN(sorted[row]) ? Infinity : sorted[row]);
   if (sorted) shown.sort((one, other) => key(one) - key(other) || one - other);
-  scatter = drawScatter(across, upwards, faults, shown, quantities.map(titleOf));
+  const logs = [byId("x_log").checked, byId("y_log").checked];
+  scatter = drawScatter(across, upwards, faults, shown, quantities.map(titleOf), logs);
   scatter.svg.addEventListener("click", (event) => show(scatter.nearest(event) ?? current));
   const lacking = shown.length - scatter.drawn;
   const note = lacking ? `, ${lacking} of them without a value to draw` : "";
@@ -167,8 +200,17 @@ function step(by) {
   if (place >= 0 && place < shown.length) show(shown[place]);
 }
 
+function quantity(name) {
+  return about.quantities[numbers[name]];
+}
+
+async function shownValues(name) {
+  const { factor } = quantity(name);
+  return (await valuesOf(name)).map((value) => value / factor);
+}
+
 function titleOf(name) {
-  const [, unit] = about.quantities[numbers[name]];
+  const { shown_unit: unit } = quantity(name);
   return unit ? `${name} [${unit}]` : name;
 }
 
@@ -185,7 +227,7 @@ function makeClasses(faults) {
 
 function makeAxis(axis, first) {
   for (const role of Object.keys(ROLES)) {
-    const names = about.quantities.filter(([, , , of, numeric]) => of === role && numeric).map(([name]) => name);
+    const names = about.quantities.filter((one) => one.role === role && one.numeric).map((one) => one.name);
     const group = addHtml(byId(axis), "optgroup", { label: role, hidden: !names.length });
     group.append(...names.map((name) => new Option(titleOf(name), name)));
   }
@@ -195,17 +237,18 @@ function makeAxis(axis, first) {
 
 function makeLabels() {
   for (const [role, open] of Object.entries(ROLES)) {
-    const rows = about.quantities.filter((one) => one[3] === role);
+    const rows = about.quantities.filter((one) => one.role === role);
     if (!rows.length) continue;
     const details = addHtml(byId("labels"), "details", { open });
     addHtml(details, "summary", { textContent: `${role} (${rows.length})` });
     details.addEventListener("toggle", () => tellLabels(current));
     const table = addHtml(details, "table");
-    for (const [name, unit, meaning] of rows) {
+    for (const { name, meaning } of rows) {
       const row = Object.assign(table.insertRow(), { title: meaning });
       addHtml(row, "th", { textContent: name, scope: "row" });
       row.insertCell().id = `value_${name}`;
-      row.insertCell().textContent = unit;
+      row.insertCell();
+      addHtml(row.insertCell(), "small");
     }
   }
 }
@@ -220,7 +263,7 @@ function onKey(event) {
 
 async function start() {
   about = await (await inflate("about")).json();
-  numbers = Object.fromEntries(about.quantities.map(([name], place) => [name, place]));
+  numbers = Object.fromEntries(about.quantities.map(({ name }, place) => [name, place]));
   const faults = await valuesOf("fault");
   about.records = faults.length;
   makeClasses(faults);

@@ -54,6 +54,7 @@ from gen.corpus.fault_classes import COMBS, FUNDAMENTALS, LOOKS, SHAFT
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
 from gen.support.shown import visible
+from gen.support.units import READABLE, shown_unit
 from gen.support.workers import run
 
 if TYPE_CHECKING:
@@ -322,13 +323,21 @@ def _parts(
             name: {"colour": look.colour, "lines": look.lines, "side": look.side if look.comb else None}
             for name, look in LOOKS.items()
         },
-        "quantities": [(*one[:4], not any(isinstance(value, str) for value in one.values)) for one in known],
+        "quantities": [_told(one) for one in known],
+        "readable": READABLE,
     }
     parts = {"about": about} | {f"quantity{n}": one.values for n, one in enumerate(known)}
     parts = {name: _packed(json.dumps(part, allow_nan=False).encode()) for name, part in parts.items()}
     for number, texts in enumerate(blocks):
         parts |= dict(zip((f"block{number}", f"sound{number}"), texts, strict=False))
     return parts
+
+
+def _told(column: ExplorerColumn) -> dict[str, Any]:
+    unit, factor = shown_unit(column.name, column.unit)
+    numeric = not any(isinstance(value, str) for value in column.values)
+    about = {name: getattr(column, name) for name in ("name", "unit", "meaning", "role")}
+    return about | {"numeric": numeric, "shown_unit": unit, "factor": factor}
 
 
 def _packed(content: bytes) -> str:

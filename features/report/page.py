@@ -38,7 +38,7 @@ from gen.corpus.fault_classes import HEALTHY, LOOKS
 LONGEST_TEXT = 300
 BARS, LEAST_IMPORTANCE = 15, 5e-4  # of the drawn quantities
 QUANTITIES = (
-    ("shaft_rate", "shaft rate [Hz]", 1.0),
+    ("shaft_rate", "shaft speed [rpm]", 60.0),
     ("load", "load [N]", 1.0),
     ("width", "width of the fault [mm]", 1e3),
     ("depth", "depth of the fault [µm]", 1e6),

@@ -160,20 +160,21 @@ function drawWaterfall(arrays, fault, nominal) {
   });
 }
 
-// Range of an axis and whether it is logarithmic: it is for positive values that differ by more than a factor of 50.
-function rangeOf(values, rows) {
+// Range of an axis.
+function rangeOf(values, rows, log) {
   let [low, high] = [Infinity, -Infinity];
   for (const row of rows) [low, high] = [Math.min(low, values[row]), Math.max(high, values[row])];
-  if (!rows.length) return [[0, 1], false];
-  if (low > 0 && high > 50 * low) return [[low / 1.1, high * 1.1], true];
+  if (!rows.length) return [1, 2];
+  if (log) return [low / 1.1, high * 1.1];
   const rim = 0.03 * (high - low) || 0.05 * Math.abs(high) || 1;
-  return [[low - rim, high + rim], false];
+  return [low - rim, high + rim];
 }
 
 // Records over two quantities; the result draws a ring around a record, and finds the record nearest to a click.
-function drawScatter(across, upwards, faults, rows, titles) {
-  const drawn = rows.filter((row) => Number.isFinite(across[row]) && Number.isFinite(upwards[row]));
-  const [[x, logX], [y, logY]] = [rangeOf(across, drawn), rangeOf(upwards, drawn)];
+function drawScatter(across, upwards, faults, rows, titles, [logX, logY]) {
+  const fits = (value, log) => Number.isFinite(value) && (!log || value > 0);
+  const drawn = rows.filter((row) => fits(across[row], logX) && fits(upwards[row], logY));
+  const [x, y] = [rangeOf(across, drawn, logX), rangeOf(upwards, drawn, logY)];
   const height = Math.max(260, Math.round(0.75 * byId("scatter").clientWidth));
   const plot = axes("scatter", "", { x, y, logX, logY, xTitle: titles[0], yTitle: titles[1], height });
   const paths = {};

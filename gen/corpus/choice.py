@@ -9,9 +9,11 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
+from gen.corpus.facts import extent
 from gen.corpus.schema import SPLITS, class_names
 from gen.corpus.where import nearest, records_where
 from gen.support.errors import CorpusError
+from gen.support.units import range_text
 
 
 def chosen_records(
@@ -24,7 +26,7 @@ def chosen_records(
     corpora : sequence of Dataset
         Opened corpora with the same variables.
     where : str, optional
-        A condition, such as ``fault == 'inner' and shaft_rate > 20`` (:mod:`gen.corpus.where`).
+        A condition, such as ``fault == 'inner' and shaft_rate > 1200 rpm`` (:mod:`gen.corpus.where`).
     split : {"train", "validation", "test"}, optional
         Name of a split.
 
@@ -85,7 +87,8 @@ def _is_chosen(corpus: xr.Dataset, where: str | None, split: str | None) -> NDAr
     if split is not None:
         chosen &= corpus["split"].values == SPLITS.index(split)
     if where is not None:
-        chosen &= records_where(where, per_record(corpus), lambda name: _column(corpus[name]))
+        units = {name: str(corpus[name].attrs.get("units", "1")) for name in per_record(corpus)}
+        chosen &= records_where(where, units, lambda name: _column(corpus[name]))
     return chosen
 
 
@@ -102,8 +105,7 @@ def _extents(corpora: Sequence[xr.Dataset], where: str | None) -> str:
     extents: list[str] = []
     for name in dict.fromkeys(re.findall(r"[A-Za-z_]\w*", where or "")):
         unit = str(corpora[0][name].attrs.get("units", "1")) if name in corpora[0] else "1"
-        values = np.concatenate([corpus[name].values for corpus in corpora]) if unit != "1" else np.empty(0)
-        if np.isfinite(values).any():
-            values = values[np.isfinite(values)]
-            extents.append(f"{name} is {values.min():.4g} to {values.max():.4g} {unit}")
+        ends = extent(np.concatenate([corpus[name].values for corpus in corpora])) if unit != "1" else None
+        if ends is not None:
+            extents.append(f"{name} is {range_text(name, ends[0], ends[-1], unit)}")
     return f" ({', '.join(extents)})" if extents else ""

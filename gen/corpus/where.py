@@ -1,15 +1,16 @@
-"""Conditions on records, such as ``fault == 'inner' and shaft_rate > 20``: evaluated by pandas, after a check of each word.
+"""Conditions on records, such as ``fault == 'inner' and shaft_rate > 1200 rpm``: evaluated by pandas, after a check of each word.
 
 Allowed are comparisons of per-record variables with numbers, with texts in quotes or with each other, ``in`` with a list of values,
 ``and``, ``or``, ``not`` and parentheses: no call, no attribute, no name but those of the variables, so that a condition cannot run code. A
-class variable (``fault``, ``split``) is compared with the names of its values.
+class variable (``fault``, ``split``) is compared with the names of its values. A number may have a unit, ``width > 0.5 mm``; without one
+it is in the stored unit.
 """
 
 import ast
 import difflib
 import re
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,15 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from gen.support.errors import CorpusError
+from gen.support.units import READABLE
 
 MOST_CHARACTERS = 4000
-_EXAMPLE = "an example is fault == 'inner' and shaft_rate > 20."
+_EXAMPLE = "an example is fault == 'inner' and shaft_rate > 1200 rpm."
+# a text in quotes, or a number with a unit
+_WITH_UNIT = re.compile(
+    r"""('[^']*'|"[^"]*")|((?>(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))\s*(?!(?:and|or|not|in|is)\b)([^\W\d_]\w*)"""
+)
+_MICRO = re.compile("[µμ]")
 _SIGNS = (ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.In, ast.NotIn)
 
 
@@ -33,13 +40,13 @@ def nearest(name: str, allowed: Sequence[str]) -> str:
     return f"; the nearest is {near[0]}." if near else f"; allowed are {', '.join(allowed)}."
 
 
-def records_where(text: str, variables: Sequence[str], column: Callable[[str], pd.Series]) -> NDArray[np.bool_]:
+def records_where(text: str, variables: Mapping[str, str], column: Callable[[str], pd.Series]) -> NDArray[np.bool_]:
     """Whether a condition is true, for each record, shape (record,).
 
-    ``variables`` are the names of all per-record variables; ``column`` is called with those that the condition names, and gives numbers,
-    texts or a categorical.
+    ``variables`` are the stored units of all per-record variables by name; ``column`` is called with those that the condition names, and
+    gives numbers, texts or a categorical.
 
-    >>> records_where("n_spalls >= 1", ["n_spalls"], lambda name: pd.Series([0, 1, 2]))
+    >>> records_where("width >= 1 mm", {"width": "m"}, lambda name: pd.Series([0, 0.001, 0.002]))
     array([False,  True,  True])
 
     Raises
@@ -61,17 +68,48 @@ def records_where(text: str, variables: Sequence[str], column: Callable[[str], p
         raise CorpusError(f"where: cannot be evaluated ({' '.join(str(error).split())}); {_EXAMPLE}") from None
 
 
-def _evaluated(line: str, variables: Sequence[str], column: Callable[[str], pd.Series]) -> NDArray[np.bool_]:
+def _evaluated(line: str, variables: Mapping[str, str], column: Callable[[str], pd.Series]) -> NDArray[np.bool_]:
+    marked = _WITH_UNIT.sub(lambda found: found[1] or f"{found[2]} @ '{_MICRO.sub('u', found[3])}'", line)
     with warnings.catch_warnings(action="error"):  # Python warns of an unknown escape in a text
-        tree = ast.parse(line, mode="eval").body
+        tree = ast.parse(marked, mode="eval").body
     names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
     for name in names:
         if name not in variables:
-            raise CorpusError(f"where: there is no variable {name} (a text needs quotes){nearest(name, variables)}")
+            raise CorpusError(f"where: there is no variable {name} (a text needs quotes){nearest(name, [*variables])}")
+    tree = _InStoredUnits(variables).visit(tree)
     table = pd.DataFrame({name: column(name) for name in names})
     _check(tree, table)
-    chosen: Any = table.eval(line, engine="python", local_dict={}, global_dict={})
+    chosen: Any = table.eval(ast.unparse(tree), engine="python", local_dict={}, global_dict={})
     return chosen.to_numpy(bool)
+
+
+class _InStoredUnits(ast.NodeTransformer):
+    """Replaces each number with a unit by the number in the stored unit of the variable that it is compared with."""
+
+    def __init__(self, units: Mapping[str, str]) -> None:
+        self._units, self._named = units, list[str]()
+
+    def visit_Compare(self, node: ast.Compare) -> ast.AST:
+        self._named = [one.id for one in ast.walk(node) if isinstance(one, ast.Name)]
+        return self.generic_visit(node)
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
+        match node:
+            case ast.BinOp(left=number, op=ast.MatMult(), right=ast.Constant(value=str() as unit)):
+                return ast.Constant(ast.literal_eval(number) * self._factor(unit))
+        return node
+
+    def _factor(self, unit: str) -> float:
+        factor = 1.0
+        for name in self._named:
+            stored = self._units[name]
+            if stored == "1":
+                raise CorpusError(f"where: {name} has no unit; write its value without {unit!r}.")
+            allowed = READABLE.get(stored, {stored: 1.0})
+            if unit not in allowed:
+                raise CorpusError(f"where: {name} is not in {unit!r}; allowed are {', '.join(allowed)}.")
+            factor = allowed[unit]
+        return factor
 
 
 def _check(node: ast.expr, table: pd.DataFrame) -> None:

@@ -42,6 +42,14 @@ UNITS: Mapping[str, Unit] = {
 }
 """Units by the suffix of a key. Temperatures stay in degrees Celsius and levels in decibels: they have no SI factor."""
 
+READABLE: Mapping[str, Mapping[str, float]] = {
+    "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
+    "Hz": {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60},
+    "rad": {"rad": 1.0, "deg": math.pi / 180},
+    "N": {"N": 1.0, "kN": 1e3},
+}
+"""Units in which a stored quantity can be given and shown, with their factors, by its stored unit."""
+
 STANDARD_GRAVITY = 9.80665  # m s-2, by definition
 POUND_FORCE = 4.4482216152605  # N, by definition
 HORSEPOWER = 745.69987  # W
@@ -70,6 +78,39 @@ def split_unit(key: str) -> tuple[str, float]:
     return (
         (f"{name}_rate", UNITS[suffix].factor) if suffix == "rpm" else (name, UNITS[suffix].factor if suffix else 1.0)
     )
+
+
+def shown_unit(name: str, stored: str) -> tuple[str, float]:
+    """Unit in which a quantity of a corpus is shown, and its factor: speeds in rpm, widths in mm, other lengths in um, angles in deg.
+
+    >>> shown_unit("shaft_rate", "Hz"), shown_unit("depth", "m"), shown_unit("load", "N")
+    (('rpm', 0.016666666666666666), ('um', 1e-06), ('N', 1.0))
+    """
+    if name.endswith("shaft_rate"):
+        unit = "rpm"
+    elif stored == "m":
+        unit = "mm" if name.endswith("width") else "um"
+    else:
+        unit = "deg" if stored == "rad" else stored
+    return unit, READABLE.get(stored, {}).get(unit, 1.0)
+
+
+def range_text(name: str, low: float, high: float, stored: str) -> str:
+    """Range of a quantity in the unit in which people read it, with the stored one in brackets beside it if that differs.
+
+    >>> range_text("shaft_rate", 20, 40, "Hz"), range_text("load", 5, 5, "N")
+    ('1,200 to 2,400 rpm (20 to 40 Hz)', '5 N')
+    """
+    unit, factor = shown_unit(name, stored)
+    shown, in_stored = (
+        f"{_number(one)} {of}" if one == other else f"{_number(one)} to {_number(other)} {of}"
+        for one, other, of in ((low / factor, high / factor, unit), (low, high, stored))
+    )
+    return shown if unit == stored else f"{shown} ({in_stored})"
+
+
+def _number(value: float) -> str:
+    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.3g}"
 
 
 def to_si(value: float, unit: str) -> float:

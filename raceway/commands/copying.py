@@ -65,7 +65,7 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
     false.
 
       raceway copy corpus -o corpus.nc
-      raceway copy corpus.nc -o fast_inner --where "fault in ('inner', 'outer') and shaft_rate > 20"
+      raceway copy corpus.nc -o fast_inner --where "fault in ('inner', 'outer') and shaft_rate > 1200 rpm"
       raceway copy corpus -o test_set --split test --channels housing
       raceway copy simulated measured -o both --rename-channel fe=accelerometer --float32
       raceway copy corpus -o tables --to csv --where "not (bearing == '6205' or load <= 500)"

@@ -20,6 +20,7 @@ from raceway.console.options import (
     records_option,
     seed_option,
     target_option,
+    where_option,
     worker_options,
 )
 from raceway.console.progress import notice, notice_compilation, progress
@@ -291,19 +292,21 @@ def validate(corpus: Path, as_json: bool) -> int:
 
 @click.command()
 @corpus_argument
+@where_option
 @json_option
-def info(corpus: Path, as_json: bool) -> None:
+def info(corpus: Path, where: str | None, as_json: bool) -> None:
     """Show the contents of the corpus in DIR.
 
     Origin, state, classes with the range of their severities, operating conditions, size and versions. DIR may be generated or
     imported, finished or not; its index.nc stands for the folder.
 
       raceway info corpus
+      raceway info corpus --where "fault == 'inner' and width > 0.5 mm"
       raceway info corpus --json
     """
     from raceway.console.summary import describe, show_facts
 
-    facts = describe(corpus)
+    facts = describe(corpus, where)
     if as_json:
         show.as_json(facts)
     else:

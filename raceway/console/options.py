@@ -173,10 +173,10 @@ band_option: Decorator = click.option(
 
 analysis_options = gathered("analysis", Analysis, channel_option, band_option)
 
-_where: Decorator = click.option(
+where_option: Decorator = click.option(
     "--where",
     metavar="TEXT",
-    help="Only records that meet this condition, such as \"fault == 'inner' and shaft_rate > 20\".",
+    help="Only records that meet this condition, such as \"fault == 'inner' and shaft_rate > 1200 rpm\"; else SI units.",
 )
 _split: Decorator = click.option(
     "--split", metavar="NAME", help="Only records of this split: train, validation or test."
@@ -188,7 +188,7 @@ _channels: Decorator = click.option(
 
 def choice_options(command: Any) -> Any:
     """Add the options ``--where``, ``--split`` and ``--channels``, which choose records and channels of a corpus."""
-    return _where(_split(_channels(command)))
+    return where_option(_split(_channels(command)))
 
 
 speed_option: Decorator = click.option(

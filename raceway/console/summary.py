@@ -3,7 +3,6 @@
 They come from the manifest and from the per-record variables; no signal is read.
 """
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -34,6 +33,7 @@ from gen.corpus import (
 from gen.corpus.facts import OF_FAULTS
 from gen.corpus.schema import operating_problems
 from gen.support.errors import CorpusError
+from gen.support.units import range_text
 from raceway.console import show
 
 Columns = Mapping[str, NDArray[Any]]
@@ -50,23 +50,17 @@ _SHOWN = [
     "width",
     "depth",
 ]
-# severity of a fault, with the unit in which it is shown and its size in SI units; the last three are variables of simulated corpora
-_SEVERITIES = {
-    "width": ("mm", 1e-3),
-    "depth": ("um", 1e-6),
-    "wear": ("um", 1e-6),
-    "pitch_error": ("deg", math.pi / 180),
-    "knock": ("N", 1.0),
-}
+# severities of a fault with their stored units; the last three are variables of simulated corpora
+_SEVERITIES = {"width": "m", "depth": "m", "wear": "m", "pitch_error": "rad", "knock": "N"}
 
 
-def describe(directory: Path) -> dict[str, Any]:
-    """Facts about a corpus: origin, state and contents.
+def describe(directory: Path, where: str | None = None) -> dict[str, Any]:
+    """Facts about a corpus: origin, state and contents, these of the records that meet a condition.
 
     Raises
     ------
     CorpusError
-        If the folder holds no corpus, or a part is missing or altered.
+        If the folder holds no corpus, a part is missing or altered, or no record meets the condition.
     """
     manifest = read_manifest(directory)
     known = manifest.model_dump(exclude={"parts", "complete", "records", "parts_sha256", "signals"}, exclude_unset=True)
@@ -83,7 +77,7 @@ def describe(directory: Path) -> dict[str, Any]:
     }
     facts = about | known
     if manifest.records:
-        facts |= _content(directory, manifest)
+        facts |= _content(directory, manifest, where)
     return facts
 
 
@@ -97,7 +91,7 @@ def _labels(files: Mapping[Path, int]) -> Columns:
     return labels
 
 
-def _content(directory: Path, manifest: Manifest) -> dict[str, Any]:
+def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str, Any]:
     """Contents of a corpus, read without xarray; of an unfinished corpus those of its finished parts."""
     for problem in file_problems(directory, manifest, "size"):
         raise CorpusError(problem)
@@ -107,17 +101,20 @@ def _content(directory: Path, manifest: Manifest) -> dict[str, Any]:
     labels, first = _labels(files), next(iter(parts))
     _, (_, channels, samples) = file_facts(first)
     fs = float(labels["sample_rate"][0])
+    bearings = np.array([name for file, records in files.items() for name in read_texts(file, "bearing", records)])
+    if where is not None:
+        chosen = _chosen(directory, where)
+        labels, bearings = {name: values[chosen] for name, values in labels.items()}, bearings[chosen]
     units = unit_counts(labels)
     return {
+        "chosen": units.records,
         "channels": read_texts(first, "channel", channels),
         "sample_rate": fs,
         "duration": samples / fs,
         "samples": samples,
         "classes": class_counts(labels["fault"]),
         "splits": split_counts(labels["split"]),
-        "bearings": text_counts(
-            name for file, records in files.items() for name in read_texts(file, "bearing", records)
-        ),
+        "bearings": text_counts(bearings.tolist()),
         "rigs": units.rigs,
         "specimens": units.specimens,
         "recordings": units.recordings,
@@ -128,6 +125,16 @@ def _content(directory: Path, manifest: Manifest) -> dict[str, Any]:
         "clipped": clipped_records(labels),
         "faults": None if (counts := fault_counts(labels)) is None else counts._asdict(),
     }
+
+
+def _chosen(directory: Path, where: str) -> NDArray[Any]:
+    """Places of the records that meet a condition."""
+    from gen.corpus import open_corpus  # not at the top: xarray takes 0.25 s to load
+    from gen.corpus.choice import chosen_records
+
+    with open_corpus(directory, check="size") as opened:
+        (places,) = chosen_records([opened], where)
+    return places
 
 
 def _severities(labels: Columns) -> dict[str, dict[str, list[float]]]:
@@ -170,8 +177,9 @@ def show_facts(facts: dict[str, Any]) -> None:
 
 
 def _shown_content(facts: dict[str, Any]) -> dict[str, str]:
+    of_all = "" if facts["chosen"] == facts["records"] else f" of {facts['records']:,}, each"
     return {
-        "records": f"{facts['records']:,} of {facts['duration']:g} s at {facts['sample_rate']:g} Hz",
+        "records": f"{facts['chosen']:,}{of_all} of {facts['duration']:g} s at {facts['sample_rate']:g} Hz",
         "channels": ", ".join(facts["channels"]),
         "classes": show.counts(facts["classes"]),
         **{f"  {fault}": _shown_severities(ranges) for fault, ranges in facts["severities"].items()},
@@ -181,8 +189,8 @@ def _shown_content(facts: dict[str, Any]) -> dict[str, str]:
         "rigs": f"{facts['rigs']:,}",
         "specimens": f"{facts['specimens']:,}",
         "recordings": f"{facts['recordings']:,}",
-        "shaft rate": _shown_range(facts["shaft_rate"], "Hz"),
-        "load": _shown_range(facts["load"], "N"),
+        "shaft rate": _shown_range("shaft_rate", facts["shaft_rate"], "Hz"),
+        "load": _shown_range("load", facts["load"], "N"),
     }
 
 
@@ -194,20 +202,10 @@ def _shown_faults(counts: dict[str, int]) -> str:
 
 
 def _shown_severities(ranges: dict[str, list[float]]) -> str:
-    parts = []
-    for name, ends in ranges.items():
-        unit, scale = _SEVERITIES[name]
-        parts.append(f"{name.replace('_', ' ')} {_shown_range([end / scale for end in ends], unit)}")
-    return ", ".join(parts)
+    return ", ".join(
+        f"{name.replace('_', ' ')} {_shown_range(name, ends, _SEVERITIES[name])}" for name, ends in ranges.items()
+    )
 
 
-def _shown_range(ends: list[float] | None, unit: str) -> str:
-    """Range in words.
-
-    >>> _shown_range([2.0, 2.0], "N"), _shown_range([0.5, 1.25], "mm"), _shown_range(None, "N")
-    ('2 N', '0.5 to 1.25 mm', 'not known')
-    """
-    if ends is None:
-        return "not known"
-    low, high = (f"{end:.3g}" for end in ends)
-    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
+def _shown_range(name: str, ends: list[float] | None, stored: str) -> str:
+    return "not known" if ends is None else range_text(name, ends[0], ends[1], stored)

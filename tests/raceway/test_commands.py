@@ -227,7 +227,18 @@ def test_info_shows_the_range_of_the_severities_of_each_class(run, told, tiny_co
     assert found["outer"]["width"] == [widths.min(), widths.max()]
     assert set(found["outer"]) == {"width", "depth"}  # severities that are 0 in all records are left out
     shown = run("info", tiny_corpus).stdout
-    assert f"outer     width {1e3 * widths.min():.3g} to {1e3 * widths.max():.3g} mm, depth " in shown
+    for factor, unit in ((1e3, "mm ("), (1, "m), depth ")):
+        assert f"{factor * widths.min():.3g} to {factor * widths.max():.3g} {unit}" in shown
+
+
+def test_info_tells_the_contents_of_chosen_records(run, told, tiny_corpus):
+    with open_corpus(tiny_corpus) as corpus:
+        wide = corpus["width"].values > 0.5e-3
+    found = told("info", tiny_corpus, "--where", "width > 0.5 mm")
+    assert (found["chosen"], found["records"]) == (wide.sum(), 48)
+    assert sum(found["classes"].values()) == sum(found["bearings"].values()) == wide.sum()
+    assert f"records     {wide.sum()} of 48, each of 0.1 s" in run("info", tiny_corpus, "--where", "width>500um").stdout
+    assert "none of 48 records is chosen" in run("info", tiny_corpus, "--where", "width > 1 m").stderr
 
 
 @pytest.mark.parametrize("command", ["info", "validate"])

@@ -64,7 +64,7 @@ def test_the_stored_spectra_have_their_peaks_at_the_planted_lines():
 def test_the_page_has_all_records_in_blocks_with_their_labels_features_and_sound(page):
     found = parts(page)
     about = json.loads(found["about"])
-    names = [name for name, *_ in about["quantities"]]
+    names = [one["name"] for one in about["quantities"]]
     values = {name: json.loads(found[f"quantity{number}"]) for number, name in enumerate(names)}
     assert values["record"] == list(range(RECORDS))
     assert values["fault"][::20] == ["healthy", "inner", "outer", "ball"]
@@ -133,14 +133,19 @@ def test_the_page_works_in_a_browser_by_keys_at_any_width(page, tmp_path):
         opened.press("ArrowRight")
         opened.until(f"{name}.startsWith('Record 1: ')")
         opened.press("/")
-        opened.type("fault == inner and shaft_rate > 27")
+        opened.type("fault == inner and shaft_rate > 1620 rpm")
         opened.until(f"!{count}.startsWith('80')")
         assert 0 < int(opened.value(count).split()[0]) <= 20
         opened.until(f"{name}.includes(': inner')")
         opened.press("Escape")
         opened.press("p")
         opened.value("byId('condition').value = 'nothing > 1'; choose()")
-        assert opened.value("byId('complaint').textContent") == "nothing: no such quantity."
+        told = opened.value("byId('complaint').textContent")
+        assert told.startswith("nothing: no such quantity; the nearest is ")
+        for condition in ("widht > 1", "width > 1 rpm"):
+            opened.value(f"byId('condition').value = '{condition}'; choose()")
+            told = opened.value("byId('complaint').textContent")
+            assert told.endswith(("the nearest is width.", "with a unit (m, mm, um) or in m."))
         opened.value("show(79)")
         opened.until(f"{name}.startsWith('Record 79: ball')")
         opened.look(500, dark=True)

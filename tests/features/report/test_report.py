@@ -186,12 +186,12 @@ def test_a_histogram_of_widths_omits_the_records_without_a_spall(tmp_path):
 
 
 def test_quantities_are_drawn_in_the_unit_of_their_label():
-    units = {"[Hz]": 1, "[N]": 1, "[dB]": 1, "[mm]": 1e3, "[µm]": 1e6, "[°]": 180 / np.pi}
+    units = {"[rpm]": 60, "[N]": 1, "[dB]": 1, "[mm]": 1e3, "[µm]": 1e6, "[°]": 180 / np.pi}
     for _, label, factor in QUANTITIES:
         assert factor == pytest.approx(units[label.split()[-1]])
     shown = {name: label.split()[-1] for name, label, _ in QUANTITIES}
     assert (shown["shaft_rate"], shown["load"], shown["width"], shown["depth"], shown["angle"]) == (
-        "[Hz]", "[N]", "[mm]", "[µm]", "[°]"
+        "[rpm]", "[N]", "[mm]", "[µm]", "[°]"
     )  # fmt: skip
 
 

@@ -22,11 +22,12 @@ COLUMNS = {
     "fault": pd.Series(pd.Categorical(FAULT, FAULTS)),
     "bearing": pd.Series(["6205", "6205", "N 205 E", "it's", ""]),
 }
+UNITS = dict.fromkeys(COLUMNS, "1") | {"rate": "Hz", "load": "N"}
 NUMBERS = {"==": np.equal, "<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal}
 
 
 def holds(text):
-    return records_where(text, list(COLUMNS), COLUMNS.__getitem__)
+    return records_where(text, UNITS, COLUMNS.__getitem__)
 
 
 def comparisons():
@@ -84,6 +85,9 @@ def test_a_condition_holds_for_the_records_that_its_words_ask_for(pair):
         ("10 < rate <= 30", [1, 2]),
         (" 1 <= rig<3 ", [1, 2]),
         ("rate not in [20, 30]", [0, 3, 4]),
+        ("rate > 900 rpm", [1, 2]),
+        ("-300rpm>=rate or 0.02 kHz == rate", [1, 4]),
+        ("bearing in ['N 205 E', '3 mm'] and load != 0.01kN", [2]),
         ("bearing == '@rate' or bearing == '`rig`' or rig == 2", [2]),
     ],
 )
@@ -94,7 +98,7 @@ def test_conditions_read_as_they_are_written(text, records):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("", "invalid syntax at character 1; an example is fault == 'inner' and shaft_rate > 20."),
+        ("", "invalid syntax at character 1; an example is fault == 'inner' and shaft_rate > 1200 rpm."),
         ("fualt == 'inner'", "there is no variable fualt (a text needs quotes); the nearest is fault."),
         ("rig > 1 and fault == 'iner'", "fault has no value 'iner'; allowed are healthy, inner, outer."),
         ("fault not in ('iner', 'outer')", "fault has no value 'iner'"),
@@ -108,7 +112,12 @@ def test_conditions_read_as_they_are_written(text, records):
         ("1 == 1", "'1 == 1' names no variable"),
         ("rate > 1.5e1and rig < 2", "invalid decimal literal"),
         ("rate > nan", "there is no variable nan"),
-        ("rate > 1j", "found '1j' where the name of a variable, a number or a text in quotes should be"),
+        ("rate > [1][0]", "found '[1][0]' where the name of a variable, a number or a text in quotes should be"),
+        ("rate > 1j", "rate is not in 'j'; allowed are Hz, kHz, rpm."),
+        ("rig == 1 or load > 3 mm", "load is not in 'mm'; allowed are N, kN."),
+        ("rate > load > 3 N", "rate is not in 'N'"),
+        ("rig > 1 mm", "rig has no unit; write its value without 'mm'."),
+        ("1 mm > 0", "names no variable"),
         ("rate == True", "found 'True' where"),
         ("(rate > 1", "was never closed"),
         ("rate > 1)", "unmatched ')' at character 9"),
