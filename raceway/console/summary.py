@@ -195,10 +195,9 @@ def _shown_content(facts: dict[str, Any]) -> dict[str, str]:
 
 
 def _shown_faults(counts: dict[str, int]) -> str:
-    if counts["unjudged"] == counts["records"]:
-        return "not judged"
-    again = f"{counts['redrawn_specimens']:,} specimens and {counts['redrawn_levels']:,} levels drawn again"
-    return f"seen in {counts['detectable']:,} of {counts['records']:,} records, {again}"
+    unseen = counts["records"] - counts["detectable"] - counts["unjudged"]
+    judged = f"seen in {counts['detectable']:,} records, not seen in {unseen:,}, not judged in {counts['unjudged']:,}"
+    return f"{judged}; {counts['redrawn_specimens']:,} specimens and {counts['redrawn_levels']:,} levels drawn again"
 
 
 def _shown_severities(ranges: dict[str, list[float]]) -> str:

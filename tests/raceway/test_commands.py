@@ -21,6 +21,7 @@ from gen.exporting import FORMS
 from gen.simulation.simulate import response_of
 from gen.support.limits import VARIABLE
 from raceway.cli import GROUPS, cli
+from raceway.console.summary import _shown_faults
 from tests.command_tree import commands
 from tests.labels import write_labels
 
@@ -363,3 +364,9 @@ def test_a_file_that_hides_a_package_of_raceway_is_named(tmp_path):
 def test_every_command_is_listed_in_one_group():
     listed = [command for commands in GROUPS.values() for command in commands]
     assert len(listed) == len(cli.commands) == 18
+
+
+def test_info_counts_the_faults_that_are_seen_not_seen_and_not_judged():
+    counts = {"records": 1536, "detectable": 300, "unjudged": 1200, "redrawn_specimens": 7, "redrawn_levels": 2}
+    told = "seen in 300 records, not seen in 36, not judged in 1,200; 7 specimens and 2 levels drawn again"
+    assert _shown_faults(counts) == told
