@@ -3,6 +3,8 @@
 Model files contain no pickle, and loading one runs no code from it: see `features.baselines.model_file`.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from importlib.metadata import version
@@ -112,8 +114,8 @@ class Model(Shown):
     digests: NDArray[np.uint64] = field(default_factory=lambda: np.empty(0, np.uint64))
     versions: Mapping[str, str] = field(default_factory=dict)
     calibration: Calibration = UNCALIBRATED
-    relative: "Model | None" = None
-    shorter: "Model | None" = None
+    relative: Model | None = None
+    shorter: Model | None = None
 
     @property
     def name(self) -> str:

@@ -7,6 +7,8 @@ Bearing and speed are searched within what is given. The verdict is that of the 
 the signal tells nothing. Evidence is measured in the signal alone, whatever the verdict.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple

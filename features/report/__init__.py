@@ -5,6 +5,7 @@ module        responsibility
 ============= ======================================================================
 pictures      drawings of one record, and the style of all
 shown         what is drawn: a record, or a recording of the user
+maps          drawings of kurtograms, order maps and coherence
 views         one view of a record, over orders at any speed
 summaries     drawings of the contents of a corpus, and of scores
 curves        drawing of a learning curve

@@ -21,6 +21,7 @@ import numpy as np
 import xarray as xr
 from scipy.signal import resample
 
+from features.report.maps import BRIGHTEST_DB
 from features.report.pictures import (
     SEGMENT,
     TOLERANCE,
@@ -32,7 +33,7 @@ from features.report.pictures import (
 )
 from features.report.shown import can_be_drawn, check_band, shown_of
 from features.report.templates import template
-from features.report.views import BRIGHTEST_DB, envelope_map
+from features.report.views import envelope_map
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 from features.table.band import DEFAULT_BAND, Band, checked_band

@@ -5,20 +5,19 @@ that they stand still. Every view takes the mean away, and shows the healthy rec
 """
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from features.report.maps import BRIGHTEST_DB, FAINTEST, draw_coherence, draw_grid, level_over_median, plot
 from features.report.pictures import (
     FAINT,
     OVER,
     PER_TURN,
     STYLE,
     UNDER,
-    VERMILION,
     WIDTH,
     DrawnRecord,
     draw_cursors,
@@ -38,14 +37,10 @@ from features.table.band import Band
 from gen.corpus.fault_classes import FUNDAMENTALS, LOOKS, SHAFT
 
 HEIGHT = 3.6  # inches
-FAINTEST = 1e-12  # of an amplitude
 MAP_TURNS = 24  # revolutions of a window of the waterfall
 CEPSTRUM_TURNS = 1.3  # end of the axis, in revolutions
 SHORTEST_CEPSTRUM = 0.06  # revolutions: what lies below is the shape of the spectrum
 COHERENCE_BAND = 200.0  # Hz
-COLUMNS = 340  # of a map
-BRIGHTEST_DB = 20.0  # level drawn black in a waterfall, above the median
-ONE_FALSE_ALARM = 0.01  # expected in a whole map of coherence of noise
 NARROWEST_BAND = 1000.0  # Hz, of a chosen band: as that of a band that is given
 
 
@@ -99,7 +94,7 @@ def _over_angle(shown: DrawnRecord, per_turn: int = PER_TURN) -> FloatArray:
 def _waterfall(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
     """Envelope spectra of windows over orders, one above the other."""
     orders, time, level = envelope_map(shown, draw_cursors(axes, shown))
-    _map(axes, (orders, time, level), (0.0, BRIGHTEST_DB), "dB above the median")
+    draw_grid(axes, (orders, time, level), (0.0, BRIGHTEST_DB), "dB above the median")
     axes.set(ylabel="time [s]")
     axes.set_title("Envelope spectrum of the whitened band over time", pad=30)
 
@@ -116,31 +111,15 @@ def envelope_map(shown: DrawnRecord, top: float) -> tuple[FloatArray, FloatArray
     found = order_map(y, PER_TURN, min(MAP_TURNS, max(2, y.shape[1] // PER_TURN // 4)))
     drawn = (found.orders > 0) & (found.orders <= top)
     amplitude = found.amplitude[0][:, drawn]
-    median = np.median(amplitude, axis=1, keepdims=True)
-    level = 20 * np.log10(np.maximum(amplitude, FAINTEST) / np.maximum(median, FAINTEST))
     first = np.ceil(shown.turns[0])
     time = np.interp(first + found.turns, shown.turns, np.arange(shown.signal.size) / shown.fs)
-    return found.orders[drawn], time, level
+    return found.orders[drawn], time, level_over_median(amplitude)
 
 
 def _kurtogram(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
     """Kurtosis of the analytic signal of each band, a row for each division of the spectrum."""
-    tree = kurtogram(shown.signal[None], shown.fs)
-    divisions, score = np.unique(tree.levels), tree.score[0]
-    limits = {"vmin": min(0.0, float(score.min())), "vmax": max(1.0, float(score.max())), "cmap": "Greys"}
-    mesh: Any = None
-    for row, division in enumerate(divisions):
-        chosen = tree.levels == division
-        edges = np.append(tree.edges[chosen, 0], tree.edges[chosen, 1][-1]) / 1e3
-        mesh = axes.pcolormesh(edges, [row - 0.5, row + 0.5], score[chosen][None], rasterized=True, **limits)
-    low, high = tree.best()[0] / 1e3
-    row = int(np.searchsorted(divisions, tree.levels[np.argmax(score)]))
-    axes.plot([low, high, high, low, low], row + np.array([-0.5, -0.5, 0.5, 0.5, -0.5]), color=VERMILION)
-    axes.set_yticks(range(len(divisions)), [f"{division}" for division in divisions])
-    axes.set(xlabel="frequency [kHz]", ylabel="number of bands", xlim=(0, shown.fs / 2e3))
-    axes.invert_yaxis()
-    axes.figure.colorbar(mesh, ax=axes, label="kurtosis", pad=0.01)
-    axes.set_title(f"Kurtogram: {score.max():.3g} is the highest kurtosis, in {low:.3g}-{high:.3g} kHz")
+    plot(kurtogram(shown.signal, shown.fs), axes)
+    axes.set_title(f"Kurtogram: {axes.get_title()}")
 
 
 def _coherence(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
@@ -152,23 +131,10 @@ def _coherence(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
         per_turn = round(fs / rate)
         x, fs, rate = _over_angle(shown, per_turn), float(per_turn), 1.0
     found = spectral_coherence(x, fs, top * rate, resolution=COHERENCE_BAND * rate / shown.shaft_rate)
-    lowest = found.threshold(ONE_FALSE_ALARM / found.squared[0].size)
-    # near 0 any signal is coherent with itself; of the fine grid, each column shows its highest value
-    first, width = int(0.5 * rate / found.cyclic[1]), max(1, len(found.cyclic) // COLUMNS)
-    starts = np.arange(first, len(found.cyclic), width)
-    squared = np.maximum.reduceat(found.squared[0], starts, axis=1)
-    grid = found.cyclic[starts] / rate, found.spectral * (shown.shaft_rate / rate / 1e3), squared
-    _map(axes, grid, (lowest, max(2 * lowest, float(squared.max()))), "squared coherence")
+    first = int(0.5 * rate / found.cyclic[1])  # near 0 any signal is coherent with itself
+    draw_coherence(axes, found, found.squared[0], first, rate, 1e3 * rate / shown.shaft_rate)
     axes.set(ylabel="frequency [kHz]" if shown.angle is None else "frequency at the mean speed [kHz]")
     axes.set_title("Spectral coherence; noise reaches the lowest grey once in a hundred pictures", pad=30)
-
-
-def _map(axes: Axes, grid: tuple[FloatArray, FloatArray, FloatArray], limits: tuple[float, float], label: str) -> None:
-    """Shades of grey over x, shape (column,), and y, shape (row,); values below the lower limit stay white."""
-    mesh = axes.pcolormesh(
-        *grid, cmap="Greys", vmin=limits[0], vmax=limits[1], shading="nearest", rasterized=True, zorder=0
-    )
-    axes.figure.colorbar(mesh, ax=axes, label=label, pad=0.01)
 
 
 def _cepstrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None:

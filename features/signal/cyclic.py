@@ -25,6 +25,8 @@ is known.
 .. [5] J. Makhoul, "Linear prediction: a tutorial review", *Proc. IEEE* 63 (1975) 561-580.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -33,7 +35,7 @@ from scipy.special import gammainccinv
 
 from features.signal.demodulation import ZERO_PADDING
 from features.signal.door import Band, Positive, Rows, Share, checked
-from features.signal.rows import ComplexArray, FloatArray, by_row, squared_modulus
+from features.signal.rows import ComplexArray, FloatArray, brief, by_row, squared_modulus
 from features.signal.spectra import prediction_filters, sine_windowed
 
 WINDOW_LOSS = 1.5  # coefficients per independent coefficient under a sine window
@@ -60,6 +62,9 @@ class Coherence(NamedTuple):
     spectral: FloatArray
     squared: Rows
     independent: float
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @checked
     def threshold(self, probability: Share) -> float:

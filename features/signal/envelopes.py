@@ -1,5 +1,7 @@
 """Envelope spectrum of a band of records in one call: Fourier coefficients, analytic signal of the band, spectrum of its envelope."""
 
+from __future__ import annotations
+
 from features.signal.demodulation import analytic_band, envelope_spectrum, squared_envelope_spectrum
 from features.signal.door import Band, Positive, Rows, checked
 from features.signal.rows import FloatArray

@@ -18,6 +18,8 @@ the level of its harmonics in the squared envelope spectrum, as the protrugram d
        comparison with the Kurtogram", *Mech. Syst. Signal Process.* 25 (2011) 431-451.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +30,7 @@ from scipy.special import gammainccinv
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.door import NotNegative, OfEach, Positive, Rows, Share, checked
 from features.signal.lines import COMB_HARMONICS, combs
-from features.signal.rows import ComplexArray, FloatArray, IntArray, squared_modulus
+from features.signal.rows import ComplexArray, FloatArray, IntArray, brief, squared_modulus
 from features.signal.spectra import fourier_coefficients, hann_segments
 
 FEWEST = 200  # independent complex samples of the narrowest bands: the kurtosis of noise then errs by 0.14 (rms)
@@ -53,6 +55,11 @@ class BandTree(NamedTuple):
     levels: IntArray
     edges: FloatArray
     score: Rows
+
+    def __repr__(self) -> str:
+        low, high = np.atleast_2d(self.best())[0]
+        first = " of the first record" if self.score.ndim > 1 else ""
+        return f"{brief(self)}, best band{first} {low:.0f} to {high:.0f} Hz"
 
     def best(self) -> FloatArray:
         """Edges of the band of highest score of each record [Hz], shape (record, 2)."""
@@ -117,6 +124,9 @@ class SpectralKurtosis(NamedTuple):
     frequencies: FloatArray
     kurtosis: Rows
     segments: int
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @checked
     def threshold(self, probability: Share) -> float:

@@ -12,6 +12,8 @@ zones of [2]_.
        vibration severity*, 2012: Butterworth filters of third order, 3 dB down at the ends of the band.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import Literal
 

@@ -13,6 +13,8 @@ any speed. Everything that repeats with the shaft is in the synchronous average;
        Systems and Signal Processing* 1 (1) (1987) 83-95.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -21,7 +23,7 @@ from scipy.interpolate import CubicSpline
 
 from features.signal.demodulation import amplitude_spectrum
 from features.signal.door import Count, Number, Positive, Rows, checked
-from features.signal.rows import FloatArray, row_kernel
+from features.signal.rows import FloatArray, brief, row_kernel
 
 CROSSINGS = 32  # zero crossings of the sinc function to each side
 BETA = 8.0  # of the Kaiser window: orders above half the samples per turn are 80 dB down
@@ -38,6 +40,9 @@ class SynchronousAverage(NamedTuple):
     residual: Rows
     """Signals without the periodic repetition of their average, shape (record, angle)."""
 
+    def __repr__(self) -> str:
+        return brief(self)
+
 
 class OrderMap(NamedTuple):
     """Order spectra of windows that overlap by half."""
@@ -48,6 +53,9 @@ class OrderMap(NamedTuple):
     """Shape (order,)."""
     amplitude: Rows
     """Amplitudes in the unit of the signals, shape (record, window, order)."""
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 def resample_to_orders(

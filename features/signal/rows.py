@@ -109,3 +109,14 @@ def mean_row(values: FloatArray) -> FloatArray:
     values = np.sort(values, axis=0)  # NaN comes last
     count = np.isfinite(values).sum(axis=0)
     return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)
+
+
+def brief(result: Any) -> str:
+    """Text of a named tuple with the shapes of its arrays in place of their values.
+
+    >>> from collections import namedtuple
+    >>> brief(namedtuple("Spectrum", "level, fs")(np.zeros((2, 3)), 5.0))
+    'Spectrum(level: (2, 3), fs: 5)'
+    """
+    told = (f"{name}: {np.shape(value) or format(value, 'g')}" for name, value in result._asdict().items())
+    return f"{type(result).__name__}({', '.join(told)})"

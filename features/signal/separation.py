@@ -20,6 +20,8 @@ Cepstral pre-whitening, which sets the whole cepstrum to zero, is `features.sign
        vibration fault detection", *Mech. Syst. Signal Process.* 82 (2017) 461-477.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +29,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 from scipy.linalg import cho_factor, cho_solve
 
 from features.signal.door import Bands, Count, OfEach, Positive, Rows, checked
-from features.signal.rows import ComplexArray, FloatArray, hann_window, squared_modulus
+from features.signal.rows import ComplexArray, FloatArray, brief, hann_window, squared_modulus
 from features.signal.spectra import LOADING, hann_segments, prediction_filters, sine_windowed
 
 OVERLAP_LOSS = 1.056  # segments per independent segment, Hann window and half overlap
@@ -39,6 +41,9 @@ class Separation(NamedTuple):
 
     deterministic: Rows
     random: Rows
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 @checked

@@ -8,6 +8,8 @@ Records are rows, and no row depends on the others. Cepstral pre-whitening is th
 .. [2] J. Makhoul, "Linear prediction: a tutorial review", *Proc. IEEE* 63 (1975) 561-580.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np

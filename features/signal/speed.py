@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from features.signal.lines import FAMILIES, Orders, families
-from features.signal.rows import FloatArray, row_kernel
+from features.signal.rows import FloatArray, brief, row_kernel
 
 TOLERANCE = 0.08  # relative, largest speed error that is searched
 STEP = 0.001  # relative, between two candidates
@@ -63,6 +63,9 @@ class ShaftSpeed(NamedTuple):
     """The lines that tell the speed, one of `EVIDENCE`."""
     labelled_rate: float
     """Shaft rate as labelled [Hz]."""
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 def candidates(tolerance: float = TOLERANCE) -> FloatArray:

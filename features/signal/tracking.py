@@ -12,6 +12,8 @@ band as narrow as a line, of a lightly damped resonance below five times the fas
 none of these limits.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +31,7 @@ from features.signal.chirplets import (
 )
 from features.signal.door import Positive, Rows, checked
 from features.signal.refinement import Course, deviations, refined
-from features.signal.rows import BoolArray, ComplexArray, FloatArray
+from features.signal.rows import BoolArray, ComplexArray, FloatArray, brief
 from features.signal.steady_lines import without_steady_lines
 
 EXTREMES = (0.05, 0.95)  # quantiles of a course
@@ -43,6 +45,9 @@ class SpeedCourse(NamedTuple):
     """Shaft rate at each sample [Hz], shape (record, time)."""
     uncertainty: Rows
     """Standard deviation of the rate [Hz], shape (record, time)."""
+
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 @checked

@@ -10,6 +10,8 @@ so each has a band around it.
        Process.* 25 (2011) 485-520.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
@@ -41,7 +43,7 @@ def fault_bands(
     harmonics: int = 3,
     sidebands: int = 1,
     tolerance: float = LINE_TOLERANCE,
-) -> "DataFrame":
+) -> DataFrame:
     """Bands of the fault lines of a bearing, one row per band.
 
     Parameters
@@ -107,8 +109,8 @@ def _times(number: int, name: str) -> str:
 
 
 def fault_metrics(
-    frequencies: FloatArray, spectrum: FloatArray, bands: "DataFrame", unit: Literal["Hz", "order"] = "Hz"
-) -> "DataFrame | xr.Dataset":
+    frequencies: FloatArray, spectrum: FloatArray, bands: DataFrame, unit: Literal["Hz", "order"] = "Hz"
+) -> DataFrame | xr.Dataset:
     """What an amplitude spectrum has in each band of `fault_bands`.
 
     ``peak`` is the highest amplitude, ``peak_at`` its place, ``power`` the mean square of the lines in the band (half the

@@ -4,6 +4,8 @@ A spall has its lines at multiples of one fault order. On this grid they lie at 
 and sample rate, so a network needs to learn no geometry; filters shared by all families learn what a comb looks like.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import Protocol
 

@@ -3,6 +3,8 @@
 ``signals -> windows of at most a second -> level of the envelope (mean of all bands) and of the signal -> lines``
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 
 import numpy as np

@@ -6,6 +6,8 @@
 are indexed. So an estimator that takes slices needs no more memory for a larger corpus.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -71,7 +73,7 @@ class Waveforms:
         """What an analyst on site knows of the records: sample rate, shaft rate, nominal orders and more, each of shape (record,)."""
         return operating_variables(self.labels)
 
-    def take(self, rows: Any) -> "Waveforms":
+    def take(self, rows: Any) -> Waveforms:
         """Choose some of these records by number; nothing is read."""
         rows = np.asarray(rows)
         return replace(self, rows=self.rows[rows], labels=self.labels.isel(record=rows))

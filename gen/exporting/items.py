@@ -20,14 +20,15 @@ from gen.corpus.manifest import Check
 from gen.corpus.schema import SIGNAL, class_names
 from gen.corpus.where import nearest
 from gen.support.errors import CorpusError
+from gen.support.shown import Shown
 
 Transform = Callable[[NDArray[np.float32]], Any]
 Item = tuple[Any, Any]
 """Signal, shape (channel, elapsed_time) [m s-2], or what the transform makes of it; and the label."""
 
 
-@dataclass(frozen=True, eq=False)
-class LabelledRecords:
+@dataclass(frozen=True, eq=False, repr=False)
+class LabelledRecords(Shown):
     """Records of a corpus, each with one label; made by :func:`torch_dataset`."""
 
     records: NDArray[np.intp]
@@ -46,6 +47,18 @@ class LabelledRecords:
     """Signal of the whole corpus, unread."""
     channel_places: tuple[int, ...]
     """Places of the channels in the corpus."""
+
+    def _heading(self) -> str:
+        return f"{len(self):,} records of {self.signal.shape[-1]:,} samples, {', '.join(self.channels)}"
+
+    def _facts(self) -> Mapping[str, object]:
+        codes, counts = np.unique(self.labels, return_counts=True)
+        classes = [f"{self.names[code]} {count:,}" for code, count in zip(codes, counts, strict=True) if self.names]
+        return {
+            "labels": ", ".join(classes) or f"{self.labels.dtype}, {codes[0]} to {codes[-1]}",
+            "operating": ", ".join(self.operating),
+            "next": "DataLoader(records, batch_size=64, shuffle=True), or records.batches(64, seed=0)",
+        }
 
     def __len__(self) -> int:
         """Count the records."""

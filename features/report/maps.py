@@ -1,0 +1,112 @@
+"""Drawings of what `features.signal` computes as a map: kurtogram, order map, spectral coherence.
+
+``features.plot(signal.kurtogram(x, fs))`` draws into the current axes of pyplot, or into given ones.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from features.report.pictures import VERMILION
+from features.signal.cyclic import Coherence
+from features.signal.impulsive import BandTree
+from features.signal.orders import OrderMap
+from features.signal.rows import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+BRIGHTEST_DB = 20.0  # level drawn black in an order map, above the median
+COLUMNS = 340  # of a map
+FAINTEST = 1e-12  # of an amplitude
+NEAR_ZERO = 12  # first cyclic frequencies, at which any signal is coherent with itself
+ONE_FALSE_ALARM = 0.01  # expected in a whole map of coherence of noise
+
+
+def plot(result: BandTree | OrderMap | Coherence, axes: Axes | None = None, *, record: int = 0) -> Axes:
+    """Draw a result of `features.signal.kurtogram`, `comb_bands`, `order_map` or `spectral_coherence`.
+
+    Parameters
+    ----------
+    result
+        Of one record, or of several.
+    axes
+        Axes of matplotlib; by default the current ones of pyplot.
+    record
+        Place of the drawn record among several.
+
+    Raises
+    ------
+    TypeError
+        For another result.
+    """
+    if axes is None:
+        from matplotlib import pyplot as plt
+
+        axes = plt.gca()
+    match result:
+        case BandTree():
+            _draw_bands(axes, result.levels, result.edges, np.atleast_2d(result.score)[record])
+        case OrderMap():
+            amplitude = result.amplitude if result.amplitude.ndim == 2 else result.amplitude[record]
+            level = level_over_median(amplitude[:, 1:])
+            draw_grid(axes, (result.orders[1:], result.turns, level), (0.0, BRIGHTEST_DB), "dB above the median")
+            axes.set(xlabel="order of the shaft", ylabel="turns of the shaft")
+        case Coherence():
+            squared = result.squared if result.squared.ndim == 2 else result.squared[record]
+            draw_coherence(axes, result, squared, NEAR_ZERO, 1.0, 1e3)
+            axes.set(xlabel="cyclic frequency [Hz]", ylabel="frequency [kHz]")
+        case _:
+            raise TypeError(f"plot: {type(result).__name__} is not a BandTree, OrderMap or Coherence.")
+    return axes
+
+
+def _draw_bands(axes: Axes, levels: IntArray, edges: FloatArray, score: FloatArray) -> None:
+    divisions, drawn = np.unique(levels), score[np.isfinite(score)]
+    limits = {"vmin": min(0.0, float(drawn.min())), "vmax": max(1.0, float(drawn.max())), "cmap": "Greys"}
+    mesh: Any = None
+    for row, division in enumerate(divisions):
+        chosen = levels == division
+        across = np.append(edges[chosen, 0], edges[chosen, 1][-1]) / 1e3
+        mesh = axes.pcolormesh(across, [row - 0.5, row + 0.5], score[chosen][None], rasterized=True, **limits)
+    best = int(np.argmax(score))
+    low, high = edges[best] / 1e3
+    row = int(np.searchsorted(divisions, levels[best]))
+    axes.plot([low, high, high, low, low], row + np.array([-0.5, -0.5, 0.5, 0.5, -0.5]), color=VERMILION)
+    axes.set_yticks(range(len(divisions)), [f"{division}" for division in divisions])
+    axes.set(xlabel="frequency [kHz]", ylabel="number of bands", xlim=(0, edges.max() / 1e3))
+    axes.invert_yaxis()
+    axes.figure.colorbar(mesh, ax=axes, label="score", pad=0.01)
+    axes.set_title(f"{score[best]:.3g} is the highest score, in {low:.3g}-{high:.3g} kHz")
+
+
+def level_over_median(amplitude: FloatArray) -> FloatArray:
+    """Level of spectra over the median of each [dB], shape (window, order)."""
+    median = np.median(amplitude, axis=1, keepdims=True)
+    return 20 * np.log10(np.maximum(amplitude, FAINTEST) / np.maximum(median, FAINTEST))
+
+
+def draw_coherence(
+    axes: Axes, found: Coherence, squared: FloatArray, first: int, per_cyclic: float, per_spectral: float
+) -> None:
+    """Draw squared coherence of shape (spectral, cyclic) from the cyclic frequency of a number on; what noise reaches stays white.
+
+    The axes are divided by the last two numbers. Of the fine grid, each column shows its highest value.
+    """
+    lowest = found.threshold(ONE_FALSE_ALARM / squared.size)
+    starts = np.arange(first, len(found.cyclic), max(1, len(found.cyclic) // COLUMNS))
+    highest = np.maximum.reduceat(squared, starts, axis=1)
+    grid = found.cyclic[starts] / per_cyclic, found.spectral / per_spectral, highest
+    draw_grid(axes, grid, (lowest, max(2 * lowest, float(highest.max()))), "squared coherence")
+
+
+def draw_grid(
+    axes: Axes, grid: tuple[FloatArray, FloatArray, FloatArray], limits: tuple[float, float], label: str
+) -> None:
+    """Draw shades of grey over x, shape (column,), and y, shape (row,); values below the lower limit stay white."""
+    mesh = axes.pcolormesh(
+        *grid, cmap="Greys", vmin=limits[0], vmax=limits[1], shading="nearest", rasterized=True, zorder=0
+    )
+    axes.figure.colorbar(mesh, ax=axes, label=label, pad=0.01)
