@@ -37,3 +37,31 @@ EVERYTHING = {
     "operation.load_profile": {"kind": "steps", "levels_percent": [50, 100], "step_s": 0.02},
     "faults": EVERY_FAULT,
 }
+
+# of the twelve bearings some fail and some do not; each life has its spall long before its end
+LIVES = {
+    "corpus": {
+        "rigs": 3,
+        "specimens_per_rig": 4,
+        "records_per_specimen": 40,
+        "split": {"by": "specimen", "test": 0.25},
+    },
+    "storage.records_per_part": 80,
+    "operation.shaft_rpm": "uniform(1400, 1800, per=specimen)",
+    "operation.load_n": "uniform(3000, 5000, per=specimen)",
+    "faults": [
+        {"kind": "inner", "width_mm": 0.3, "angle_deg": "uniform(0, 360)", "roughness_um": 1},
+        {"kind": "outer", "width_mm": 0.3, "angle_deg": "uniform(-40, 40)", "jagged_edge": {}},
+        {"kind": "ball", "width_mm": 0.3, "axis_wander_deg": 4},
+    ],
+    "level": {"kind": "physical", "background_m_s2": 2},
+    "life": {
+        "cadence_h": 40,
+        "growth_mm_per_mrev": 2,
+        "history_h": 200,
+        "load_history_percent": 10,
+        "speed_history_percent": 3,
+        "clearance_um_per_mrev": 0.05,
+        "waviness_nm_per_mrev": 0.5,
+    },
+}

@@ -114,5 +114,10 @@ from .signals import (
     counts_in_words as counts_in_words,
     sum_counts as sum_counts,
 )
-from .simulated import OTHER_BEARING as OTHER_BEARING, SIMULATED as SIMULATED
+from .simulated import (
+    LIFE as LIFE,
+    OPTIONAL as OPTIONAL,
+    OTHER_BEARING as OTHER_BEARING,
+    SIMULATED as SIMULATED,
+)
 from .validation import validate_corpus as validate_corpus

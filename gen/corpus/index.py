@@ -19,6 +19,7 @@ from gen.corpus.blocks import stored_columns
 from gen.corpus.codecs import CODECS
 from gen.corpus.files import append_checksum, remove_checksum, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
+from gen.corpus.layout import is_bare_dimension
 from gen.corpus.manifest import (
     INDEX_NAME,
     Check,
@@ -37,7 +38,7 @@ from gen.corpus.schema import (
     records_in_memory,
     schema_problems,
 )
-from gen.corpus.simulated import OTHER_BEARING, SIMULATED
+from gen.corpus.simulated import OPTIONAL, SIMULATED
 from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.support.errors import CorpusError
 
@@ -78,7 +79,7 @@ def open_corpus(path: Path | str | xr.Dataset, check: Check = "sha256") -> xr.Da
     path = Path(path)
     files = corpus_files(path, check)
     opened = open_part(path) if path.is_file() else _open_folder(path, files)
-    for problem in schema_problems(opened, SIMULATED + OTHER_BEARING):
+    for problem in schema_problems(opened, SIMULATED + OPTIONAL):
         opened.close()
         raise CorpusError(f"{path}: {problem}")
     add_class_names(opened)
@@ -199,7 +200,8 @@ def _widths(paths: Sequence[Path]) -> dict[str, int]:
         with h5py.File(path, "r", locking=False) as part:
             for name in filter(lambda name: name.endswith("_length"), map(str, part)):
                 dimension: Any = part[name]
-                widths[name] = max(widths.get(name, 0), dimension.shape[0])
+                if is_bare_dimension(dimension):
+                    widths[name] = max(widths.get(name, 0), dimension.shape[0])
     return widths
 
 

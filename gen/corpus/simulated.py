@@ -73,6 +73,22 @@ OTHER_BEARING = (
 """Variables of corpora with a second bearing on the shaft."""
 
 
+LIFE = (
+    Variable("age", "f8", "s", "operating", "time since the first turn of the bearing"),
+    Variable("rul", "f8", "s", "label", "remaining life: time to the failure of the bearing, NaN if not known"),
+    Variable("rul_revolutions", "f8", "1", "label", "turns of the shaft to the failure of the bearing, NaN if not known"),
+    Variable("event", "i1", "1", "label", "how the test of the bearing ended", {0: "censored", 1: "failed", 2: UNKNOWN}),
+    Variable("initiation_time", "f8", "s", "label", "age of the bearing at which its spall begins"),
+    Variable("spall_length", "f8", "m", "label", "length of the spall along the rolling direction, 0 before it begins"),
+    Variable("spall_depth", "f8", "m", "label", "depth of the spall, 0 before it begins"),
+    Variable("stage", "i1", "1", "label", "stage of the damage", {0: "intact", 1: "spalled", 2: "critical", 3: UNKNOWN}),
+    Variable("first_detectable_time", "f8", "s", "label", "age at the first snapshot whose spall can be seen, NaN if in none"),
+    Variable("overloaded", "i1", "1", "latent", "whether the load is above the validity of ISO 281", {0: "no", 1: "yes", 2: UNKNOWN}),
+)  # fmt: skip
+"""Variables of corpora whose records are snapshots of lives."""
+OPTIONAL = OTHER_BEARING + LIFE
+
+
 def unknown_value(dtype: np.dtype[Any], attributes: Mapping[Any, Any]) -> Any:
     """Value of a variable in records of a corpus that lacks it: empty text, NaN, ``unjudged`` or ``unknown`` of a class, or else -1.
 

@@ -40,6 +40,7 @@ class Purpose(IntEnum):
     AXIS = 41
     SLIP = 42
     OTHER_BEARING = 50
+    LIFE = 60
 
 
 def stream(seed: int, rig: int, specimen: int, record: int, purpose: Purpose) -> np.random.Generator:

@@ -21,7 +21,7 @@ from gen.physics.inputs import CONSTANT, ROUND, Waviness
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.layout import Shape
 from gen.recipe import Recipe
-from gen.scenarios import Scenario, draw_scenarios
+from gen.scenarios import Scenario, draw_scenarios, first_specimens
 from gen.simulation.damage import is_wavy, untabulated_spalls
 from gen.simulation.inputs import bare_inputs
 from gen.simulation.kernels import is_compiled, load_kernel
@@ -98,6 +98,10 @@ def needed_shapes(recipe: Recipe) -> list[Shape]:
 
 
 def _sample(recipe: Recipe) -> Iterator[Scenario]:
+    if recipe.life is not None:  # the last snapshot of a life has its spall
+        for specimen in first_specimens(recipe).values():
+            of_specimen = recipe.records_of(specimen)
+            yield draw_scenarios(recipe, of_specimen.start, of_specimen.stop)[-1]
     yield from draw_scenarios(recipe, 0, SAMPLE)
     for number in range(SAMPLE, recipe.n_records, -(-recipe.n_records // SAMPLE)):
         yield from draw_scenarios(recipe, number, number + 1)

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import DRAWS, FAULTS, OTHER_BEARING, SIMULATED, SPLITS, identity, make_dataset
+from gen.corpus import DRAWS, FAULTS, LIFE, OTHER_BEARING, SIMULATED, SPLITS, identity, make_dataset
 from gen.corpus.fault_classes import UNKNOWN_CODE
 from gen.measurement.measure import Measured
 from gen.mechanisms.background.section import labels_of
@@ -48,12 +48,19 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
         others = [_of_other(*of_record) for of_record in zip(scenarios, response.other_truth, strict=True)]
         columns |= {name: [other[name] for other in others] for name in others[0]}
         columns |= {"other_fault_snr": measured.other_fault_snr, "other_detectable": measured.other_detectable}
+    lives = [scenario.record.life for scenario in scenarios]
+    if any(lives):
+        columns |= {
+            one.name: [np.nan if (value := getattr(life, one.name)) is None else value for life in lives]
+            for one in LIFE
+        }
+        columns["bearing"] = [f"{one.rig.bearing.designation} #{one.specimen.number}" for one in scenarios]
     return make_dataset(
         measured.signal,
         settings.sample_rate,
         settings.channels,
         columns,
-        extra=SIMULATED + LABELS + (OTHER_BEARING if two_bearings else ()),
+        extra=SIMULATED + LABELS + (OTHER_BEARING if two_bearings else ()) + (LIFE if any(lives) else ()),
         counts_per_unit=measured.counts_per_unit,
         attributes={
             "title": f"Records of recipe {settings.recipe}",

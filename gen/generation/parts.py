@@ -111,9 +111,10 @@ def dataset_of(
 ) -> tuple[xr.Dataset, tuple[str, ...]]:
     """Records with their labels in the layout of the corpus (undecoded), and one sentence for each record that is left out."""
     response = records.response
-    failures = tuple(response.failures[place] for place in sorted(response.failures))
+    # a record behind the end of a life has no sentence
+    failures = tuple(response.failures[place] for place in sorted(response.failures) if response.failures[place])
     dataset = part_dataset(records.measured, response, step_error)
-    if failures:
+    if response.failures:
         dataset = dataset.isel(record=[at for at in range(dataset.sizes["record"]) if at not in response.failures])
     return dataset, failures
 

@@ -66,6 +66,8 @@ class _Part:
     checked: bool
     rows: dict[int, tuple[MadeRecords, int]] = field(default_factory=dict)
     """Final records: each by its number, as a place in records that were measured together."""
+    absent: int = 0
+    """Records that a life does not have because it has ended."""
 
 
 @dataclass(eq=False)
@@ -191,8 +193,11 @@ class _Making(Generic[Result]):
         """Draw the next records."""
         families = self._families.draw(numbers)
         waits = [(open_integrations(family), partial(self._make_ready, family)) for family in families]
+        absent = {*numbers} - {run.scenario.record.number for family in families for run in family}
         with self._change:
             self._growing -= 1
+            for part in filter(None, map(self._part_of, absent)):
+                part.absent += 1
             for integrations, then in waits:
                 self._wait(integrations, then)
         return ()
@@ -227,7 +232,7 @@ class _Making(Generic[Result]):
             for part, numbers, piece in pieces:
                 part.rows |= {number: (piece, place) for place, number in enumerate(numbers)}
                 report(part.place, min(len(part.rows), len(part.numbers) - 1))
-                if len(part.rows) == len(part.numbers):
+                if len(part.rows) + part.absent == len(part.numbers):
                     self._complete.append(part)
             for integrations, then in waits:
                 self._wait(integrations, then)
@@ -245,7 +250,7 @@ class _Making(Generic[Result]):
 
     def _check_steps(self, part: _Part, report: Report) -> Iterable[Result]:
         """Let the step checks of a part wait whose records are final, or write it if it has none."""
-        records = pick([part.rows[number] for number in part.numbers])
+        records = pick([part.rows[number] for number in part.numbers if number in part.rows])
         part.rows.clear()
         scenarios, response = records.measured.scenarios, records.response
         finer = step_checks(scenarios, self._recipe, response) if part.checked else {}
@@ -263,7 +268,7 @@ class _Making(Generic[Result]):
     def _write(self, made: MadePart, _report: Report) -> Iterable[Result]:
         result = self._finish(made)
         with self._change:
-            self._under_way -= len(made.records.measured.scenarios)
+            self._under_way -= len(self._parts[made.place].numbers)
         return (result,)
 
     def _wait(self, integrations: Sequence[Integration], then: Callable[[], None]) -> None:

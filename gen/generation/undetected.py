@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.measurement.lives import with_ends
 from gen.measurement.measure import Measured, measure
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, common_settings, draw_scenarios, simulation_errors, with_level
@@ -43,8 +44,9 @@ class Families:
     def __init__(self, recipe: Recipe) -> None:
         self.recipe = recipe
         self._redraws = recipe.truth.undetected == "redraw" and recipe.truth.twins
+        self._whole = self._redraws or recipe.life is not None
         # all records of a specimen are judged together, and those of a group have one level
-        self.size = recipe.corpus.records_of_a_specimen if self._redraws else recipe.corpus.n_rungs
+        self.size = recipe.corpus.records_of_a_specimen if self._whole else recipe.corpus.n_rungs
         self._tries: dict[int, int] = {}
 
     def numbers(self, of: range) -> range:
@@ -61,6 +63,10 @@ class Families:
         """Records of integrated families, and the families again whose fault is drawn again."""
         every = [run for family in families for run in family]
         made = made_of(every, self._other_levels)
+        if self.recipe.life is not None:
+            measured, behind = with_ends(made.measured, self.recipe.life.end)
+            made = replace(made, measured=measured)
+            made.response.failures.update(dict.fromkeys(behind, ""))
         if not self._redraws:
             return made, []
         unseen = _unseen_places(made)
@@ -88,7 +94,7 @@ class Families:
         """Families of scenarios; ``known`` as for `runs_of`."""
         families: dict[tuple[int, int], Family] = {}
         for scenario, run in zip(scenarios, runs_of(scenarios, known) if scenarios else [], strict=True):
-            group = 0 if self._redraws else scenario.record.number // self.size
+            group = 0 if self._whole else scenario.record.number // self.size
             families.setdefault((scenario.specimen.number, group), []).append(run)
         return list(families.values())
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gen.corpus import (
     DRAWS,
     IDENTITY,
-    OTHER_BEARING,
+    OPTIONAL,
     RECIPE_TEXT,
     SCHEMA,
     SIGNAL,
@@ -137,7 +137,7 @@ def _stored(
     """The records in the layout of the corpus (undecoded)."""
     known = {
         variable.name: variable
-        for variable in SCHEMA + SIMULATED + LABELS + OTHER_BEARING
+        for variable in SCHEMA + SIMULATED + LABELS + OPTIONAL
         if variable.name in rows.variables
     }
     derived = {SIGNAL, "channel", "elapsed_time", *(f"{name}_name" for name in NAMED)}
@@ -165,6 +165,6 @@ def _stored(
         attributes={"title": "Vibration records"}
         | {key: rows.attrs[key] for key in ("title", "history", "source") if key in rows.attrs},
     )
-    for problem in schema_problems(stored, SIMULATED + LABELS + OTHER_BEARING):
+    for problem in schema_problems(stored, SIMULATED + LABELS + OPTIONAL):
         raise CorpusError(problem)
     return stored

@@ -83,7 +83,7 @@ def ageing(
     """
     fatigue = rate / [rating_life(ratio, element, factor) for ratio in load_ratio]
     turns, fatigue, drive = (_sum(step, each) for each in (rate, fatigue, rate * load_ratio**load_exponent * noise))
-    return Ageing(step * np.arange(len(rate)), turns, fatigue, drive)
+    return Ageing(step * np.arange(len(rate), dtype=np.float64), turns, fatigue, drive)
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ module             responsibility
 ================== ========================================================
 machine            bearing, machine, lubricant, specimen
 faults             entries of faults: one kind, several at once, or none
+life               life of the bearings, snapshots, end of a test
 operation          speed and load with their profiles, slip, temperature
 publication        licence, creators and references of the corpus
 sensing            sensors, level, converter
@@ -12,6 +13,7 @@ changes            keys of operation and level that one fault replaces
 fault_entries      keys that all entries of faults have in common
 sections           all sections of a recipe, and the counts that follow from them
 shares             quantities that are a share of another
+lives              lives that cannot be
 loads              loads that no bearing of the recipe can carry
 checks             keys that contradict each other, weights that cannot be met
 model              the checked recipe

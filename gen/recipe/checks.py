@@ -2,6 +2,7 @@
 
 from gen.mechanisms.mechanism import mechanisms_of
 from gen.recipe.faults import fault_class
+from gen.recipe.lives import life_problem
 from gen.recipe.loads import load_problem
 from gen.recipe.machine import CatalogueBearing, designation_problem
 from gen.recipe.operation import OperationSection, Steps, Table
@@ -24,6 +25,7 @@ def check_recipe(recipe: Sections) -> None:
         or _sensor_faults_problem(recipe)
         or share_problem(recipe)
         or next(filter(None, (_operation_problem(recipe, *item) for item in operations(recipe).items())), None)
+        or life_problem(recipe)
     )
     if problem is not None:
         raise ValueError(problem)

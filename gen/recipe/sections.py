@@ -17,6 +17,7 @@ from gen.mechanisms.chain.measuring_chain import SensorFaultsSection
 from gen.mechanisms.path import PathSection
 from gen.recipe.fault_entries import FaultList, fault_entries
 from gen.recipe.faults import Fault
+from gen.recipe.life import LifeSection
 from gen.recipe.machine import (
     BearingSection,
     CatalogueBearing,
@@ -144,6 +145,8 @@ class Sections(Section):
         BeforeValidator(fault_entries, json_schema_input_type=tuple[Fault, ...] | FaultList),
     ]
     """Faults that specimens can have, one entry each, with weights. `faults: {defaults: ..., entries: ...}` gives all entries some keys."""
+    life: LifeSection | None = None
+    """Life of each bearing: its records are snapshots of it, while its spall begins and grows. Faults have one size if it is left out."""
     path: PathSection = PathSection()
     """Transfer path from bearing to sensor, common to all channels without their own."""
     background: BackgroundSection = BackgroundSection()

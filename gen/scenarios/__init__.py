@@ -8,6 +8,7 @@ points        quasi-random points
 bearings      draw the bearing of a rig, its deviations as built, and the bearing at the other end of the shaft
 classes       choose the fault class of each specimen
 operating     operating conditions: per rig, specimen or record, shares, changes
+lives         lives of the bearings, and records as snapshots of them
 records       records of a specimen, with rungs of severity
 draw          draw rigs and specimens, and with them all records
 settings      values that a recipe fixes for all of its records
@@ -28,6 +29,7 @@ from gen.scenarios.model import (
     Rig,
     Scenario,
     Settings,
+    Snapshot,
     Specimen,
     stream,
 )
@@ -44,6 +46,7 @@ __all__ = [
     "Rig",
     "Scenario",
     "Settings",
+    "Snapshot",
     "Specimen",
     "check_scenario",
     "common_settings",

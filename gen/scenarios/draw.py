@@ -23,7 +23,7 @@ from gen.scenarios.classes import fault_of_each_specimen, other_fault_of_each_sp
 from gen.scenarios.model import Pickup, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Operating, operating_of
 from gen.scenarios.points import points_of
-from gen.scenarios.records import SpecimenSource, draw_record, record_points, source_of
+from gen.scenarios.records import SpecimenSource, draw_records, source_of
 from gen.support.errors import RecipeError
 
 
@@ -32,8 +32,8 @@ def draw_scenarios(
 ) -> list[Scenario]:
     """Draw the scenarios of the records ``first`` to ``stop`` (exclusive) of a corpus, at most up to its last.
 
-    The scenario of a record does not depend on the range. ``fault_tries`` gives, by the number of a specimen, how many faults are drawn
-    and left before the one that it has; 0 for specimens that are not in it.
+    The scenario of a record does not depend on the range. A life that has ended has none. ``fault_tries`` gives, by the number of a
+    specimen, how many faults are drawn and left before the one that it has; 0 for specimens that are not in it.
 
     Raises
     ------
@@ -69,8 +69,7 @@ def draw_scenarios(
         sources[number] = source_of(
             recipe, rigs[rig], known[rig], specimen, operating[specimen.entry], rig_draws[rig], draws
         )._replace(other=draw_other_bearing(recipe, rigs[rig], specimen, other_fault))
-    points = record_points(recipe, numbers)
-    return [draw_record(recipe, sources[recipe.specimen_of(number)], number, points) for number in numbers]
+    return list(draw_records(recipe, sources, numbers))
 
 
 def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:

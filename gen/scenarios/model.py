@@ -171,6 +171,30 @@ class Conditions:
 
 
 @dataclass(frozen=True)
+class Snapshot:
+    """Place of a record in the life of its bearing; each value has the name of the variable in the corpus that it becomes."""
+
+    age: float
+    """[s]."""
+    rul: float | None
+    """Time left to the failure [s]; None if the test ended before it and its time is not known."""
+    rul_revolutions: float | None
+    event: int
+    """1 if the bearing failed in its test, else 0."""
+    initiation_time: float
+    """Age at which the spall begins [s]."""
+    spall_length: float
+    """0 before it begins [m]."""
+    spall_depth: float
+    stage: int
+    """0 before the spall begins, 1 while it grows, 2 beyond the critical length."""
+    overloaded: int
+    """1 if the load is above the validity of ISO 281."""
+    first_detectable_time: float | None = None
+    """Age at the first snapshot in which the spall can be seen [s]; None before the measurement, and if it is never seen."""
+
+
+@dataclass(frozen=True)
 class Operation:
     """Operating conditions and level of one record."""
 
@@ -196,6 +220,8 @@ class Operation:
     narrowest_spall: Annotated[float, Field(gt=0)] | None = None
     """Width of the narrowest spall of its group [m]: the step of all records of the group follows it. None for a record in no group, and
     without spalls."""
+    life: Snapshot | None = None
+    """None in recipes without a life."""
 
     @property
     def stream_number(self) -> int:

@@ -1,7 +1,7 @@
 """Draw the records of a specimen: operating conditions, level, profiles of speed and load, and rungs of severity."""
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -15,6 +15,7 @@ from gen.physics.axial import least_axial_load
 from gen.physics.profile import Profile
 from gen.physics.rating import static_rating
 from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, Recipe, fault_class
+from gen.scenarios.lives import SpecimenLife, at_snapshot, draw_life
 from gen.scenarios.model import Operation, OtherBearing, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import CommonNumbers, Level, Operating, common_numbers, draw_conditions
 from gen.scenarios.points import points_of
@@ -35,6 +36,8 @@ class SpecimenSource(NamedTuple):
     """Quantities of rig and specimen."""
     other: OtherBearing | None = None
     """At the other end of the shaft."""
+    life: SpecimenLife | None = None
+    """None in recipes without a life."""
 
 
 def source_of(
@@ -58,7 +61,13 @@ def source_of(
         STATIC_RATING: lambda _: static_rating(rig.bearing),
         LEAST_AXIAL_LOAD: lambda value: least_axial_load(value("load_n"), specimen.bearing.contact_angle),
     }
-    return SpecimenSource(rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known)
+    life = None
+    if recipe.life is not None:
+        common = Draws(stream(recipe.seed, 0, 0, 0, Purpose.LIFE), np.full(64, 0.5), 0, f"specimen {specimen.number}")
+        life = draw_life(recipe, rig, specimen, draw_conditions(operating, common, commons, known))
+    return SpecimenSource(
+        rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known, life=life
+    )
 
 
 def record_points(recipe: Recipe, numbers: range) -> dict[int, NDArray[np.float64]]:
@@ -75,10 +84,22 @@ def record_points(recipe: Recipe, numbers: range) -> dict[int, NDArray[np.float6
     return points
 
 
+def draw_records(recipe: Recipe, sources: Mapping[int, SpecimenSource], numbers: range) -> Iterator[Scenario]:
+    """Draw records of some specimens; a life that has ended has no records at the numbers that are left of its specimen."""
+    points = record_points(recipe, numbers)
+    for number in numbers:
+        specimen = recipe.specimen_of(number)
+        source, place = sources[specimen], number - recipe.records_of(specimen).start
+        if source.life is None:
+            yield draw_record(recipe, source, number, points)
+        elif place < len(source.life.ages):
+            yield at_snapshot(draw_record(recipe, source, number, points), source.life, place)
+
+
 def draw_record(
     recipe: Recipe, source: SpecimenSource, number: int, points: Mapping[int, NDArray[np.float64]]
 ) -> Scenario:
-    """Draw one record of a specimen.
+    """Draw one record of a specimen, without its place in a life.
 
     The records of a group have the streams of its first record, and the combination of grids and the quasi-random point of the group.
 

@@ -35,8 +35,9 @@ def scenario_texts(scenarios: Sequence[Scenario]) -> list[str]:
 
 
 def _fields(item: object) -> dict[str, object]:
-    """Fields of a dataclass by name; the narrowest spall of a group is stored in groups alone."""
-    return {name: value for name, value in vars(item).items() if name != "narrowest_spall" or value is not None}
+    """Fields of a dataclass by name; the narrowest spall of a group is stored in groups alone, a life where there is one."""
+    optional = ("narrowest_spall", "life")
+    return {name: value for name, value in vars(item).items() if name not in optional or value is not None}
 
 
 def read_scenarios(records: "xr.Dataset") -> list[Scenario]:

@@ -29,7 +29,10 @@ def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[SpallInput, ...]
     spalls = scenario.specimen.spalls
     if not spalls:
         return ()
-    seeds = scenario.rng(Purpose.EDGES).integers(2**52, size=len(spalls)).tolist()
+    rng = scenario.rng(Purpose.EDGES)
+    if scenario.record.life is not None:  # a spall keeps its edges while it grows
+        rng = stream(scenario.settings.seed, scenario.rig.number, scenario.specimen.number, 0, Purpose.EDGES)
+    seeds = rng.integers(2**52, size=len(spalls)).tolist()
     made = []
     for number, (spall, bare) in enumerate(zip(spalls, untabulated_spalls(scenario), strict=True)):
         known = bare._replace(scatter=spall.scatter, seed=seeds[number])

@@ -39,6 +39,10 @@ UNITS: Mapping[str, Unit] = {
     "k": Unit("K", 1.0),
     "kg_m3": Unit("kg/m3", 1.0),
     "per_gpa": Unit("1/GPa", 1e-9),
+    "h": Unit("h", 3600.0),
+    "mm_per_mrev": Unit("mm/10^6 turns", 1e-9),
+    "um_per_mrev": Unit("um/10^6 turns", 1e-12),
+    "nm_per_mrev": Unit("nm/10^6 turns", 1e-15),
 }
 """Units by the suffix of a key. Temperatures stay in degrees Celsius and levels in decibels: they have no SI factor."""
 

@@ -86,10 +86,14 @@ class RaceFault(Spalls):
     """Puts the spalls on the inner or on the outer race."""
 
 
+def widest_spall(site: str, bearing: Bearing) -> float:
+    """Largest width of a spall of a race or ball [m]."""
+    return _WIDEST[site] * bearing.radius(site)
+
+
 def check_fits(spall: Spall, bearing: Bearing, item: str) -> None:
     """Refuse a spall that is too wide for its race or ball."""
-    radius = bearing.radius(spall.site)
-    widest = _WIDEST[spall.site] * radius
+    radius, widest = bearing.radius(spall.site), widest_spall(spall.site, bearing)
     if spall.width > widest:
         raise RecipeError(
             f"{item}: a spall of {spall.width * 1e3:g} mm does not fit the {spall.site} radius of {radius * 1e3:.3g} mm; "

@@ -1,0 +1,101 @@
+"""Laws of corpora of lives: labels, ends that are seen in the signal, replay, resumption, workers."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+import gen
+from gen.corpus import LIFE, open_corpus
+from gen.generation.corpus import generate
+from gen.generation.replaying import replay
+from gen.measurement.lives import velocity_rms
+from tests.recipes import LIVES
+from tests.same_corpora import files
+
+PEAK = 150
+SHORT = LIVES | {"corpus": LIVES["corpus"] | {"rigs": 1}, "life": LIVES["life"] | {"end": {"peak_m_s2": PEAK}}}
+
+
+@pytest.fixture(scope="module")
+def lives(recipe_with, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("lives") / "c"
+    made = generate(recipe_with(SHORT), folder)
+    assert made.failures == ()
+    return folder
+
+
+@pytest.fixture(scope="module")
+def records(lives):
+    with open_corpus(lives) as corpus:
+        return corpus.load()
+
+
+def bearings(records):
+    return [of for _, of in records.groupby("bearing")]
+
+
+def test_a_corpus_of_lives_has_its_variables_and_is_valid(records, lives):
+    assert {variable.name for variable in LIFE} <= set(records.variables)
+    assert list(gen.validate_corpus(lives)) == []
+    assert records.sizes["record"] < 160
+
+
+def test_the_bearing_groups_the_snapshots_of_a_life(records):
+    assert len(bearings(records)) == 4
+    for of in bearings(records):
+        assert len(np.unique(of.specimen)) == len(np.unique(of.event)) == len(np.unique(of.split)) == 1
+        np.testing.assert_array_equal(of.age, 40 * 3600 * np.arange(of.sizes["record"]))
+
+
+def test_a_test_ends_at_the_first_snapshot_beyond_its_limit(records):
+    failed = 0
+    for of in bearings(records):
+        centred = of.acceleration - of.acceleration.mean("elapsed_time")
+        peaks = np.abs(centred).max(("channel", "elapsed_time")).values
+        assert (peaks[:-1] < PEAK).all()
+        if peaks[-1] >= PEAK:
+            failed += 1
+            assert of.event[-1] == 1
+            np.testing.assert_allclose(of.rul, of.age[-1] - of.age)
+            assert of.rul_revolutions[-1] == 0
+        elif of.event[0] == 0:
+            assert np.isnan(of.rul).all()
+    assert failed
+
+
+def test_the_first_detection_is_that_of_the_record(records):
+    for of in bearings(records):
+        seen = of.age.values[of.detectable.values == 1]
+        np.testing.assert_array_equal(of.first_detectable_time, seen[0] if len(seen) else np.nan)
+
+
+def test_a_snapshot_in_the_middle_of_a_life_is_made_again(lives, records):
+    damaged = np.flatnonzero(records.stage.values > 0)
+    again = replay(lives, int(damaged[len(damaged) // 2]))
+    assert again.identical
+    for variable in LIFE:
+        np.testing.assert_array_equal(
+            again.dataset[variable.name], records[variable.name][[damaged[len(damaged) // 2]]]
+        )
+
+
+def test_two_workers_and_an_interrupted_call_give_the_same_files(lives, recipe_with, tmp_path):
+    generate(recipe_with(SHORT), tmp_path / "two", workers=2)
+    assert files(tmp_path / "two") == files(lives)
+    shutil.copytree(lives, tmp_path / "half")
+    (tmp_path / "half" / "parts" / "part-00001.nc").unlink()
+    generate(recipe_with(SHORT), tmp_path / "half")
+    assert files(tmp_path / "half") == files(lives)
+
+
+def test_a_single_file_of_lives_is_kept_by_a_second_call(recipe_with, tmp_path):
+    few = recipe_with(SHORT | {"records": 80})
+    first, second = (generate(few, tmp_path / "c.nc").records for _ in range(2))
+    assert first == second < 80
+
+
+def test_the_velocity_of_a_sine_is_its_amplitude_over_its_frequency():
+    time = np.arange(12_800) / 12_800
+    tone = np.stack([3 * np.sin(2 * np.pi * 50 * time), 100 * np.sin(2 * np.pi * 3000 * time)])
+    assert velocity_rms(tone, 12_800.0) == pytest.approx(3 / (2 * np.pi * 50) / np.sqrt(2), rel=0.01)
