@@ -48,7 +48,7 @@ LIVES = {
     },
     "storage.records_per_part": 80,
     "operation.shaft_rpm": "uniform(1400, 1800, per=specimen)",
-    "operation.load_n": "uniform(3000, 5000, per=specimen)",
+    "operation.load_n": "uniform(4500, 6500, per=specimen)",
     "faults": [
         {"kind": "inner", "width_mm": 0.3, "angle_deg": "uniform(0, 360)", "roughness_um": 1},
         {"kind": "outer", "width_mm": 0.3, "angle_deg": "uniform(-40, 40)", "jagged_edge": {}},

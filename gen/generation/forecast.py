@@ -63,7 +63,7 @@ def expected_work(recipe: Recipe) -> float:
     numbers = some_of(recipe.n_records, SAMPLE)
     some = [scenario for number in numbers for scenario in draw_scenarios(recipe, number, number + 1)]
     groups = [found for found in groups_of(some, recipe) if isinstance(found, Group)]
-    return work_of(recipe, groups) if groups else float(recipe.n_records)
+    return work_of(recipe, groups) * len(some) / len(numbers) if groups else float(recipe.n_records)
 
 
 def work_of(recipe: Recipe, groups: Sequence[Group]) -> float:

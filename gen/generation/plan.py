@@ -77,7 +77,10 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         If the recipe cannot be simulated, or none of its records can.
     """
     whole = read_recipe(recipe, seed=seed, records=records)
-    drawn = [scenario for first, stop in some_ranges(whole) for scenario in draw_scenarios(whole, first, stop)]
+    ranges = some_ranges(whole)
+    drawn = [scenario for first, stop in ranges for scenario in draw_scenarios(whole, first, stop)]
+    present = len(drawn) / sum(stop - first for first, stop in ranges)  # lives that have ended have no more records
+    count = round(whole.n_records * present)
     checked = [drawn[place] for place in some_of(len(drawn), MOST_CHECKED)]
     groups, failures = list[Group](), list[str]()
     for found in groups_of(checked, whole):
@@ -85,7 +88,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     if not groups:
         raise SimulationError(failures[0])
     recording, needed = whole.recording, needed_shapes(whole)
-    of_drawn, of_checked = whole.n_records / len(drawn), whole.n_records / len(checked)
+    of_drawn, of_checked = count / len(drawn), count / len(checked)
     steps = [group.steps for group in groups]
     return Plan(
         recipe=whole.name,
@@ -93,15 +96,15 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         seed=whole.seed,
         rigs=whole.n_rigs,
         specimens=whole.n_specimens,
-        records=whole.n_records,
+        records=count,
         parts=whole.n_parts,
         sample_rate=recording.sample_rate_hz,
         duration=recording.duration_s,
         channels=tuple(channel.name for channel in recording.channels),
         kernels=len(needed),
         uncompiled=sum(not is_compiled(shape) for shape in needed),
-        bytes=_bytes(whole),
-        estimated_seconds=START_S + seconds_of(work_of(whole, groups)),
+        bytes=_bytes(whole, count),
+        estimated_seconds=START_S + seconds_of(present * work_of(whole, groups)),
         drawn=len(drawn),
         checked=len(checked),
         left_out=round(len(failures) * of_checked),
@@ -126,8 +129,8 @@ def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
     return [(first, min(first + min(size, MOST_DRAWN), recipe.n_records)) for first in firsts]
 
 
-def _bytes(recipe: Recipe) -> int:
+def _bytes(recipe: Recipe, records: int) -> int:
     """Estimated size of the corpus [B]."""
-    samples = recipe.n_records * recipe.n_samples * len(recipe.recording.channels)
+    samples = records * recipe.n_samples * len(recipe.recording.channels)
     of_signals = samples * STORED_BYTES[recipe.recording.converter.kind] * CODECS[recipe.storage.codec].share
-    return round(of_signals + recipe.n_records * BYTES_PER_RECORD) + (recipe.n_parts + 1) * BYTES_PER_FILE
+    return round(of_signals + records * BYTES_PER_RECORD) + (recipe.n_parts + 1) * BYTES_PER_FILE

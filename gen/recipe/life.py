@@ -41,12 +41,15 @@ class LifeSection(Section):
     """Life modification factor of ISO 281: lubrication, contamination and material."""
     first_length_scatter: Distribution = within(0, 2, default=0.3)
     """Standard deviation of the logarithm of the first length of a spall, about the `width_mm` of its fault."""
+    full_depth_mm: Distribution = within(0, 60, default=2.0)
+    """Length at which a spall has the `depth_um` of its fault. A shorter one is as much shallower, over the width of the contact: a young
+    spall is narrower than the contact is."""
     growth_mm_per_mrev: Distribution = within(0, 1e5, open_low=True, default=2.0)
     """Growth of a spall of 1 mm in a million turns at a load of the dynamic rating."""
     growth_exponent: Distribution = within(0, 3, default=1.0)
     """Exponent of the length in the growth; 1 grows exponentially, more ever faster."""
     load_exponent: Distribution = within(0, 10, default=3.0)
-    """Exponent of the load in the growth."""
+    """How steeply the growth rises with the load: the exponent of load over dynamic rating."""
     critical_mm: Distribution = within(0, 60, open_low=True, default=2.0)
     """Length beyond which a spall grows faster."""
     acceleration: Distribution = within(1, 1000, default=4.0)

@@ -49,7 +49,7 @@ def draw_life(recipe: Recipe, rig: Rig, specimen: Specimen, conditions: Conditio
     """
     assert recipe.life is not None  # noqa: S101
     rng, *rngs = stream(recipe.seed, rig.number, specimen.number, 0, Purpose.LIFE).spawn(5)
-    draws = Draws(rng, np.empty(0), specimen.number, f"specimen {specimen.number}")
+    draws = Draws(rng, specimen.number, f"specimen {specimen.number}")
     drawn, element = draws.section(recipe.life), rig.bearing.rolling_element
     slots, cadence = recipe.corpus.records_per_specimen, to_si(recipe.life.cadence_h, "h")
     ratio = conditions.load / (rig.bearing.dynamic_rating or 1.0)
@@ -106,6 +106,7 @@ def at_snapshot(scenario: Scenario, lived: SpecimenLife, number: int) -> Scenari
         for name, of in (("diametral_clearance", "clearance"), ("waviness", "waviness"))
     }
     length, (spall,) = float(lived.life.length_at(age)), specimen.spalls
+    depth = spall.depth * length / max(lived.drawn["full_depth"], length) if length else 0.0
     snapshot = Snapshot(
         age=age,
         rul=lived.failure - age,
@@ -113,12 +114,14 @@ def at_snapshot(scenario: Scenario, lived: SpecimenLife, number: int) -> Scenari
         event=int(lived.failed),
         initiation_time=lived.life.initiation,
         spall_length=length,
-        spall_depth=spall.depth if length else 0.0,
+        spall_depth=depth,
         stage=int(length > 0) + int(length > lived.life.law.critical),
         overloaded=int(lived.load_ratio * lived.load[number] > HIGHEST_RATIO),
     )
     specimen = replace(specimen, properties=specimen.properties | worn)
-    specimen = replace(specimen, spalls=(replace(spall, width=length),)) if length else specimen.at_severity(0)
+    specimen = (
+        replace(specimen, spalls=(replace(spall, width=length, depth=depth),)) if length else specimen.at_severity(0)
+    )
     conditions = replace(
         conditions,
         load=conditions.load * float(lived.load[number]),

@@ -63,7 +63,7 @@ def source_of(
     }
     life = None
     if recipe.life is not None:
-        common = Draws(stream(recipe.seed, 0, 0, 0, Purpose.LIFE), np.full(64, 0.5), 0, f"specimen {specimen.number}")
+        common = Draws(stream(recipe.seed, 0, 0, 0, Purpose.LIFE), 0, f"specimen {specimen.number}", np.full(64, 0.5))
         life = draw_life(recipe, rig, specimen, draw_conditions(operating, common, commons, known))
     return SpecimenSource(
         rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known, life=life
