@@ -192,7 +192,7 @@ def draw_envelope_spectrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | 
         if one is not None:
             order, spectrum = squared_envelope(one)
             axes.plot(order[order <= top], spectrum[order <= top], linewidth=0.8, **look)
-    axes.set(ylabel="squared envelope [1]", ylim=(0, None))
+    axes.set(ylabel="envelope² / mean", ylim=(0, None))
     low, high = shown.band
     axes.set_title(f"Squared envelope spectrum of the whitened band {low / 1e3:.3g}-{high / 1e3:.3g} kHz", pad=30)
 

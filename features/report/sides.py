@@ -56,7 +56,7 @@ def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
         _draw_envelope(envelope, shown)
     panels[0, 0].set_ylabel("acceleration / rms")
     panels[1, 0].set_ylabel("share of the energy [dB]")
-    panels[2, 0].set_ylabel("squared envelope [1]")
+    panels[2, 0].set_ylabel("envelope² / mean")
     return figure
 
 

@@ -162,7 +162,7 @@ def _cepstrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None
             at = np.arange(values.size) / rate
             drawn = (at > SHORTEST_CEPSTRUM) & (at < CEPSTRUM_TURNS)
             axes.plot(at[drawn], values[drawn], linewidth=0.6, **look)
-    axes.set(xlabel="quefrency [revolutions]", ylabel="real cepstrum [1]", xlim=(0, CEPSTRUM_TURNS))
+    axes.set(xlabel="quefrency [revolutions]", ylabel="real cepstrum", xlim=(0, CEPSTRUM_TURNS))
     axes.set_title("Cepstrum", pad=30)
 
 

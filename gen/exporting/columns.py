@@ -35,7 +35,7 @@ class Column(NamedTuple):
     role: str
     meaning: str
     flags: Mapping[int, str]
-    """Names of the values of a class variable by their codes; empty otherwise."""
+    """Names of the values that a class variable has in the chosen records, by their codes; empty otherwise."""
 
     def of(self, records: xr.Dataset) -> NDArray[Any]:
         """Values in some records; the names of its classes if it is a class variable."""
@@ -71,7 +71,7 @@ class Export:
         schema = [variable.name for variable in SCHEMA]
         further = [name for name in per_record(corpus) if name not in schema and name != DRAWS]
         ordered = [name for name in (*schema, *further, DRAWS) if name in corpus.variables]
-        return [_column(corpus, *pair) for pair in zip(plain_names(ordered, _RESERVED), ordered, strict=True)]
+        return [_column(self.chosen, *pair) for pair in zip(plain_names(ordered, _RESERVED), ordered, strict=True)]
 
     @cached_property
     def title(self) -> str:
@@ -111,8 +111,10 @@ def plain_names(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:
     return different
 
 
-def _column(corpus: xr.Dataset, name: str, variable: str) -> Column:
-    array = corpus[variable].variable
+def _column(chosen: Chosen, name: str, variable: str) -> Column:
+    array = chosen.corpora[0][variable].variable
+    flags = class_names(array.attrs)
+    found = set(chosen.values(variable).tolist()) if flags else set()
     units, role, meaning = (str(array.attrs.get(key, "")) for key in ("units", "role", "long_name"))
     return Column(
         name,
@@ -121,5 +123,5 @@ def _column(corpus: xr.Dataset, name: str, variable: str) -> Column:
         units,
         role,
         meaning,
-        class_names(array.attrs),
+        {code: name for code, name in flags.items() if code in found},
     )

@@ -13,7 +13,7 @@ import numpy as np
 from gen.corpus.card.markdown import plain_text
 from gen.corpus.schema import SPLITS
 from gen.exporting.columns import Column, Export
-from gen.exporting.parquet_files import class_names, write_shards
+from gen.exporting.parquet_files import known_classes, write_shards
 
 _LICENCES = (
     "apache-2.0", "bsd-2-clause", "bsd-3-clause", "cc0-1.0", "cc-by-4.0", "cc-by-nc-4.0", "cc-by-nc-nd-4.0", "cc-by-nc-sa-4.0",
@@ -109,10 +109,10 @@ def _features(export: Export) -> list[dict[str, Any]]:
 
 
 def _dtype(column: Column) -> Any:
-    classes = class_names(column)
-    if classes:
-        return {"class_label": {"names": {str(code): plain_text(name) for code, name in enumerate(classes)}}}
-    return "string" if column.dtype is None or column.flags else str(column.dtype)
+    if column.flags:
+        names = known_classes(column).values()
+        return {"class_label": {"names": {str(place): plain_text(name) for place, name in enumerate(names)}}}
+    return "string" if column.dtype is None else str(column.dtype)
 
 
 _READING = """\

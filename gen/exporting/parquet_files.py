@@ -35,7 +35,7 @@ def write_parquet_file(export: Export, path: Path) -> None:
 def write_shards(export: Export, folder: Path, prefix: str, places: NDArray[np.intp], *, names: bool) -> None:
     """Write some of the chosen records as Parquet files of up to ``FILE_BYTES``.
 
-    ``names`` stores classes by their names, and otherwise by their codes, with null for a class that is not known.
+    ``names`` stores classes by their names, and otherwise by their places among `known_classes`, with null for one that is not known.
     """
     folder.mkdir(exist_ok=True)
     size = max(1, FILE_BYTES // (4 * len(export.channels) * export.chosen.samples))
@@ -54,10 +54,9 @@ def _write(export: Export, path: Path, places: NDArray[np.intp] | None, *, names
             file.write_table(_table(export, block, schema, names=names))
 
 
-def class_names(column: Column) -> list[str]:
-    """Names of the classes of a variable in the order of their codes from 0, without "unknown"; none if it is no such variable."""
-    known = {code: name for code, name in column.flags.items() if name != "unknown"}
-    return [known[code] for code in range(len(known))] if sorted(known) == list(range(len(known))) else []
+def known_classes(column: Column) -> dict[int, str]:
+    """Names of the classes in the chosen records by their codes, ascending, without "unknown"."""
+    return {code: name for code, name in sorted(column.flags.items()) if name != "unknown"}
 
 
 def _schema(export: Export, *, names: bool) -> "pa.Schema":
@@ -92,9 +91,9 @@ def _type(column: Column, *, names: bool) -> "pa.DataType":
 
     if column.flags and names:
         return pa.dictionary(pa.int8(), pa.string())
-    if class_names(column):
+    if column.flags:
         return pa.int64()
-    return pa.string() if column.dtype is None or column.flags else pa.from_numpy_dtype(column.dtype)
+    return pa.string() if column.dtype is None else pa.from_numpy_dtype(column.dtype)
 
 
 def _table(export: Export, block: Block, schema: "pa.Schema", *, names: bool) -> "pa.Table":
@@ -102,9 +101,9 @@ def _table(export: Export, block: Block, schema: "pa.Schema", *, names: bool) ->
 
     columns: list[Any] = [pa.array(block.numbers)]
     for column in export.columns:
-        if class_names(column) and not names:
-            codes = block.dataset[column.variable].values
-            columns.append(pa.array(codes.astype(np.int64), mask=codes >= len(class_names(column))))
+        if column.flags and not names:
+            known, codes = [*known_classes(column)], block.dataset[column.variable].values
+            columns.append(pa.array(np.searchsorted(known, codes), pa.int64(), mask=~np.isin(codes, known)))
         elif column.flags and names:
             columns.append(_categories(column.of(block.dataset)))
         else:

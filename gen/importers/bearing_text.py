@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Self
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import AliasChoices, Field, ValidationError, model_validator
 
 from gen.importers.label_values import Keys, Millimetres, Name
 from gen.physics.bearing import Bearing, FaultOrders, orders
@@ -21,9 +21,11 @@ class Geometry(Keys):
     """A bearing that is not in the catalogue."""
 
     designation: Name = "own"
-    n_balls: Annotated[int, Field(ge=3, le=1000)]
+    n_balls: Annotated[int, Field(ge=3, le=1000, validation_alias=AliasChoices("n_balls", "n_rollers"))]
     pitch_diameter_mm: Annotated[Millimetres, Field(ge=1)]
-    ball_diameter_mm: Annotated[Millimetres, Field(ge=0.01)]
+    ball_diameter_mm: Annotated[
+        Millimetres, Field(ge=0.01, validation_alias=AliasChoices("ball_diameter_mm", "roller_diameter_mm"))
+    ]
     contact_angle_deg: Annotated[float, Field(ge=0, lt=90)] = 0.0
 
     @model_validator(mode="after")
@@ -47,7 +49,7 @@ def bearing_orders(bearing: str | Mapping[str, Any]) -> FaultOrders:
 def bearing_from_text(text: str) -> Bearing:
     """Bearing with a designation of the catalogue, or with the keys of a geometry, separated by commas.
 
-    >>> bearing_from_text("n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938").n_balls
+    >>> bearing_from_text("n_rollers=8,pitch_diameter_mm=33.5,roller_diameter_mm=7.938").n_balls
     8
 
     Raises
@@ -97,4 +99,5 @@ def _of_geometry(values: Mapping[str, Any]) -> Bearing:
         to_si(given.pitch_diameter_mm, "mm"),
         to_si(given.ball_diameter_mm, "mm"),
         to_si(given.contact_angle_deg, "deg"),
+        rolling_element="roller" if "n_rollers" in values else "ball",
     )

@@ -22,19 +22,38 @@ SMALLEST_BALL, LARGEST_BALL = 0.05, 0.45
 """Diameters of balls over the pitch diameter."""
 
 
+OF_ROLLERS = {"n_rollers": "n_balls", "roller_diameter_mm": "ball_diameter_mm"}
+"""Keys of the dimensions of a roller bearing, by which the keys of balls are read too."""
+
+
+def _as_balls(given: Any) -> Any:
+    """Dimensions with the keys of balls, if they have keys of rollers."""
+    if not isinstance(given, Mapping) or not (keys := given.keys() & OF_ROLLERS.keys()):
+        return given
+    if "roller_length_mm" not in given:
+        raise ValueError(
+            f"{min(keys)}: a bearing with rollers needs roller_length_mm; balls have n_balls and ball_diameter_mm."
+        )
+    if twice := given.keys() & {OF_ROLLERS[key] for key in keys}:
+        raise ValueError(f"{min(keys)}: {min(twice)} says the same; give one of them.")
+    return {OF_ROLLERS.get(key, key): value for key, value in given.items()}
+
+
 class OwnBearing(Section):
     """A bearing that is not in the catalogue."""
 
     n_balls: Annotated[StrictInt, Field(ge=5, le=MAX_BALLS)]
-    """Number of balls, or of rollers; BPFO and BPFI grow with it."""
+    """Number of balls, or of rollers (`n_rollers`); BPFO and BPFI grow with it."""
     pitch_diameter_mm: Annotated[Number, Field(ge=5, le=1000)]
     """Diameter of the circle through the centres of the balls."""
     ball_diameter_mm: Annotated[Number, Field(gt=0, le=500)]
-    """Diameter of a ball, or of a roller; all of them must fit on the pitch circle."""
+    """Diameter of a ball, or of a roller (`roller_diameter_mm`); all of them must fit on the pitch circle."""
     contact_angle_deg: Annotated[Number, Field(ge=-40, le=40)] = 0.0
     """Contact angle on the drawing; it enters the fault frequencies."""
     roller_length_mm: Annotated[Number, Field(gt=0, le=1000)] | None = None
     """Length of a roller that touches the raceways; if given, the bearing has rollers instead of balls."""
+
+    _keys = model_validator(mode="before")(_as_balls)
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -112,15 +131,18 @@ class GeometryBearing(Section):
     designation: Name = "geometry"
     """Name of the bearing in the corpus."""
     n_balls: Distribution = within(5, MAX_BALLS)
-    """Number of balls, or of rollers, rounded to a whole number; BPFO and BPFI grow with it."""
+    """Number of balls, or of rollers (`n_rollers`), rounded to a whole number; BPFO and BPFI grow with it."""
     pitch_diameter_mm: Distribution = within(5, 1000, open_low=True)
     """Diameter of the circle through the centres of the balls."""
     ball_diameter_mm: Distribution = within(0, 500, open_low=True)
-    """Diameter of a ball, or of a roller: 0.05 to 0.45 of the pitch diameter; of a range, reduced where neighbouring balls would touch."""
+    """Diameter of a ball, or of a roller (`roller_diameter_mm`): 0.05 to 0.45 of the pitch diameter; of a range, reduced where neighbouring
+    balls would touch."""
     contact_angle_deg: Distribution = within(-40, 40, default=0.0)
     """Contact angle on the drawing; it enters the fault frequencies."""
     roller_length_mm: Distribution = within(0, 1000, default=0.0)
     """Length of a roller that touches the raceways; 0 for balls."""
+
+    _keys = model_validator(mode="before")(_as_balls)
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -160,7 +182,7 @@ def _with_kind(value: Any) -> Any:
     if (
         isinstance(value, Mapping)
         and "kind" not in value
-        and value.keys() & {"n_balls", "pitch_diameter_mm", "ball_diameter_mm"}
+        and value.keys() & {"n_balls", "pitch_diameter_mm", "ball_diameter_mm", *OF_ROLLERS}
     ):
         return {"kind": "geometry", **value}
     return value

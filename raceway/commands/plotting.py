@@ -25,7 +25,9 @@ VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "wat
     metavar="I",
     help="Of a corpus: number of the record, from 0; without it, an example of each class is drawn.",
 )
-@click.option("--view", type=click.Choice(VIEWS), help="One view; by default waveform, PSD and envelope spectrum.")
+@click.option(
+    "--view", type=click.Choice(VIEWS), help="One view of a record; by default waveform, PSD and envelope spectrum."
+)
 @file_option("PICTURE", "Picture: .png, .svg or .pdf.", PICTURES, kind="picture")
 @click.option("--healthy", metavar="I|FILE", help="Record of the same corpus, or recording, drawn under it as healthy.")
 @click.option("--bearing", metavar="BEARING", help="Of a recording: designation such as 6205, or a geometry.")
@@ -59,7 +61,8 @@ def plot(
       raceway plot run_up.wav --bearing 6205 --rpm 600-3000 --view orders -o run_up.png
 
     The views: waveform, psd (power spectral density), envelope (spectrum of the squared envelope), kurtogram (kurtosis by band),
-    coherence (spectral coherence), orders (order spectrum of the signal), waterfall (envelope spectra over time), cepstrum.
+    coherence (spectral coherence), orders (order spectrum of the signal), waterfall (envelope spectra over time), cepstrum. Without
+    --record, a corpus is drawn as waveform and envelope spectrum of one record of each class.
 
     Lines of the fault are shaded, their sidebands dotted, lines of other faults dashed. A recording has no known fault. At a speed that
     varies, --rpm is its range; the speed is then found in the signal, and the lines are drawn over orders of the shaft.

@@ -156,8 +156,8 @@ def show_facts(facts: dict[str, Any]) -> None:
     """Print the facts of ``describe``; an unfinished corpus without a part has no contents yet."""
     overrides = {key: value for key, value in (facts.get("overrides") or {}).items() if value is not None}
     with_overrides = "".join(f", {key} {value}" for key, value in overrides.items())
-    made_by = [f"recipe {facts['recipe']}{with_overrides}"] if "recipe" in facts else []
-    made_by += [f"import {facts['importer']}"] if "importer" in facts else []
+    made_by = [f"recipe {facts['recipe']}{with_overrides}"] if facts.get("recipe") else []
+    made_by += [f"import {facts['importer']}"] if facts.get("importer") else []
     show.text(facts.get("title", str(facts["corpus"])), "")
     known = {"corpus": facts["corpus"], "made by": ", ".join(made_by)}
     if license_name := facts.get("publication", {}).get("license"):

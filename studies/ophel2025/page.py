@@ -93,7 +93,7 @@ def draw_figure(name: str, made: Run) -> Figure:
         else:
             shown = x[: round(SHOWN_S * FS)]
             axes.plot(np.arange(len(shown)) / FS, shown, color="black", linewidth=0.5)
-        axes.set_title(f"{'housing' if channel[1] == '2' else 'shaft'}, {channel}")
+        axes.set_title(f"{'housing' if channel[1] == '2' else 'shaft'}, {channel}", pad=27 if spectral else None)
         axes.set_ylabel("power [µm²]" if spectral else "displacement [µm]")
         _draw_printed(axes, name, channel, spectral)
     figure.axes[-1].set_xlabel("frequency [Hz]" if spectral else "time [s]")
@@ -103,7 +103,7 @@ def draw_figure(name: str, made: Run) -> Figure:
 def _draw_printed(axes: Axes, figure: str, channel: str, spectral: bool) -> None:
     """Values and bands that the paper prints for a channel."""
     about = [one for one in STATEMENTS.values() if (one.figure, one.channel) == (figure, channel) and one.printed]
-    for row, values in enumerate(dict.fromkeys(one.printed for one in about)):
+    for values in dict.fromkeys(one.printed for one in about):
         text = "–".join(f"{value:g}" for value in values)
         if not spectral:
             axes.axhline(values[0], color=BLUE, linestyle="--", linewidth=1)
@@ -113,4 +113,8 @@ def _draw_printed(axes: Axes, figure: str, channel: str, spectral: bool) -> None
             axes.axvspan(*values, color=BLUE, alpha=0.15, linewidth=0)
         else:
             axes.axvline(max(values), color=BLUE, linestyle="--", linewidth=1)
-        axes.text(max(values) + 8, 0.96 - 0.13 * row, text, color=BLUE, va="top", transform=axes.get_xaxis_transform())
+        above = 2 if len(values) == 1 else 12  # points: bands have a row of their own
+        axes.annotate(
+            text, (sum(values) / len(values), 1), (0, above), ("data", "axes fraction"), "offset points",
+            color=BLUE, ha="center", va="bottom", annotation_clip=False,
+        )  # fmt: skip

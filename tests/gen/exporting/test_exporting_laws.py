@@ -262,13 +262,15 @@ def test_texts_of_strangers_stay_texts(tmp_path):
     assert pq.read_table(tmp_path / "parquet/data")["bearing"].to_pylist()[0] == wicked
 
 
-def test_a_fault_that_is_not_known_is_null_for_hugging_face(tmp_path):
+def test_hugging_face_gets_the_classes_that_are_there_and_null_for_a_fault_that_is_not_known(tmp_path):
     part = dataset(0, 3)
     part["fault"] = ("record", np.array([1, 127, 5], np.int8), part["fault"].attrs)
     part["split"] = ("record", np.zeros(3, np.int8), part["split"].attrs)
     write_parts(tmp_path / "c", [part])
     gen.copy(tmp_path / "c", tmp_path / "out", to="huggingface")
-    assert pq.read_table(tmp_path / "out/data")["fault"].to_pylist() == [1, None, 5]
+    assert pq.read_table(tmp_path / "out/data")["fault"].to_pylist() == [0, None, 1]
+    card = (tmp_path / "out/README.md").read_text()
+    assert '{"name": "fault", "dtype": {"class_label": {"names": {"0": "inner", "1": "compound"}}}}' in card
     gen.copy(tmp_path / "c", tmp_path / "tables", to="parquet")
     assert pq.read_table(tmp_path / "tables/data")["fault"].to_pylist() == ["inner", "unknown", "compound"]
 

@@ -45,6 +45,13 @@ def test_a_designation_can_be_a_number_in_python():
     assert gen.make_recipe(OUTER, bearing=[6205, "6206"]) == gen.make_recipe(OUTER, bearing=["6205", "6206"])
 
 
+def test_a_roller_bearing_has_the_same_hash_by_the_keys_of_rollers_and_of_balls():
+    balls = {"n_balls": 12, "pitch_diameter_mm": 40, "ball_diameter_mm": 7, "roller_length_mm": 8}
+    rollers = {"n_rollers": 12, "pitch_diameter_mm": 40, "roller_diameter_mm": 7, "roller_length_mm": 8}
+    one, other = (gen.make_recipe(bearing=bearing) for bearing in (balls, rollers))
+    assert recipe_hash(one) == recipe_hash(other)
+
+
 def test_every_name_has_a_section_unless_several_share_it():
     shared = [name for name, places in _places().items() if len(places) > 1]
     assert len(_places()) > 100
