@@ -5,6 +5,7 @@ module         responsibility
 ============== ==================================================================
 cwru           Case Western Reserve University set, drive end, 12 kHz
 mfpt           MFPT fault data set of Bechhoefer
+femto          PRONOSTIA, run to failure, of the IEEE PHM 2012 challenge
 generic        recordings of the user, described by a table of labels
 label_tables   tables of labels, and the keys that all rows share
 labels         keys of one file of recordings

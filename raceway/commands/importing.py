@@ -85,6 +85,22 @@ def mfpt(source: Path, output: Path, window: float, as_json: bool) -> None:
 @import_.command()
 @_source
 @_output
+@json_option
+def femto(source: Path, output: Path, as_json: bool) -> None:
+    """PRONOSTIA run-to-failure tests of FEMTO-ST, IEEE PHM 2012.
+
+    SRC is the folder of the published folders Bearing1_1, ...; they may be in subfolders. Each file is one record of a life.
+
+      raceway import femto Learning_set -o pronostia
+    """
+    from gen.importers import import_femto
+
+    _run(lambda report: import_femto(source, output, progress=report), as_json)
+
+
+@import_.command()
+@_source
+@_output
 @_window
 @click.option("--folder", type=A_PATH, metavar="DIR", help="Folder of the recordings; by default that of SRC.")
 @click.option(
