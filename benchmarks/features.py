@@ -25,7 +25,7 @@ PER_PART = 250
 def rows(pairs: int = 3, *, records: int = 128, theirs: int = 16) -> Iterator[Line]:
     """Lines of the table; ``records`` per call for our features, ``theirs`` for TSFEL."""
     if not importlib.util.find_spec("tsfel"):
-        yield Skipped("features tsfel", "tsfel is not installed; pip install 'raceway[bench]'.")
+        yield Skipped("features tsfel", "tsfel is not installed; pip install tsfel.")
         return
     tsfel = importlib.import_module("tsfel")
     domains = tsfel.get_features_by_domain(["spectral", "statistical"])

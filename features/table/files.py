@@ -49,7 +49,7 @@ def check_destination(path: Path | str) -> None:
         message = f"{path}: {path.suffix or 'no suffix'} is no format of feature tables; use .nc or .parquet."
         raise CorpusError(message)
     if path.suffix == ".parquet" and find_spec("pyarrow") is None:
-        message = f"{path}: Parquet needs pyarrow; pip install 'raceway[parquet]', or write .nc instead."
+        message = f"{path}: Parquet needs pyarrow; pip install pyarrow, or write .nc instead."
         raise CorpusError(message)
     check_result(path, "feature table")
 

@@ -31,8 +31,8 @@ FORMS: Mapping[str, Callable[[Export, Path], str]] = {
 SUFFIXES = (".nc", ".parquet", ".zarr")
 """Suffixes of targets of one file, or of one store; a target without is a folder."""
 _READ_BY_OTHERS = "NAME.nc is netCDF, which MATLAB, R, Julia and Octave read"
-_NEEDS = {"parquet": ("pyarrow", "parquet"), "huggingface": ("pyarrow", "parquet"), "zarr": ("zarr", "zarr")}
-"""Package that a form needs, and the extra that brings it."""
+_NEEDS = {"parquet": "pyarrow", "huggingface": "pyarrow", "zarr": "zarr"}
+"""Package that a form needs and Raceway does not bring."""
 
 
 class Copied(NamedTuple):
@@ -158,7 +158,7 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
         raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")
     if codec is not None and form not in ("folder", "nc"):
         raise CorpusError(f"codec: --codec is for corpora; leave it out for {form}.")
-    package, extra = _NEEDS.get(form, ("", ""))
-    if package and find_spec(package) is None:
-        raise CorpusError(f"{form}: needs {package}; pip install 'raceway[{extra}]', or choose another form.")
+    package = _NEEDS.get(form)
+    if package is not None and find_spec(package) is None:
+        raise CorpusError(f"{form}: needs {package}; pip install {package}, or choose another form.")
     return form

@@ -30,9 +30,7 @@ def read_sheet(path: Path, sheet: str | None, column: int | str | None) -> Value
     try:
         from python_calamine import CalamineWorkbook, SheetTypeEnum, SheetVisibleEnum
     except ImportError:
-        raise UnusableError(
-            "is an Excel file, which needs python-calamine; install it with pip install raceway[excel]"
-        ) from None
+        raise UnusableError("is an Excel file, which needs python-calamine; pip install python-calamine") from None
     with guarded(path, "spreadsheet"):
         active = _check_size(path)
         with CalamineWorkbook.from_path(str(path)) as book:

@@ -13,6 +13,7 @@ import click
 
 from raceway.console.signals import INTERRUPTED, leave_if_interrupted
 
+OWN = ("gen", "features", "raceway")
 DONE, FOUND_WANTING, BAD_INPUT, INTERNAL_ERROR, NO_READER = 0, 1, 2, 70, 141
 
 
@@ -63,6 +64,9 @@ def _verdict(error: BaseException) -> tuple[int, str]:
             return BAD_INPUT, f"{where}{reason}; choose another place, or correct that one."
         case OSError() | RuntimeError() if "NetCDF" in str(error) or "HDF" in str(error):
             return BAD_INPUT, f"a file of the corpus cannot be read ({error}); raceway validate DIR names it."
+        case ModuleNotFoundError(name=str() as name) if name.partition(".")[0] not in OWN:
+            package = name.partition(".")[0]
+            return BAD_INPUT, f"this needs {package}, which is not installed; pip install {package}."
         case _:
             what = f"{type(error).__name__}: {error}"
             return INTERNAL_ERROR, f"internal error ({what}); please report it with the output of RACEWAY_TRACEBACK=1."

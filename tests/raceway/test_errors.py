@@ -224,7 +224,7 @@ def test_a_part_that_cannot_be_read_ends_in_one_sentence(run, places):
 
 
 def test_an_unforeseen_error_ends_in_one_sentence_too(run, places, monkeypatch):
-    def fail(_folder):
+    def fail(*_):
         raise ZeroDivisionError("float division by zero")
 
     monkeypatch.setattr("raceway.console.summary.describe", fail)
@@ -253,6 +253,12 @@ def test_an_unforeseen_error_ends_in_one_sentence_too(run, places, monkeypatch):
         ),
         (RuntimeError("NetCDF: HDF error"), 2, "a file of the corpus cannot be read (NetCDF: HDF error)"),
         (type("KilledWorker", (Exception,), {})("part-3"), 2, "several workers of the cluster died"),
+        (
+            ModuleNotFoundError("", name="matplotlib.figure"),
+            2,
+            "this needs matplotlib, which is not installed; pip install",
+        ),
+        (ModuleNotFoundError("", name="gen.nothing"), 70, "internal error"),
         (KeyboardInterrupt(), 130, "interrupted."),
     ],
 )

@@ -50,7 +50,7 @@ def test_parquet_without_pyarrow_is_refused_before_any_feature_is_computed(run, 
     result = run("features", corpus, "-o", tmp_path / "x.parquet")
     assert result.exit_code != 0
     sentence = str(result.exception) + result.output
-    assert "x.parquet: Parquet needs pyarrow; pip install 'raceway[parquet]'" in sentence
+    assert "x.parquet: Parquet needs pyarrow; pip install pyarrow, or write .nc instead" in sentence
     with pytest.raises(CorpusError, match="Parquet needs pyarrow"):
         write_table(table(), tmp_path / "x.parquet")
     assert not (tmp_path / "x.parquet").exists()
