@@ -20,6 +20,7 @@ from raceway.commands import (
     exploring,
     feature_tables,
     importing,
+    lives,
     models,
     plotting,
     publishing,
@@ -42,6 +43,7 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         corpora.replay,
         plotting.plot,
         exploring.explore,
+        lives.life,
         comparing.compare,
     ),
     "Learn from them": (
@@ -49,6 +51,7 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         models.train,
         models.evaluate,
         benchmarking.benchmark,
+        lives.prognose,
         diagnosing.diagnose,
     ),
     "Raceway itself": (doctor.doctor,),

@@ -117,7 +117,9 @@ def by_boosting(lives: Lives, inputs: Callable[[Lives], FloatArray] | None = Non
     # a bearing that fails where another is withdrawn was still in its test
     uncensored = kaplan_meier(entry, end, ~failed).at(np.nextafter(end, 0)) if not failed.all() else np.ones(len(end))
     chosen, unit = lives.failed, float(np.median(np.diff(lives.age)[np.diff(lives.bearing) == 0]))
-    model = HistGradientBoostingRegressor(loss="absolute_error", max_iter=100, random_state=0)
+    # an early end would be chosen on snapshots of bearings of the training
+    options: Any = {"loss": "absolute_error", "max_iter": 60, "max_leaf_nodes": 15, "early_stopping": False}
+    model = HistGradientBoostingRegressor(random_state=0, **options)
     weight = 1 / np.maximum(uncensored[place], 0.05)
     model.fit(inputs(lives)[chosen], np.log1p(lives.rul[chosen] / unit), sample_weight=weight[chosen])
     return lambda tested: unit * np.expm1(np.maximum(model.predict(inputs(tested)), 0.0))

@@ -16,6 +16,7 @@ diagnosis_output facts of a diagnosis for programs and for its page
 diagnosis_tables diagnoses of a folder: table, index page and CSV file
 recordings       options and files of recordings of the user
 benchmarking     scores of all baselines
+lives            pictures of lives, scores of estimates of remaining life
 comparing        synthetic records against real ones
 publishing       the data card with terms of use, pictures and scores
 doctor           installed versions, and the speed of this machine

@@ -1,0 +1,55 @@
+"""``raceway life`` and ``raceway prognose`` on a few lives."""
+
+import pytest
+
+from features.report.lives import draw_life
+from gen.corpus import open_corpus
+from gen.generation.corpus import generate
+from gen.recipe import Recipe
+from gen.support.errors import CorpusError
+from tests.gen.conftest import small_with
+from tests.recipes import LIVES
+
+
+@pytest.fixture(scope="module")
+def lives(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("lives") / "c"
+    generate(Recipe(small_with(LIVES)), folder)
+    return folder
+
+
+def test_a_picture_has_the_course_of_one_life(lives):
+    with open_corpus(lives) as corpus:
+        damaged = corpus.isel(record=(corpus.event.values == 1) & (corpus.stage.values > 0))
+        longest = damaged.bearing.to_series().value_counts()
+    figure = draw_life(lives)
+    assert figure.axes[0].get_title("left").split(":")[0] in longest[longest == longest.max()].index
+    spall = figure.axes[2].lines[0].get_ydata()
+    assert 0 == spall[0] < spall[-1] <= 6
+
+
+def test_lives_are_drawn_beside_those_of_another_corpus(lives):
+    with open_corpus(lives) as corpus:
+        failed = len({*corpus.bearing.values[corpus.event.values == 1]})
+    assert len(draw_life(lives, like=lives).axes[3].lines) == 2 * failed + 1
+
+
+def test_a_bearing_that_is_not_there_is_named(lives, tiny_corpus):
+    with pytest.raises(CorpusError, match="has no bearing 6205 #99; it has 6205 #0, "):
+        draw_life(lives, "6205 #99")
+    with pytest.raises(CorpusError, match="has no lives"):
+        draw_life(tiny_corpus)
+
+
+def test_the_commands_draw_and_score(run, told, lives, tmp_path):
+    assert run("life", lives, "-o", tmp_path / "x.png").exit_code == 0
+    assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")
+    scores = told("prognose", lives, "--folds", 3)["lives"]
+    assert set(scores) == {"age", "kaplan_meier", "weibull", "without_signal", "boosting"}
+    assert "are among those of the training" in run("prognose", lives, "--test", lives).stderr
+
+
+def test_only_lives_are_scored(run, tiny_corpus):
+    result = run("prognose", tiny_corpus)
+    assert result.exit_code == 2
+    assert "has no age; it needs records of lives" in result.stderr
