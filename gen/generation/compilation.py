@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from gen.measurement.measure import compile_mixing
+from gen.measurement.measure import compile_measuring
 from gen.mechanisms.mechanism import mechanisms_of
 from gen.physics.inputs import CONSTANT, ROUND, Waviness
 from gen.physics.kernel.batch import input_shape
@@ -54,7 +54,7 @@ def missing_kernels(recipe: Recipe) -> list[Shape]:
 def compile_kernels(recipe: Recipe, missing: list[Shape], report: Callable[[str], None] = lambda _: None) -> None:
     """Compile the missing kernels into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
     with keep_garbage():
-        compile_mixing(draw_scenarios(recipe, 0, 1)[0])
+        compile_measuring(draw_scenarios(recipe, 0, 1)[0])
         for guest in (*mechanisms_of(recipe.background), *mechanisms_of(recipe.sensor_faults)):
             guest.compile()
     at_once = min(cores(), MOST_AT_ONCE)

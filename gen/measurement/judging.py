@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import ifft, next_fast_len, rfft
 
+from gen.physics.kernel.compiling import compiled_to_disk
 from gen.scenarios import Gains
 
 FloatArray = NDArray[np.floating]
@@ -99,7 +100,11 @@ class Judge:
                 self._bands.append(self._band(frequencies, windows))
             of_windows, impulses = self._bands[place]
             for window, lines in of_windows:
-                if window.part not in seen and _stands_out(window, lines, gains, self._margin, impulses):
+                first = window.first - window.around.start
+                searched = first, first + window.stop - window.first
+                if window.part not in seen and _stands_out(
+                    lines, *searched, gains.bearing, gains.background, self._margin, impulses
+                ):
                     seen.add(window.part)
             if len(seen) == len(self._record.orders):
                 return True
@@ -123,7 +128,16 @@ class Judge:
         share = n / 2 / (impulses.shape[1] - 1)  # of the frequencies of the record in those of the impulses
         places = slice(round(band[0] / share), round(band[1] / share))
         of_impulses = WINDOW_RMS * products.shape[-1] * share**1.5 * impulses[:, places].sum(axis=1)
-        return [(window, lines[..., window.around]) for window in windows], of_impulses
+        # of one type, for which the comparison is compiled once
+        kept: list[tuple[Window, ComplexArray]] = [
+            (window, lines[..., window.around].astype(np.complex128)) for window in windows
+        ]
+        return kept, of_impulses.astype(np.float64)
+
+
+def compile_judging() -> None:
+    """Compile the comparison of lines, or fetch it from numba's cache on disk."""
+    _stands_out(np.zeros((5, 1, 1), np.complex128), 0, 1, 1.0, 1.0, 1.0, np.zeros(1))
 
 
 def judges_of(records: Sequence[Parts]) -> list[Judge]:
@@ -169,17 +183,31 @@ def _squared(signal: ComplexArray) -> FloatArray:
     return signal.real**2 + signal.imag**2
 
 
-def _stands_out(window: Window, lines: ComplexArray, gains: Gains, margin: float, impulses: FloatArray) -> bool:
-    """Whether the line of the record in a window exceeds that of the twin by ``margin`` times the rms of noise in some channel."""
-    b, n = gains.bearing, gains.background
-    record, twin = np.abs(b * b * lines[:2] + b * n * lines[2:4] + n * n * lines[4])
-    middle = twin.shape[-1] // 2
-    # the square of a line of noise has an exponential distribution, whose median is ln 2 of its mean
-    noise = np.partition(twin, middle)[..., middle] / math.sqrt(math.log(2))
-    first = window.first - window.around.start
-    searched = slice(first, first + window.stop - window.first)
-    rise = record[..., searched].max(axis=-1) - twin[..., searched].max(axis=-1)
-    return bool(np.any(rise > margin * np.hypot(noise, n * n * impulses)))
+@compiled_to_disk
+def _stands_out(
+    lines: ComplexArray, first: int, stop: int, bearing: float, background: float, margin: float, impulses: FloatArray
+) -> bool:
+    """Whether, in some channel, the largest searched line of the record exceeds that of the twin by ``margin`` times the rms of noise.
+
+    ``lines`` has the shape (product, channel, line), those from ``first`` to ``stop`` are searched, and ``bearing`` and ``background`` are
+    gains.
+    """
+    _, n_channels, n_lines = lines.shape
+    twin = np.empty(n_lines)
+    for channel in range(n_channels):
+        highest = highest_of_twin = 0.0
+        for line in range(n_lines):
+            noise = background * background * lines[4, channel, line]
+            healthy = bearing * (bearing * lines[1, channel, line] + background * lines[3, channel, line]) + noise
+            twin[line] = abs(healthy)
+            if first <= line < stop:
+                faulty = bearing * (bearing * lines[0, channel, line] + background * lines[2, channel, line]) + noise
+                highest, highest_of_twin = max(highest, abs(faulty)), max(highest_of_twin, twin[line])
+        # the square of a line of noise has an exponential distribution, whose median is ln 2 of its mean
+        floor = np.partition(twin, n_lines // 2)[n_lines // 2] / math.sqrt(math.log(2))
+        if highest - highest_of_twin > margin * math.hypot(floor, background * background * impulses[channel]):
+            return True
+    return False
 
 
 def _over_angle(signals: FloatArray, angles: FloatArray) -> FloatArray:

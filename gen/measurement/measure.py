@@ -18,7 +18,7 @@ from scipy.fft import irfft, rfft
 
 from gen.corpus.simulated import UNJUDGED
 from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
-from gen.measurement.judging import Judge, Parts, judges_of
+from gen.measurement.judging import Judge, Parts, compile_judging, judges_of
 from gen.measurement.levels import (
     bearing_over_background,
     fault_over_rest,
@@ -184,9 +184,10 @@ class Levelled(NamedTuple):
     detectable: int
 
 
-def compile_mixing(scenario: Scenario) -> None:
-    """Compile the mixing of records, or fetch it from numba's cache on disk."""
+def compile_measuring(scenario: Scenario) -> None:
+    """Compile the mixing and the judging of records, or fetch them from numba's cache on disk."""
     settings = scenario.settings
+    compile_judging()
     measure(np.zeros((1, len(settings.channels), timeline(settings).returned), np.float32), [scenario])
 
 
