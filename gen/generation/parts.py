@@ -129,7 +129,7 @@ def parts_in_order(
 
     early: dict[int, tuple[xr.Dataset, tuple[str, ...]]] = {}
     following = 0
-    for place, part in made_parts(recipe, list(numbers), finished, crew=crew):
+    for place, part in made_parts(recipe, numbers, finished, crew=crew):
         early[place] = part
         while following in early:
             yield early.pop(following)

@@ -1,15 +1,15 @@
 """Records of several parts made together, so that the batches of the kernel are full.
 
 Parts are drawn block after block, and every integration waits until its batch is full: those of records, of their twins, of faults drawn
-again and of step checks. Only as many records as fit ``WINDOW_BYTES`` are under way; if all of them wait, the oldest get a batch with idle
-lanes. A record does not depend on its batch, so the parts are those that would be made one by one.
+again and of step checks. No more records than fit ``WINDOW_BYTES`` are drawn beyond the first part that is not complete; if all of them
+wait, the oldest get a batch with idle lanes. A record does not depend on its batch, so the parts are those that would be made one by one.
 """
 
-from bisect import bisect_right
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import count, islice
 from threading import Condition
 from typing import Generic, NamedTuple, TypeVar
 
@@ -64,6 +64,7 @@ class _Part:
     place: int
     numbers: range
     checked: bool
+    finished: bool = False
     rows: dict[int, tuple[MadeRecords, int]] = field(default_factory=dict)
     """Final records: each by its number, as a place in records that were measured together."""
     absent: int = 0
@@ -86,7 +87,7 @@ def make_records(recipe: Recipe, numbers: range) -> MadeRecords:
 
 def made_parts(
     recipe: Recipe,
-    parts: Sequence[range],
+    parts: Iterable[range],
     finish: Callable[[MadePart], Result],
     report: Report = lambda _place, _count: None,
     meanwhile: Callable[[], None] = lambda: None,
@@ -98,8 +99,8 @@ def made_parts(
     ----------
     recipe : Recipe
         The recipe.
-    parts : sequence of range
-        Numbers of the records of each part, in rising order.
+    parts : iterable of range
+        Numbers of the records of each part, in rising order; they may have no end.
     finish : callable
         Called with each part, in the thread that completes it.
     report : callable
@@ -118,15 +119,16 @@ class _Making(Generic[Result]):
     """Records under way, on which threads work step by step; everything else than the work itself is done under a lock."""
 
     def __init__(
-        self, recipe: Recipe, parts: Sequence[range], finish: Callable[[MadePart], Result], window: float
+        self, recipe: Recipe, parts: Iterable[range], finish: Callable[[MadePart], Result], window: float
     ) -> None:
         self._recipe, self._finish = recipe, finish
         self._families = Families(recipe)
         self._waiting: Waiting[_Pending] = Waiting()
-        self._parts = [_Part(place, numbers, has_checks(recipe, numbers)) for place, numbers in enumerate(parts)]
-        self._blocks = deque(_blocks(parts, self._families))
+        self._parts: dict[int, _Part] = {}
+        """Those from the first on that is not finished, by their places, which rise."""
+        self._blocks = self._blocks_of(parts)
+        self._block = next(self._blocks, None)
         self._window = window / _bytes_of_a_record(recipe)
-        self._under_way = 0
         self._ready: list[Family] = []
         self._complete: deque[_Part] = deque()
         self._checked: deque[MadePart] = deque()
@@ -170,18 +172,21 @@ class _Making(Generic[Result]):
             return self._judging()
         if self._waiting.has_full_batch():
             return partial(self._integrate, self._waiting.fullest())
-        if self._blocks and self._under_way < self._window:
-            return self._drawing()
+        if self._block is not None and self._under_way(self._block) < self._window:
+            return self._drawing(self._block)
         if self._ready:
             return self._judging()
         if self._waiting and not self._growing:
-            return partial(self._integrate, self._waiting.oldest() if self._blocks else self._waiting.fullest())
-        return self._drawing() if self._blocks and not self._steps else None
+            return partial(self._integrate, self._waiting.fullest() if self._block is None else self._waiting.oldest())
+        return self._drawing(self._block) if self._block is not None and not self._steps else None
 
-    def _drawing(self) -> Callable[[Report], Iterable[Result]]:
+    def _under_way(self, block: range) -> int:
+        """Number of records that were drawn ahead of a block, from the first part on that is not finished."""
+        return sum(max(0, min(part.numbers.stop, block.start) - part.numbers.start) for part in self._parts.values())
+
+    def _drawing(self, numbers: range) -> Callable[[Report], Iterable[Result]]:
         self._growing += 1
-        numbers = self._blocks.popleft()
-        self._under_way += sum(self._part_of(number) is not None for number in numbers)
+        self._block = next(self._blocks, None)
         return partial(self._draw, numbers)
 
     def _judging(self) -> Callable[[Report], Iterable[Result]]:
@@ -268,7 +273,9 @@ class _Making(Generic[Result]):
     def _write(self, made: MadePart, _report: Report) -> Iterable[Result]:
         result = self._finish(made)
         with self._change:
-            self._under_way -= len(self._parts[made.place].numbers)
+            self._parts[made.place].finished = True
+            while self._parts and next(iter(self._parts.values())).finished:
+                del self._parts[next(iter(self._parts))]
         return (result,)
 
     def _wait(self, integrations: Sequence[Integration], then: Callable[[], None]) -> None:
@@ -283,18 +290,24 @@ class _Making(Generic[Result]):
 
     def _part_of(self, number: int) -> _Part | None:
         """The part that a record belongs to; None for one that is only judged with others."""
-        place = bisect_right(self._parts, number, key=lambda part: part.numbers.start) - 1
-        return self._parts[place] if place >= 0 and number in self._parts[place].numbers else None
+        return next((part for part in self._parts.values() if number in part.numbers), None)
 
+    def _blocks_of(self, parts: Iterable[range]) -> Iterator[range]:
+        """Numbers of the records that are drawn together: of whole families, none twice. Their parts are known before they are drawn."""
+        size, drawn = max(_DRAWN // self._families.size, 1) * self._families.size, 0
+        known, coming = map(self._add_part, count(), parts), deque[range]()
+        coming.extend(islice(known, 1))
+        while coming:
+            needed = self._families.numbers(coming.popleft())
+            while (not coming or coming[-1].stop < needed.stop) and (further := next(known, None)) is not None:
+                coming.append(further)
+            for start in range(max(needed.start, drawn), needed.stop, size):
+                drawn = min(start + size, needed.stop)
+                yield range(start, drawn)
 
-def _blocks(parts: Sequence[range], families: Families) -> Iterator[range]:
-    """Numbers of the records that are drawn together: of whole families, none twice."""
-    size, drawn = max(_DRAWN // families.size, 1) * families.size, 0
-    for part in parts:
-        needed = families.numbers(part)
-        for first in range(max(needed.start, drawn), needed.stop, size):
-            drawn = min(first + size, needed.stop)
-            yield range(first, drawn)
+    def _add_part(self, place: int, numbers: range) -> range:
+        self._parts[place] = _Part(place, numbers, has_checks(self._recipe, numbers))
+        return numbers
 
 
 def _bytes_of_a_record(recipe: Recipe) -> int:
