@@ -6,7 +6,6 @@ They are made in the parts of its corpus, in this process or in several, and com
 
 import itertools
 import warnings
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
@@ -20,11 +19,11 @@ from gen.generation.compilation import compile_kernels, missing_kernels
 from gen.generation.parts import parts_in_order
 from gen.recipe import Recipe, corpus_identity, read_recipe
 from gen.support.errors import RecipeError, SimulationError
+from gen.support.processes import in_processes
 
 if TYPE_CHECKING:
     from gen.generation.torch_items import TorchStream
 
-_TOGETHER = 4  # parts that share the batches of the kernel: more fill them better, and the first records come later
 _LAST = 2**31 - 1  # number of a record
 
 
@@ -62,7 +61,7 @@ def stream(
     RecipeError
         If the recipe cannot be simulated or has an end by nature (grids, quasi-random points), or a number is not allowed.
     ClusterError
-        From the iterator, if several workers die on the same records.
+        From the iterator, if a process ends before the stream does.
     SimulationError
         From the iterator, if no record of a part can be simulated.
 
@@ -204,8 +203,7 @@ def records_from(
     recipe: Recipe, first: int, *, workers: int = 1, shard: int = 0, shards: int = 1
 ) -> Iterator[xr.Dataset]:
     """Records from the number ``first`` on, in rising order, a part at a time: every ``shards``-th part, beginning with ``shard``."""
-    parts = (part for part in itertools.count(first // recipe.storage.records_per_part) if part % shards == shard)
-    made = _made_here(recipe, parts) if workers == 1 else _made_by(recipe, parts, workers)
+    made = _parts(recipe, first, shard, shards) if workers == 1 else _parts_of_processes(recipe, first, workers)
     warned = False
     for records, failures in made:
         if not records.sizes["record"]:
@@ -216,26 +214,16 @@ def records_from(
         yield records.isel(record=records["recording"].values >= first)
 
 
-def _made_here(recipe: Recipe, parts: Iterator[int]) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
-    while some := list(itertools.islice(parts, _TOGETHER)):
-        yield from _decoded_parts(recipe, some)
-
-
-def _made_by(recipe: Recipe, parts: Iterator[int], workers: int) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
-    """Parts made by processes of this machine, which are at most two tasks ahead."""
-    from gen.support.cluster import dask_pool  # distributed takes 0.3 s to load
-
-    with dask_pool(partial(_decoded_parts, recipe), (workers, 1), None) as (submit, _size):
-        running = deque[Any]()
-        while True:
-            while len(running) < 2 * workers:
-                running.append(submit(list(itertools.islice(parts, _TOGETHER))))
-            yield from running.popleft().result()
-
-
-def _decoded_parts(recipe: Recipe, parts: list[int]) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+def _parts(recipe: Recipe, first: int, shard: int, shards: int) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
     """Records of parts in m s-2, and a sentence for each that is left out."""
+    parts = itertools.count(first // recipe.storage.records_per_part + shard, shards)
     for made, failures in parts_in_order(recipe, map(recipe.records_of_part, parts)):
         records = xr.decode_cf(made, decode_times=False).load()
         add_class_names(records)
         yield records, failures
+
+
+def _parts_of_processes(recipe: Recipe, first: int, workers: int) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+    with in_processes(partial(_parts, recipe, first), workers) as shares:
+        for share in itertools.cycle(shares):
+            yield next(share)

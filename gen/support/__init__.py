@@ -15,5 +15,6 @@ yaml_files recipes and common keys of labels, read within the limits
 sentences  an error sentence for each wrong key or value of these files
 cluster    independent tasks on dask
 workers    independent tasks in this thread, threads, processes or a cluster
+processes  a task without end, shared out to processes of this machine
 ========== ==================================================================
 """

@@ -1,0 +1,47 @@
+"""Laws of shares in processes: order, errors, and a process that dies."""
+
+import itertools
+import os
+import signal
+from multiprocessing import active_children
+
+import pytest
+
+from gen.support.errors import ClusterError, RecipeError
+from gen.support.processes import in_processes
+
+
+def every(share, count):
+    return itertools.count(share, count)
+
+
+def refused(share, _count):
+    yield share
+    raise RecipeError("no such thing.")
+
+
+def killed(share, _count):
+    yield share
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_every_process_makes_its_share_in_order():
+    with in_processes(every, 2) as shares:
+        found = [next(shares[place % 2]) for place in range(40)]
+    assert found == list(range(40))
+    assert not active_children()
+
+
+def test_an_error_of_the_task_is_raised_where_results_are_asked_for():
+    with in_processes(refused, 1) as (share,):
+        assert next(share) == 0
+        with pytest.raises(RecipeError, match="no such thing"):
+            next(share)
+
+
+def test_a_process_that_dies_is_one_sentence():
+    with in_processes(killed, 2) as shares:
+        with pytest.raises(ClusterError, match="ended with code -9; use fewer workers") as raised:
+            list(shares[1])
+        assert "\n" not in str(raised.value)
+    assert not active_children()
