@@ -29,6 +29,7 @@ models            training, evaluation, saving, loading
 unlabelled        answers for recordings whose class is not known
 sources           hash of the sources that make features and scores
 results           scores of every baseline with controls, and on other corpora
+submissions       predictions of a cross-validation in a file, and their scores
 results_file      results as JSON, of which later results take over the rows that are not altered
 ================= ==================================================================================
 """

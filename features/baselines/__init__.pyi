@@ -17,4 +17,5 @@ from .records import DEFAULT_GROUPS as DEFAULT_GROUPS, count_unknown as count_un
 from .scores import Scores as Scores, interval_text as interval_text, percent_text as percent_text
 from .severities import severity_warning as severity_warning
 from .splits import controls as controls, cross_validate as cross_validate
+from .submissions import check_submission as check_submission, write_submission as write_submission
 from .unlabelled import Answer as Answer, unlabelled_answers as unlabelled_answers

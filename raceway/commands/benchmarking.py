@@ -7,18 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from features.baselines.names import BASELINES, TRACKS
+from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS
 from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.models import warn_of_durations, warn_of_seen, warn_of_severities
 from raceway.console import show
 from raceway.console.options import (
     A_CORPUS,
     A_MODEL,
+    A_PATH,
     REFERENCE_MODEL,
     Analysis,
     Team,
     analysis_options,
     corpus_argument,
+    file_option,
     json_option,
     pages_option,
     speed_option,
@@ -44,7 +46,20 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 
 @click.command()
 @corpus_argument
-@pages_option("OUTDIR", "Folder for report.html and results.json.")
+@pages_option("OUTDIR", "Folder for report.html and results.json.", required=False)
+@file_option(
+    "FILE.csv",
+    "Write the predictions of the classifiers on the first track, which --check scores again, and nothing else.",
+    (".csv",),
+    required=False,
+    flags=("--submit",),
+)
+@click.option(
+    "--check",
+    type=A_PATH,
+    metavar="FILE.csv",
+    help="Score the predictions in a file of --submit again, and do nothing else.",
+)
 @click.option(
     "--test",
     "tests",
@@ -102,7 +117,9 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 @json_option
 def benchmark(
     corpus: Path,
-    output: Path,
+    output: Path | None,
+    submit: Path | None,
+    check: Path | None,
     tests: tuple[Path, ...],
     tracks: tuple[Any, ...],
     estimators: tuple[str, ...],
@@ -135,6 +152,8 @@ def benchmark(
       raceway benchmark corpus -o report --track all --learning-curve
       raceway benchmark corpus -o report --estimator mine:make --estimator ensemble
       raceway benchmark corpus --test cwru -o report --waveforms --estimator cnn:EnvelopeNetwork
+      raceway benchmark corpus --track rig --folds 3 --estimator mine:make --submit mine.csv
+      raceway benchmark corpus --track rig --folds 3 --check mine.csv
     """
     if waveforms and not any(":" in name for name in estimators):
         raise click.UsageError("--waveforms is for --estimator MODULE:NAME")
@@ -146,6 +165,19 @@ def benchmark(
     from features.report.page import write_report
     from gen.corpus import result_folder
 
+    protocol = {"track": tracks[0], "folds": folds, "seed": seed}
+    match output, submit, check:
+        case None, None, Path():
+            _check(table_of(corpus, "off", team, analysis), check, protocol, as_json)
+            return
+        case None, Path(), None:
+            signals = _waveforms(corpus, analysis.channel, [], per_turn) if waveforms else [None]
+            _submit(table_of(corpus, "off", team, analysis), signals[0], chosen, submit, protocol)
+            return
+        case Path(), None, None:
+            pass
+        case _:
+            raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
     loaded = _load(models)
     with result_folder(output):
         table = table_of(corpus, "off", team, analysis)
@@ -189,6 +221,38 @@ def benchmark(
     if results.curve:
         _show_curve(results)
     show.text("", f"{page}: the complete report.")
+
+
+def _submit(
+    table: "xr.Dataset",
+    signals: "Waveforms | None",
+    chosen: "dict[str, str | Maker] | None",
+    path: Path,
+    protocol: dict[str, Any],
+) -> None:
+    from features.baselines import write_submission
+
+    write_submission(table, chosen or {DEFAULT_ESTIMATOR: DEFAULT_ESTIMATOR}, path, waveforms=signals, **protocol)
+    show.text(f"{path}: predictions of {', '.join(chosen or [DEFAULT_ESTIMATOR])}; --check scores them again.")
+
+
+def _check(table: "xr.Dataset", path: Path, protocol: dict[str, Any], as_json: bool) -> None:
+    from features.baselines import check_submission
+
+    scores = check_submission(table, path, **protocol)
+    if as_json:
+        show.as_json({name: show.plain(one) for name, one in scores.items()})
+        return
+    rows = ((name, *_score_texts(one)) for name, one in scores.items())
+    show.table(("classifier", "score", "95 %", "false alarms"), rows)
+
+
+def _score_texts(scores: "Scores") -> list[str]:
+    """Balanced accuracy, its interval, and share of false alarms."""
+    from features.baselines import interval_text
+
+    alarms = "" if scores.false_alarms is None else f"{scores.false_alarms:.3f}"
+    return [f"{scores.balanced_accuracy:.3f}", interval_text(scores.interval, 2), alarms]
 
 
 def _waveforms(
@@ -252,12 +316,10 @@ def _show_curve(results: "Results") -> None:
 
 
 def _show_baselines(baselines: "Mapping[str, Baseline]", tests: list[str]) -> None:
-    from features.baselines import interval_text
-
     def figures(baseline: "Baseline") -> list[str]:
-        shown = [f"{baseline.grouped.balanced_accuracy:.3f}", interval_text(baseline.grouped.interval, 2)]
+        shown = _score_texts(baseline.grouped)
         shown += [f"{control.balanced_accuracy:.3f}" for control in (baseline.leaky, baseline.null)]
         return [*shown, *(f"{test.balanced_accuracy:.3f}" for test in baseline.tests)]
 
-    header = ("baseline", "score", "95 %", "leaky split", "null labels", *tests)
+    header = ("baseline", "score", "95 %", "false alarms", "leaky split", "null labels", *tests)
     show.table(header, ((name, *figures(baseline)) for name, baseline in baselines.items()))

@@ -223,11 +223,13 @@ def checked_pages(_context: click.Context, _option: click.Parameter, path: Path)
     return path
 
 
-def pages_option(metavar: str, what: str) -> Decorator:
+def pages_option(metavar: str, what: str, *, required: bool = True) -> Decorator:
     """Make the option that names the folder for pages and pictures, which is no corpus and lies in none."""
-    return click.option(
-        "-o", "--output", type=A_PATH, required=True, metavar=metavar, help=what, callback=checked_pages
-    )
+
+    def check(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
+        return None if path is None else checked_pages(context, option, path)
+
+    return click.option("-o", "--output", type=A_PATH, required=required, metavar=metavar, help=what, callback=check)
 
 
 def checked_file(path: Path, suffixes: tuple[str, ...] = (), kind: str | None = None) -> Path:

@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from features.baselines import TRACKS
+from features.baselines import TRACKS, cross_validate, load_maker
+from features.table.corpora import feature_table
 from raceway.commands import benchmarking
 
 pytestmark = pytest.mark.usefixtures("unpainted")
@@ -89,3 +90,39 @@ def test_options_that_cannot_be_used_are_refused_before_any_feature_is_computed(
     result = run("benchmark", tiny_corpus, "-o", tmp_path / "report", *options)
     assert result.exit_code != 0
     assert sentence in str(result.exception) + result.output
+
+
+def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, tiny_corpus, tmp_path, mine):
+    protocol = ("--track", "rig", "--folds", "2")
+    file = tmp_path / "rows.csv"
+    names = ("--estimator", mine, "--estimator", "logistic_regression")
+    done = run("benchmark", tiny_corpus, *protocol, *names, "--submit", file)
+    assert done.exit_code == 0
+    checked = told("benchmark", tiny_corpus, *protocol, "--check", file)
+    table = feature_table(tiny_corpus)
+    for name, estimator in ((mine, load_maker(mine)), ("logistic_regression", "logistic_regression")):
+        scores = cross_validate(table, estimator, track="rig", folds=2)
+        same = ("balanced_accuracy", "false_alarms", "records")
+        assert [checked[name][figure] for figure in same] == [getattr(scores, figure) for figure in same]
+        assert checked[name]["interval"] == list(scores.interval)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            lambda text: text.replace(",0,", ",1,", 1),
+            "does not have the 48 tested records of 2 folds by rig with seed 0",
+        ),
+        (lambda text: "\n".join(text.splitlines()[:-1]), "does not have the 48 tested records"),
+        (lambda text: text.replace("healthy", "wealthy"), "'wealthy' is no class; allowed are healthy, inner"),
+        (lambda _: "", "is no table of predictions"),
+    ],
+)
+def test_a_submission_of_other_records_folds_or_classes_is_refused(run, tiny_corpus, tmp_path, change, sentence):
+    protocol = ("--track", "rig", "--folds", "2")
+    file = tmp_path / "rows.csv"
+    run("benchmark", tiny_corpus, *protocol, "--estimator", "envelope_rule", "--submit", file)
+    file.write_text(change(file.read_text()))
+    done = run("benchmark", tiny_corpus, *protocol, "--check", file)
+    assert (done.exit_code, sentence in done.stderr) == (2, True)

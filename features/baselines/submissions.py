@@ -1,0 +1,123 @@
+"""Predictions of a cross-validation in a file, which anybody who has the corpus can score again.
+
+``classifiers -> class of each tested record -> CSV``, and ``CSV -> scores against the labels of the corpus``. The folds follow from the
+corpus, the track, their number and the seed; the file repeats them, so that predictions of any program can be put beside them.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from features.baselines.calibration import UNCALIBRATED
+from features.baselines.fitting import fits
+from features.baselines.own import Maker
+from features.baselines.predictions import fault_names, predictions
+from features.baselines.records import DEFAULT_GROUPS, UNKNOWN_CODE, Records, records_of
+from features.baselines.scores import Scores, score
+from features.baselines.splits import grouped_case
+from features.baselines.tracks import Split, Track
+from features.table.waveforms import Waveforms
+from gen.corpus import FAULTS, IDENTITY, check_result, write_text_durably
+from gen.support.errors import CorpusError
+
+TESTED = ["record", "identity", "fold"]
+
+
+def write_submission(
+    table: xr.Dataset,
+    estimators: Mapping[str, str | Maker],
+    path: Path,
+    *,
+    waveforms: Waveforms | None = None,
+    track: Track = "rig",
+    folds: int = 3,
+    seed: int = 0,
+    workers: int = 1,
+) -> None:
+    """Write the classes that classifiers predict for the records outside their training, a column for each classifier.
+
+    Parameters
+    ----------
+    table
+        Feature table of the corpus.
+    estimators
+        Classifiers by the name of their column, as for `features.baselines.cross_validate`.
+    path
+        The file, .csv.
+    waveforms
+        Of the same corpus, for the classifiers of the user in place of the features.
+    track, folds, seed, workers
+        As for `features.baselines.benchmark`.
+
+    Raises
+    ------
+    CorpusError
+        If the table cannot be split so, or the disk refuses the file.
+    """
+    check_result(path, None)
+    records = records_of(table, DEFAULT_GROUPS)
+    _, splits = grouped_case(records, track, folds, seed)
+    frame = _tested(table, splits)
+    for name, estimator in estimators.items():
+        given = table if waveforms is None or isinstance(estimator, str) else waveforms
+        features = records_of(given, DEFAULT_GROUPS).features
+        frame[name] = _predicted(features, records, estimator, splits, seed, workers)[frame.index]
+    write_text_durably(frame.to_csv(index=False), path)
+
+
+def check_submission(
+    table: xr.Dataset, path: Path, *, track: Track = "rig", folds: int = 3, seed: int = 0
+) -> dict[str, Scores]:
+    """Scores of each column of predictions in a file, against the labels of the corpus.
+
+    Raises
+    ------
+    CorpusError
+        If the file does not have the tested records of this corpus in the folds of this track, or a class that does not exist.
+    """
+    records = records_of(table, DEFAULT_GROUPS)
+    frame = _tested(table, grouped_case(records, track, folds, seed)[1])
+    try:
+        given = pd.read_csv(path, dtype=str, keep_default_na=False)
+    except (OSError, ValueError):
+        raise CorpusError(f"{path}: is no table of predictions; give a file of raceway benchmark --submit.") from None
+    if list(given.columns[:3]) != TESTED or not given[TESTED].equals(frame.astype(str).reset_index(drop=True)):
+        raise CorpusError(
+            f"{path}: does not have the {len(frame)} tested records of {folds} folds by {track} with seed {seed} of this corpus; "
+            "give the options and the corpus that it was made with."
+        )
+    tested = records.at(frame.index.to_numpy())
+    return {str(name): _scores(tested, given[name], f"{path}: {name}", seed) for name in given.columns[3:]}
+
+
+def _tested(table: xr.Dataset, splits: Sequence[Split]) -> pd.DataFrame:
+    """Number in the corpus, identity and fold of each tested record, by its place among the records of known class."""
+    number = np.flatnonzero(table["fault"].values != UNKNOWN_CODE)
+    fold = np.full(len(number), -1)
+    for place, (_, test) in enumerate(splits):
+        fold[test] = place
+    columns = {"record": number, "identity": table[IDENTITY].values[number].astype(str), "fold": fold}
+    return pd.DataFrame(columns)[fold >= 0]
+
+
+def _predicted(
+    features: pd.DataFrame, records: Records, estimator: str | Maker, splits: Sequence[Split], seed: int, workers: int
+) -> np.ndarray:
+    names = np.full(len(records.fault), "", object)
+    fitted = fits(features, records.fault, estimator, splits, seed, workers=workers)
+    for (_, test), (one, probabilities) in zip(splits, fitted, strict=True):
+        names[test] = np.array(FAULTS)[one.classes_[probabilities.argmax(axis=1)]]
+    return names
+
+
+def _scores(tested: Records, predicted: pd.Series, where: str, seed: int) -> Scores:
+    wrong = sorted({*predicted} - {*FAULTS})
+    if wrong:
+        raise CorpusError(f"{where}: {wrong[0]!r} is no class; allowed are {', '.join(FAULTS)}.")
+    codes = np.array([FAULTS.index(name) for name in predicted])
+    _, recording = np.unique(tested.recording, return_inverse=True)
+    told = predictions(np.eye(len(FAULTS))[codes], fault_names(np.arange(len(FAULTS))), recording, UNCALIBRATED)
+    return score(tested, told, seed)
