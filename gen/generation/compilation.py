@@ -9,6 +9,7 @@ import os
 import subprocess
 import sys
 import time
+from bisect import bisect
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -100,8 +101,9 @@ def needed_shapes(recipe: Recipe) -> list[Shape]:
 def _sample(recipe: Recipe) -> Iterator[Scenario]:
     if recipe.life is not None:  # the last snapshot of a life has its spall
         for specimen in first_specimens(recipe).values():
-            of_specimen = recipe.records_of(specimen)
-            yield draw_scenarios(recipe, of_specimen.start, of_specimen.stop)[-1]
+            numbers = recipe.records_of(specimen)
+            behind = bisect(numbers, False, key=lambda number: not draw_scenarios(recipe, number, number + 1))
+            yield from draw_scenarios(recipe, numbers[behind - 1], numbers[behind - 1] + 1)
     yield from draw_scenarios(recipe, 0, SAMPLE)
     for number in range(SAMPLE, recipe.n_records, -(-recipe.n_records // SAMPLE)):
         yield from draw_scenarios(recipe, number, number + 1)

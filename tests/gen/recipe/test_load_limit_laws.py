@@ -114,4 +114,5 @@ def test_no_shipped_recipe_asks_for_a_load_near_the_limit(name):
     ratios = [
         scenario.record.conditions.load / static_rating(scenario.rig.bearing) for scenario in draw_scenarios(recipe)
     ]
-    assert max(ratios) < 0.35
+    highest = 0.35 if recipe.life is None else 0.6  # bearings tire under higher loads alone
+    assert max(ratios) < highest or (recipe.life is not None and recipe.life.accelerated)
