@@ -6,10 +6,12 @@ reads the Markdown pages as they are, and runs the tutorials, so that all output
 
 import importlib.metadata
 import os
+import re
 import shutil
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 project = "Raceway"
 project_copyright = "the Raceway developers, BSD-3-Clause"
@@ -39,6 +41,9 @@ html_extra_path = ["extra"]
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
+html_show_search_summary = (
+    False  # a page that is opened from a folder may not fetch others; the search itself needs no server
+)
 html_context = {"default_mode": "auto"}  # light or dark, as the reader has it
 html_theme_options = {
     "show_toc_level": 2,
@@ -52,3 +57,15 @@ profile = tempfile.TemporaryDirectory()  # the kernel of the tutorials writes in
 shutil.copytree(Path(__file__).with_name("kernel"), Path(profile.name) / "profile_default")
 os.environ["IPYTHONDIR"] = profile.name
 os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+
+
+def offer_notebook(_app: Any, docname: str, source: list[str]) -> None:
+    """Offer the notebook of a tutorial below its title."""
+    if docname.startswith("docs/tutorials/"):
+        link = f"{{nb-download}}`Download this page as a notebook <{Path(docname).name}.ipynb>`"
+        source[0] = re.sub(r"^# .*\n", lambda title: f"{title[0]}\n{link}\n", source[0], count=1, flags=re.MULTILINE)
+
+
+def setup(app: Any) -> None:
+    """Connect the hooks of this site."""
+    app.connect("source-read", offer_notebook)

@@ -92,8 +92,8 @@ def velocity_band(shaft_rate: float) -> tuple[float, float]:
 def velocity_rms(x: Rows, fs: Positive, shaft_rate: OfEach) -> Rows:
     """Root mean square of the velocity [m/s] in the band of ISO 20816-3, shape (record,).
 
-    The band is 10-1000 Hz, and 2-1000 Hz below 600 r/min [2]_. A sine at one of its ends reads 0.71 of its value, one an
-    octave beyond 0.12 [3]_.
+    The band is 10-1000 Hz, and 2-1000 Hz below 600 r/min. A sine at one of its ends reads 0.71 of its value, one an
+    octave beyond 0.12, as of the filters of ISO 2954.
 
     Parameters
     ----------

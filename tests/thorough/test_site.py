@@ -34,6 +34,13 @@ def test_the_site_loads_nothing_from_elsewhere(built):
     assert [found for page in pages for found in LOADED.findall(page)] == []
 
 
+def test_each_tutorial_offers_its_notebook(built):
+    for tutorial in (ROOT / "docs" / "tutorials").glob("*.md"):
+        page = (built / "site" / "docs" / "tutorials" / f"{tutorial.stem}.html").read_text(encoding="utf-8")
+        (link,) = re.findall(r'href="([^"]+\.ipynb)"', page)
+        assert (built / "site" / "docs" / "tutorials" / link).is_file()
+
+
 def test_each_tutorial_takes_less_than_two_minutes(built):
     tutorials = pickle.loads((built / "trees" / "environment.pickle").read_bytes()).nb_metadata  # noqa: S301 - our own
     seconds = {
