@@ -28,13 +28,13 @@ class Mechanism(Section):
         """Compile what the mechanism needs, or fetch it from numba's cache on disk."""
 
 
-def section_with(name: str, base: type[Section], mechanisms: Iterable[type[Mechanism]]) -> Any:
-    """Section of a recipe with the keys of ``base``, and one for each mechanism."""
+def section_with(name: str, module: str, base: type[Section], mechanisms: Iterable[type[Mechanism]]) -> Any:
+    """Section of a recipe with the keys of ``base``, and one for each mechanism. As ``name`` in ``module`` it can be pickled."""
     keys: dict[str, Any] = {
         one.place: (one | None, Field(default=None, description=f"{str(one.__doc__).rstrip('.')}; none if left out."))
         for one in mechanisms
     }
-    return create_model(name, __base__=base, __doc__=base.__doc__, **keys)
+    return create_model(name, __module__=module, __base__=base, __doc__=base.__doc__, **keys)
 
 
 def mechanisms_of(section: Section) -> Iterator[Any]:

@@ -29,6 +29,9 @@ def _entry(kind: type[BearingFault]) -> Any:
 
 
 _ENTRIES = tuple(map(_entry, KINDS))
+globals().update(
+    {entry.__name__: entry for entry in _ENTRIES}
+)  # where recipes that are sent to processes look for them
 OF_KIND = {kind: one for one in _ENTRIES for kind in get_args(one.model_fields["kind"].annotation)}
 """Entry of each kind."""
 

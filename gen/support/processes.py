@@ -8,8 +8,6 @@ from multiprocessing import get_context
 from multiprocessing.context import SpawnProcess
 from typing import Any
 
-import cloudpickle
-
 from gen.support.errors import ClusterError
 
 Task = Callable[[int, int], Iterable[Any]]
@@ -28,11 +26,11 @@ def in_processes(task: Task, count: int) -> Iterator[list[Iterator[Any]]]:
         From an iterator, if its process ended before its share. Errors of the task are raised there too.
     """
     processes: list[SpawnProcess] = []
-    packed, results = cloudpickle.dumps(task), list[Iterator[Any]]()
+    results = list[Iterator[Any]]()
     try:
         for share in range(count):
             receiver, sender = _SPAWN.Pipe(duplex=False)
-            process = _SPAWN.Process(target=_work, args=(sender, packed, share, count), daemon=True)
+            process = _SPAWN.Process(target=_work, args=(sender, task, share, count), daemon=True)
             process.start()
             processes.append(process)
             sender.close()  # so that the end of the process ends the pipe
@@ -60,13 +58,13 @@ def _received(receiver: Any, process: SpawnProcess) -> Iterator[Any]:
         yield result
 
 
-def _work(sender: Any, packed: bytes, share: int, count: int) -> None:
+def _work(sender: Any, task: Task, share: int, count: int) -> None:
     """Send the results of a share; the next one is made while one is sent or waits."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that began this one ends it
     sent: Future[None] | None = None
     try:
         with ThreadPoolExecutor(1) as thread:
-            for result in cloudpickle.loads(packed)(share, count):
+            for result in task(share, count):
                 if sent is not None:
                     sent.result()
                 sent = thread.submit(sender.send, (result, None))

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 else:
     _OF_BACKGROUND = [source for source in (*SOURCES, *LOCKED) if source is not MachineConditions]  # it has a section
-    BackgroundSection = section_with("BackgroundSection", Noise, _OF_BACKGROUND)
+    BackgroundSection = section_with("BackgroundSection", __name__, Noise, _OF_BACKGROUND)
 KEYS = frozenset({*Noise.model_fields, "floor", "growth", *(source.place for source in (*SOURCES, *LOCKED))})
 """Names of the drawn values of a background."""
 

@@ -43,7 +43,7 @@ LABELS: tuple[Variable, ...] = tuple(label for fault in CHAIN for label in fault
 if TYPE_CHECKING:
     SensorFaultsSection = Section
 else:
-    SensorFaultsSection = section_with("SensorFaultsSection", _SensorFaults, CHAIN)
+    SensorFaultsSection = section_with("SensorFaultsSection", __name__, _SensorFaults, CHAIN)
 
 
 def draw_for_rig(section: Section, rng: np.random.Generator, rig: int, channels: int) -> Drawn:

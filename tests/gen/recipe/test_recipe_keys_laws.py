@@ -1,12 +1,13 @@
 """Every key of a recipe is listed with a meaning of its own, its unit, range and default."""
 
 import json
+import pickle
 import re
 
 import pytest
 
 from gen.drawing.distributions import DISTRIBUTIONS
-from gen.recipe import find_recipe, shipped_recipes
+from gen.recipe import find_recipe, read_recipe, recipe_hash, shipped_recipes
 from gen.recipe.keys import recipe_keys
 from gen.recipe.reading import recipe_schema
 from gen.support.errors import RecipeError
@@ -114,3 +115,11 @@ def test_an_unknown_prefix_is_refused_with_the_words_that_keys_begin_with():
         RecipeError, match=r"^mashine: no key of a recipe begins like this; .* name, title, .*distribution\.$"
     ):
         recipe_keys("mashine")
+
+
+@pytest.mark.parametrize("name", shipped_recipes())
+def test_a_recipe_is_the_same_in_another_process(name):
+    recipe = read_recipe(name)
+    sent = pickle.loads(pickle.dumps(recipe))  # noqa: S301 - just made
+    assert sent == recipe
+    assert recipe_hash(sent) == recipe_hash(recipe)
