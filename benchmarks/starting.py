@@ -39,6 +39,8 @@ def command_rows(pairs: int) -> Iterator[Line]:
             "diagnose": ("-m", "raceway", "diagnose", str(recording), *machine),
             "import gen": ("-c", "import gen"),
         }
+        for given in commands.values():  # the first diagnosis trains the reference model
+            process_seconds(*given, check=False)
         found = interleaved(
             pairs,
             alternative=lambda: process_seconds("-c", ALTERNATIVE),

@@ -34,9 +34,10 @@ def stored(measured):
 
 
 def check(acceleration, scenarios):
-    """Every record that is not clipped has the drawn rms, up to the rounding of the converter."""
+    """Every record that is not clipped has the drawn rms beside the offset of its sensor, up to the rounding of the converter."""
     measured = measure(acceleration, scenarios)
-    found = np.sqrt(np.mean(stored(measured) ** 2, axis=(1, 2)))
+    offsets = np.array([scenario.rig.offset for scenario in scenarios])[:, None, None]
+    found = np.sqrt(np.mean((stored(measured) - offsets) ** 2, axis=(1, 2)))
     drawn = np.array([scenario.record.rms for scenario in scenarios])
     rounding = 0.0 if measured.counts_per_unit is None else 1 / (measured.counts_per_unit * np.sqrt(12))
     kept = (measured.clipped == 0) & np.isfinite(acceleration).all(axis=(1, 2))
