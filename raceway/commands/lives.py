@@ -52,7 +52,7 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
 @worker_options
 @json_option
 def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json: bool) -> None:
-    """Score estimates of the remaining life of bearings in DIR, a corpus of lives.
+    """Score estimates of remaining life on the bearings of DIR.
 
     No split parts the snapshots of a bearing. Each estimate stands beside those by age alone; without_signal is the boosting without
     features, its control.
