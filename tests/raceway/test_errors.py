@@ -152,7 +152,7 @@ READERS = {
     "info": "info {}", "validate": "validate {}", "replay": "replay {} --record 0", "plot": "plot {} --record 0 -o {new}.png",
     "explore": "explore {} -o {new}.html", "features": "features {} -o {new}.nc", "train": "train {} -o {new}",
     "evaluate": "evaluate {} --model {model}", "benchmark": "benchmark {} -o {new}", "compare": "compare {} {corpus} -o {new}",
-    "copy": "copy {} -o {new}", "card": "card {} --license MIT",
+    "copy": "copy {} -o {new}", "card": "card {} --license MIT", "life": "life {} -o {new}.png", "prognose": "prognose {}",
 }  # fmt: skip
 NO_CORPORA = {
     "nowhere": "nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file.",

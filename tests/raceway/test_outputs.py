@@ -17,9 +17,12 @@ from features.table.files import write_table
 from gen import copy, generate, write_corpus
 from gen.corpus import card_folder, corpus_files, read_manifest, result_folder
 from gen.corpus.files import _HOST
+from gen.recipe import Recipe
 from gen.support.errors import CorpusError
 from tests.command_tree import COMMANDS
+from tests.gen.conftest import small_with
 from tests.pulses import write_pulses
+from tests.recipes import LIVES
 
 # every command with -o by the line that comes before it, and the name of its result; a folder has no suffix
 RESULTS = {
@@ -28,6 +31,7 @@ RESULTS = {
     "train {corpus} --estimator majority": "result.skops",
     "plot {corpus} --record 1": "result.png",
     "explore {corpus}": "result.html",
+    "life {lives}": "result.png",
     "diagnose {recording} --bearing 6205 --rpm 1500 --rate 12000 --unit g --model {model}": "result.html",
     "replay {corpus} --record 1": "record.nc",
     "benchmark {corpus}": "report",
@@ -36,6 +40,7 @@ RESULTS = {
     "import generic {raw}": "new",
     "import cwru {raw}": "new",
     "import mfpt {raw}": "new",
+    "import femto {raw}": "new",
     "copy {corpus}": "new",
 }
 
@@ -45,6 +50,7 @@ def originals(tiny_recipe, tmp_path_factory):
     """A corpus of eight records, and files of other kinds."""
     folder = tmp_path_factory.mktemp("originals")
     corpus = write_pulses(folder / "corpus", records=2, identity=[f"pulses/0/{n}/{n}/-1" for n in range(8)])
+    generate(Recipe(small_with(LIVES | {"corpus": LIVES["corpus"] | {"rigs": 1}})), folder / "lives")
     shutil.copy(tiny_recipe, folder / "recipe.yaml")
     Model("majority").fit(corpus).save(folder / "model.skops")
     np.save(folder / "recording.npy", np.random.default_rng(0).standard_normal(12_000))
@@ -55,7 +61,13 @@ def originals(tiny_recipe, tmp_path_factory):
 @pytest.fixture
 def places(originals, tmp_path):
     shutil.copytree(originals, tmp_path, dirs_exist_ok=True)
-    names = {"recording": "recording.npy", "recipe": "recipe.yaml", "raw": "raw", "model": "model.skops"}
+    names = {
+        "recording": "recording.npy",
+        "recipe": "recipe.yaml",
+        "raw": "raw",
+        "model": "model.skops",
+        "lives": "lives",
+    }
     return {"corpus": tmp_path / "corpus", **{name: tmp_path / file for name, file in names.items()}}
 
 
