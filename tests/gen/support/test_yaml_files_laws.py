@@ -213,7 +213,7 @@ def test_the_recipes_that_ship_keep_their_hashes():
         "pronostia_like": "13a98ff5fc6c694e",
         "pump": "9c4905a0a74218c5",
         "quickstart": "05dca8a24f9a9fa0",
-        "run_to_failure": "82e3b906a1c4f9c7",
+        "run_to_failure": "41b8fd5a00fcf8b5",
         "run_up": "e5103a46eeb2383b",
         "spindle": "88800a036f919fd8",
     }
