@@ -66,7 +66,10 @@ def _verdict(error: BaseException) -> tuple[int, str]:
             return BAD_INPUT, f"a file of the corpus cannot be read ({error}); raceway validate DIR names it."
         case ModuleNotFoundError(name=str() as name) if name.partition(".")[0] not in OWN:
             package = name.partition(".")[0]
-            return BAD_INPUT, f"this needs {package}, which is not installed; pip install {package}."
+            return (
+                BAD_INPUT,
+                f"this needs the Python module {package}, which is not installed; install the package that has it.",
+            )
         case _:
             what = f"{type(error).__name__}: {error}"
             return INTERNAL_ERROR, f"internal error ({what}); please report it with the output of RACEWAY_TRACEBACK=1."

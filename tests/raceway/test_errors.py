@@ -256,7 +256,7 @@ def test_an_unforeseen_error_ends_in_one_sentence_too(run, places, monkeypatch):
         (
             ModuleNotFoundError("", name="matplotlib.figure"),
             2,
-            "this needs matplotlib, which is not installed; pip install",
+            "this needs the Python module matplotlib, which is not installed; install the package",
         ),
         (ModuleNotFoundError("", name="gen.nothing"), 70, "internal error"),
         (KeyboardInterrupt(), 130, "interrupted."),
