@@ -179,11 +179,19 @@ def score_lives(table: xr.Dataset, tested: xr.Dataset | None = None, *, folds: i
             raise CorpusError(
                 f"the tested bearings are among those of the training ({common[0]}); test other bearings."
             )
+        if not np.array_equal(table["feature"].values, tested["feature"].values):
+            raise CorpusError(
+                "the tested bearings have other features than those of the training; compute the same groups of both."
+            )
         return score_methods(lives, lives_of(tested))
     if len(np.unique(lives.bearing)) < folds:
         raise CorpusError(f"{len(np.unique(lives.bearing))} bearings are fewer than {folds} folds; use fewer folds.")
     estimates = {name: np.empty(len(lives.age)) for name in METHODS}
     for train, test in GroupKFold(folds, shuffle=True, random_state=0).split(lives.age, groups=lives.bearing):
+        if not lives.failed[train].any():
+            raise CorpusError(
+                "no bearing of the training failed in one of the folds; use more folds, or a corpus in which more fail."
+            )
         for name, method in METHODS.items():
             estimates[name][test] = method(lives.some(train))(lives.some(test))
     return scores_of(lives, estimates)

@@ -83,3 +83,16 @@ def test_the_order_of_records_does_not_matter():
 def test_a_table_without_lives_is_refused(wrong, sentence):
     with pytest.raises(CorpusError, match=sentence):
         score_lives(wrong)
+
+
+def test_a_training_without_a_failure_is_refused():
+    few = table(6, bearings=6)
+    failed = few["bearing"].values[few["event"].values == 1][0]
+    few["event"] = few["event"].where(few["bearing"] == failed, 0)
+    with pytest.raises(CorpusError, match=r"no bearing of the training failed in one of the folds; use more folds"):
+        score_lives(few, folds=3)
+
+
+def test_bearings_with_other_features_are_refused():
+    with pytest.raises(CorpusError, match="have other features than those of the training"):
+        score_lives(table(6), table(7).isel(feature=[0, 1]))
