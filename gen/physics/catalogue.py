@@ -216,19 +216,19 @@ number of balls and the ratio of ball to pitch diameter. The pitch diameter is m
 (6006: from the ratio), and the ball diameter is the nearest size in whole 1/32 in.
 
 [2] The Timken Company, *Deep Groove Ball Bearing Catalog*, order no. 10857, 2017, tables 10 and 11. A rating is listed
-only if the balls of the row explain it (static, ISO 76: within 2.5 %), because makers build one designation in more than
-one way.
+only if the balls of the row explain it (static, ISO 76: within 2.5 %), because makers build one designation in more
+than one way.
 
 [3] EWA Sensors, case "Bearing fault", which quotes 4.078 orders for the spin of the balls from the data sheet of an
 SKF 6308.
 
-**Compare the orders with those of the maker of your bearing.** The last column lists the rows whose BPFO or BPFI differs
-by more than 0.2 % from the one that table [1] prints for a wide inner ring bearing of the same size, and how far the
-table is above or below the row. For 306K it prints the orders of 7 balls, 16 % below the 8 balls of the 6306, which the
-ratings of the same maker [2] confirm; for 208K and 308K its BPFO is 1.5 % lower, as with larger balls. Features search
-a line within 1.5 to 2 % of its nominal order: 1.5 % leave nothing for an error of the speed, and 16 % miss the line. A
-table of labels takes the geometry of your bearing instead of a designation, and a recipe takes it as an
-entry of its own.
+**Compare the orders with those of the maker of your bearing.** The last column lists the rows whose BPFO or BPFI
+differs by more than 0.2 % from the one that table [1] prints for a wide inner ring bearing of the same size, and how
+far the table is above or below the row. For 306K it prints the orders of 7 balls, 16 % below the 8 balls of the 6306,
+which the ratings of the same maker [2] confirm; for 208K and 308K its BPFO is 1.5 % lower, as with larger balls.
+Features search a line within 1.5 to 2 % of its nominal order: 1.5 % leave nothing for an error of the speed, and 16 %
+miss the line. A table of labels takes the geometry of your bearing instead of a designation, and a recipe takes it as
+an entry of its own.
 
 """
 
