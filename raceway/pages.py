@@ -40,9 +40,18 @@ TABLES: Mapping[str, Sequence[Feature]] = {
 
 def with_tables(page: str) -> str:
     """A page with its tables made again."""
-    tables = {name: _markdown(_HEADER, map(_cells, features)) for name, features in TABLES.items()}
+    tables = {name: _features(features) for name, features in TABLES.items()}
     tables["views"] = _markdown(("view", "meaning"), ((f"`{view}`", meaning) for view, meaning in VIEWS.items()))
     return _TABLE.sub(lambda found: f"{found[1]}\n{tables[found[2]]}\n{found[3]}", page)
+
+
+def _features(features: Sequence[Feature]) -> str:
+    """Table of features; a column that is the same in all rows is a line above it."""
+    columns = list(zip(_HEADER, zip(*map(_cells, features), strict=True), strict=True))
+    varied = [(name, cells) for name, cells in columns if len(set(cells)) > 1]
+    same = "; ".join(f"{name} {cells[0]}" for name, cells in columns if len(set(cells)) == 1)
+    names, values = zip(*varied, strict=True)
+    return (f"In all rows: {same}\n\n" if same else "") + _markdown(names, zip(*values, strict=True))
 
 
 def _cells(feature: Feature) -> Sequence[str]:
