@@ -81,7 +81,7 @@ def check_submission(
     records = records_of(table, DEFAULT_GROUPS)
     frame = _tested(table, grouped_case(records, track, folds, seed)[1])
     try:
-        given = pd.read_csv(path, dtype=str, keep_default_na=False)
+        given = pd.read_csv(path, dtype=str, keep_default_na=False, nrows=len(frame) + 1)
     except (OSError, ValueError):
         raise CorpusError(f"{path}: is no table of predictions; give a file of raceway benchmark --submit.") from None
     if list(given.columns[:3]) != TESTED or not given[TESTED].equals(frame.astype(str).reset_index(drop=True)):
@@ -89,6 +89,8 @@ def check_submission(
             f"{path}: does not have the {len(frame)} tested records of {folds} folds by {track} with seed {seed} of this corpus; "
             "give the options and the corpus that it was made with."
         )
+    if len(given.columns) == len(TESTED):
+        raise CorpusError(f"{path}: has no predictions; add a column of classes, named after the classifier.")
     tested = records.at(frame.index.to_numpy())
     return {str(name): _scores(tested, given[name], f"{path}: {name}", seed) for name in given.columns[3:]}
 

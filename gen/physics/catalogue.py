@@ -207,8 +207,9 @@ PRINTED_OTHERWISE = {
 _PAGE = """# Catalogue of bearings
 
 Generated from `gen/physics/catalogue.py`. A recipe takes ball bearings, and roller bearings of known length, by their
-designation; a table of labels takes any of these. Lengths are in mm, angles in degrees, the dynamic rating C
-and the static rating C0 in kN, fault frequencies in orders of the shaft for a fixed outer ring; a dash means unknown.
+designation; a table of labels takes any of these. Lengths are in mm (of rollers behind "of"), angles in degrees, the
+dynamic rating C and the static rating C0 in kN, fault frequencies in orders of the shaft for a fixed outer ring; a dash
+means unknown.
 *One source* marks a geometry that only one source gives.
 
 [1] The Timken Company, *Ball Bearing Housed Unit Catalog*, p. A-13, table A-9: frequency coefficients. They give the
@@ -222,23 +223,20 @@ than one way.
 [3] EWA Sensors, case "Bearing fault", which quotes 4.078 orders for the spin of the balls from the data sheet of an
 SKF 6308.
 
-**Compare the orders with those of the maker of your bearing.** The last column lists the rows whose BPFO or BPFI
-differs by more than 0.2 % from the one that table [1] prints for a wide inner ring bearing of the same size, and how
-far the table is above or below the row. For 306K it prints the orders of 7 balls, 16 % below the 8 balls of the 6306,
-which the ratings of the same maker [2] confirm; for 208K and 308K its BPFO is 1.5 % lower, as with larger balls.
-Features search a line within 1.5 to 2 % of its nominal order: 1.5 % leave nothing for an error of the speed, and 16 %
-miss the line. A table of labels takes the geometry of your bearing instead of a designation, and a recipe takes it as
-an entry of its own.
+**Compare the orders with those of the maker of your bearing.** *Other orders* marks the rows whose BPFO or BPFI differs
+by more than 0.2 % from the one that table [1] prints for a wide inner ring bearing of the same size, and how far the
+table is above or below the row. For 306K it prints the orders of 7 balls, 16 % below the 8 balls of the 6306, which the
+ratings of the same maker [2] confirm; for 208K and 308K its BPFO is 1.5 % lower, as with larger balls. Features search
+a line within 1.5 to 2 % of its nominal order: 1.5 % leave nothing for an error of the speed, and 16 % miss the line.
+Tables of labels and recipes take the geometry of your bearing instead of a designation.
 
 """
 
 _HEAD = (
     "designation",
     "elements",
-    "number",
     "pitch",
     "diameter",
-    "length",
     "angle",
     "bore x outside x width",
     "C",
@@ -248,7 +246,7 @@ _HEAD = (
 
 def catalogue_page() -> str:
     """Markdown page of all bearings of the catalogue, with fault orders and source."""
-    columns = (*_HEAD, "FTF", "BPFO", "BPFI", "BSF", "source", "other orders")
+    columns = (*_HEAD, "FTF", "BPFO", "BPFI", "BSF", "source")
     lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
     lines += ["| " + " | ".join(_cells(bearing)) + " |" for bearing in CATALOGUE.values()]
     return _PAGE + "\n".join(lines) + "\n"
@@ -258,26 +256,25 @@ def _cells(bearing: Bearing) -> list[str]:
     size = (bearing.bore, bearing.outside_diameter, bearing.width)
     return [
         bearing.designation,
-        bearing.rolling_element,
-        str(bearing.n_balls),
-        *(_shown(length, 1e3) for length in (bearing.pitch_diameter, bearing.ball_diameter, bearing.roller_length)),
+        f"{bearing.n_balls} {bearing.rolling_element}s"
+        + (f" of {_shown(bearing.roller_length, 1e3)}" if bearing.roller_length else ""),
+        *(_shown(length, 1e3) for length in (bearing.pitch_diameter, bearing.ball_diameter)),
         f"{math.degrees(bearing.contact_angle):g}",
         " x ".join(_shown(length, 1e3) for length in size) if any(size) else "-",
         *(_shown(rating, 1e-3) for rating in (bearing.dynamic_rating, bearing.static_rating)),
         *(f"{order:.4f}" for order in orders(bearing)),
-        bearing.source,
-        _other_orders(bearing),
+        bearing.source + _other_orders(bearing),
     ]
 
 
 def _other_orders(bearing: Bearing) -> str:
-    """Fault orders that a maker prints for a bearing of this size, relative to those of its row."""
+    """Fault orders that a maker prints for a bearing of this size, relative to those of its row; empty if they agree."""
     if bearing.designation not in PRINTED_OTHERWISE:
-        return "-"
+        return ""
     name, printed, remark = PRINTED_OTHERWISE[bearing.designation]
     shares = (f"{100 * (its / own - 1):+.1f} %" for its, own in zip(printed, orders(bearing), strict=True))
     differences = ", ".join(f"{key.upper()} {share}" for key, share in zip(FaultOrders._fields, shares, strict=True))
-    return f"Timken A-9 [1], {name}: {differences}" + (f" ({remark})" if remark else "")
+    return f"; **other orders** in Timken A-9 [1], {name}: {differences}" + (f" ({remark})" if remark else "")
 
 
 def _shown(value: float | None, factor: float) -> str:

@@ -116,6 +116,8 @@ def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, t
         ),
         (lambda text: "\n".join(text.splitlines()[:-1]), "does not have the 48 tested records"),
         (lambda text: text.replace("healthy", "wealthy"), "'wealthy' is no class; allowed are healthy, inner"),
+        (lambda text: text + text.splitlines()[-1], "does not have the 48 tested records"),
+        (lambda text: "\n".join(line.rsplit(",", 1)[0] for line in text.splitlines()), "has no predictions"),
         (lambda _: "", "is no table of predictions"),
     ],
 )
