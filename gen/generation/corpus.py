@@ -6,7 +6,6 @@ of a single file ``NAME.nc`` lie in the folder ``NAME.nc.parts`` until all are t
 """
 
 import platform
-import threading
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext, suppress
@@ -41,14 +40,14 @@ from gen.corpus import (
 from gen.generation.compilation import compile_kernels, missing_kernels
 from gen.generation.forecast import expected_work, forecast_in_words, leave_rate, seconds_of
 from gen.generation.parts import Outcome, made_by, make_parts, units
-from gen.generation.scheduling import Crew
 from gen.generation.sources import sources_sha256
 from gen.generation.step_checks import CHECKED_PARTS
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.errors import ClusterError, CorpusError, RecipeError
-from gen.support.progress import Progress
+from gen.support.processes import as_they_come
+from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
-from gen.support.workers import run, threads_of
+from gen.support.workers import run
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -104,14 +103,13 @@ def generate(
         Single file of the corpus if the name ends in ``.nc``, else its folder; created if it does not exist. It may hold the same corpus,
         unfinished or finished; a folder may also hold fewer of its records, and then the rest is made.
     workers : int
-        Number of parts that are made at a time: 1 in this thread, some in threads of this process, more in processes on this machine.
+        Number of processes that make parts; 1 is this one. A script that starts several needs ``if __name__ == "__main__":``.
     scheduler : str, optional
         Address of a dask scheduler whose workers see the folder under the same path; replaces ``workers``.
     seed, records : int, optional
         Replace the seed and the number of records of the recipe.
     progress : callable, optional
-        Called in this thread with the number of records done and of all records. The last record of a part counts when the part is
-        written, every other record when it is final.
+        Called with the number of records that are on disk and of all records; from a cluster in another thread.
     notice : callable, optional
         Called with a sentence that says how long it takes, and one when a kernel is about to be compiled.
 
@@ -136,7 +134,7 @@ def generate(
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
         _prepare(folder, find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode(), facts, checked)
-        outcomes = _all_parts(Tally(checked, progress), folder, workers, client, notice)
+        outcomes = _all_parts(checked, range(checked.n_parts), folder, workers, client, progress, notice)
         corpus = _finish(target, folder, outcomes, facts)
         if folder is not target:
             remove_parts(folder, map(part_name, range(checked.n_parts)))
@@ -175,23 +173,28 @@ def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, 
 
 
 def _all_parts(
-    tally: "Tally", folder: Path, workers: int, client: "Client | None", notice: Callable[[str], None]
+    recipe: Recipe,
+    parts: range,
+    folder: Path,
+    workers: int,
+    client: "Client | None",
+    progress: Progress | None,
+    notice: Callable[[str], None],
 ) -> list[Outcome]:
-    """Make the parts of a tally that are missing; outcomes of all of them in their order."""
-    recipe, work, at_once = tally.recipe, 0.0, min(workers, len(tally.parts))
-    if client is None and not all((folder / "parts" / part_name(part)).exists() for part in tally.parts):
+    """Make those of the parts that are missing; outcomes of all of them in their order."""
+    work, workers = 0.0, min(workers, len(parts))
+    if client is None and not all((folder / "parts" / part_name(part)).exists() for part in parts):
         missing, work = missing_kernels(recipe), expected_work(recipe)
-        notice(forecast_in_words(len(missing), recipe.n_records * at_once / seconds_of(work)))
+        notice(forecast_in_words(len(missing), recipe.n_records * workers / seconds_of(work)))
         compile_kernels(recipe, missing, notice)
     outcomes: dict[int, Outcome] = {}
-    start = time.monotonic()
-    with closing(_made(tally, folder, workers, client)) as made:
+    start, done = time.monotonic(), _tally(recipe, parts, progress)
+    with closing(_made(recipe, parts, folder, workers, client, done)) as made:
         for part, outcome in made:
             outcomes[part] = outcome
-            tally.note(part, len(recipe.records_of_part(part)))
-            tally.show()
+            done(part)
     if work and not any(outcome.kept for outcome in outcomes.values()):
-        leave_rate(work, at_once * (time.monotonic() - start))
+        leave_rate(work, workers * (time.monotonic() - start))
     return [outcomes[number] for number in sorted(outcomes)]
 
 
@@ -287,34 +290,11 @@ def _check_generated(folder: Path, manifest: "Manifest") -> None:
         raise CorpusError(f"{folder}: holds a copy of a corpus, which is not generated again; choose another name.")
 
 
-class Tally:
-    """Number of records that are done; it is changed by the thread that listens to the workers too."""
-
-    def __init__(self, recipe: Recipe, progress: Progress | None) -> None:
-        self.recipe = recipe
-        self.parts = range(recipe.n_parts)
-        self._progress = progress
-        self._of_parts = dict.fromkeys(self.parts, 0)
-        self._all = sum(len(recipe.records_of_part(part)) for part in self.parts)
-        self._done = 0  # their sum, which takes longer to compute the more parts there are
-        self._lock = threading.Lock()
-
-    def note(self, part: int, records: int) -> None:
-        """Set the count of a part; a task that dask repeats does not lower it."""
-        with self._lock:
-            added = max(0, records - self._of_parts[part])
-            self._of_parts[part] += added
-            self._done += added
-
-    def show(self) -> None:
-        """Call ``progress`` with the number of records done, once it is not 0."""
-        if self._progress is not None and self._done:
-            self._progress(self._done, self._all)
-
-    def note_and_show(self, part: int, records: int) -> None:
-        """Set the count of a part and call ``progress``."""
-        self.note(part, records)
-        self.show()
+def _tally(recipe: Recipe, parts: range, progress: Progress | None) -> Callable[[int], None]:
+    """What takes the number of a part that is on disk, and tells ``progress`` the number of records on disk; of repeated parts once."""
+    sizes = {part: len(recipe.records_of_part(part)) for part in parts}
+    count = counter(progress, sum(sizes.values()))
+    return lambda part: count(sizes.pop(part, 0))
 
 
 def client_of(scheduler: str | None, workers: int) -> "AbstractContextManager[Client | None]":
@@ -328,34 +308,40 @@ def client_of(scheduler: str | None, workers: int) -> "AbstractContextManager[Cl
     return cluster.client_of(scheduler)
 
 
-def _made(tally: Tally, folder: Path, workers: int, client: "Client | None") -> Generator[tuple[int, Outcome]]:
-    """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
-    recipe, parts = tally.recipe, tally.parts
-    of_this_process = Crew(threads_of(workers))
-    processes = workers // of_this_process.threads
-    if client is None and processes == 1:
-        report = tally.note_and_show if workers == 1 else tally.note
-        for some in units(recipe, parts, 1):
-            yield from make_parts(recipe, some, folder, report, tally.show, of_this_process)
-        return
-    from gen.support.cluster import local_client
+def _made(
+    recipe: Recipe, parts: range, folder: Path, workers: int, client: "Client | None", report: Callable[[int], None]
+) -> Generator[tuple[int, Outcome]]:
+    """Number and outcome of every part in the order in which they finish: from this process, from several, or from a cluster.
 
-    with local_client(processes) if client is None else nullcontext(client) as cluster:
-        crew, count = of_this_process, processes
-        if client is not None:
-            threads: list[int] = list(cast("Any", client).nthreads().values())
-            crew, count = Crew(1, 1 / max(threads, default=1)), max(sum(threads), 1)
-        task = partial(_unit, recipe, folder.resolve(), crew, sources_sha256())
-        yield from run(task, units(recipe, parts, count), scheduler=cluster, report=tally.note, meanwhile=tally.show)
+    ``report`` is called with a part that a worker of the cluster has written; its outcome comes with that of other parts.
+    """
+    if client is not None:
+        threads: list[int] = list(cast("Any", client).nthreads().values())
+        task = partial(_unit, recipe, folder.resolve(), sources_sha256())
+        return run(task, units(recipe, parts, max(sum(threads), 1)), scheduler=client, report=report)
+    if workers == 1:
+        return make_parts(recipe, parts, folder)
+    there = [part for part in parts if (folder / "parts" / part_name(part)).exists()]
+    return as_they_come(partial(_share, recipe, folder.resolve(), there, sorted({*parts} - {*there})), workers)
+
+
+def _share(
+    recipe: Recipe, folder: Path, there: list[int], missing: list[int], share: int, shares: int
+) -> Iterator[tuple[int, Outcome]]:
+    """Make the parts of one process: missing ones that follow each other, and of those that seem to be there as many as the others."""
+    first, stop = (len(missing) * edge // shares for edge in (share, share + 1))
+    return make_parts(recipe, sorted(there[share::shares] + missing[first:stop]), folder)
 
 
 def _unit(
-    recipe: Recipe, folder: Path, crew: Crew, sources: str, report: Callable[[int, int], None], parts: range
+    recipe: Recipe, folder: Path, sources: str, report: Callable[[int], None], parts: range
 ) -> Iterator[tuple[int, Outcome]]:
-    """Make some parts on a worker, if it has the sources of the process that asks for them."""
+    """Make some parts on a worker of a cluster, if it has the sources of the process that asks for them."""
     if sources_sha256() != sources:
         raise ClusterError(
             f"worker {platform.node()}: has other sources of raceway ({sources_sha256()[:12]}) than this process ({sources[:12]}); install "
             f"the same version on every worker."
         )
-    return make_parts(recipe, parts, folder, report, crew=crew)
+    for part, outcome in make_parts(recipe, parts, folder):
+        report(part)
+        yield part, outcome

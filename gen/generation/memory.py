@@ -14,7 +14,6 @@ import xarray as xr
 from gen.corpus import RECIPE_TEXT
 from gen.corpus.schema import add_class_names
 from gen.generation.parts import dataset_of, library_versions, part_attributes, parts_in_order
-from gen.generation.scheduling import Crew
 from gen.generation.undetected import made_from
 from gen.recipe import Recipe, make_recipe, recipe_text
 from gen.recipe.keywords import FaultLike
@@ -74,7 +73,7 @@ def records(
         Number of records of each fault. Each record has a bearing (``specimen``) of its own in one machine (``rig``), unless ``keys``
         give ``rigs``, ``specimens_per_rig``, ``records_per_specimen`` or ``rungs``. The faults take turns.
     workers : int
-        Number of threads.
+        Number of processes that make parts; 1 is this one. A script that starts several needs ``if __name__ == "__main__":``.
     **keys
         Keys of a recipe, as for :func:`gen.record`.
 
@@ -158,7 +157,7 @@ def _checked(scenarios: Sequence[Scenario]) -> list[Scenario]:
 
 def _made(recipe: Recipe, workers: int) -> xr.Dataset:
     """Records of a recipe, made in parts as those of a corpus."""
-    parts = list(parts_in_order(recipe, map(recipe.records_of_part, range(recipe.n_parts)), Crew(workers)))
+    parts = list(parts_in_order(recipe, range(recipe.n_parts), workers))
     failures = [text for _, texts in parts for text in texts]
     attributes = part_attributes(recipe, failures) | {RECIPE_TEXT: recipe_text(recipe)}
     return _decoded([part for part, _ in parts], failures, attributes)

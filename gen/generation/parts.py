@@ -7,8 +7,9 @@ import functools
 import itertools
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -19,12 +20,13 @@ from numpy.typing import NDArray
 
 from gen.corpus import PartRow, facts_as_attributes, file_facts, part_name, row_of, stored_columns, write_part
 from gen.generation.labels import part_dataset
-from gen.generation.scheduling import ALONE, Crew, MadePart, made_parts
+from gen.generation.scheduling import MadePart, made_parts
 from gen.generation.sources import sources_sha256
 from gen.generation.undetected import MadeRecords
 from gen.recipe import Recipe, recipe_hash
 from gen.scenarios import settings_of
 from gen.simulation.timeline import timeline
+from gen.support.processes import in_processes
 
 UNIT_SAMPLES = 64e6  # knots of the kernel; about a minute of work
 
@@ -56,30 +58,17 @@ def units(recipe: Recipe, parts: range, workers: int) -> list[range]:
     return [range(*some) for some in itertools.pairwise(edges)]
 
 
-def make_parts(
-    recipe: Recipe,
-    parts: range,
-    directory: Path,
-    report: Callable[[int, int], None] = lambda _part, _count: None,
-    meanwhile: Callable[[], None] = lambda: None,
-    crew: Crew = ALONE,
-) -> Iterator[tuple[int, Outcome]]:
+def make_parts(recipe: Recipe, parts: Iterable[int], directory: Path) -> Generator[tuple[int, Outcome]]:
     """Write parts, together and each as soon as it is complete; yields number and outcome of each.
 
     Parameters
     ----------
     recipe : Recipe
         The recipe.
-    parts : range
-        Numbers of the parts.
+    parts : iterable of int
+        Numbers of the parts, in rising order.
     directory : path
         Folder of the corpus; a part that is in it already is kept.
-    report : callable
-        Called with the number of a part and the number of its final records; the last is not reported before the part is written.
-    meanwhile : callable
-        Called in this thread now and then while several threads work.
-    crew : Crew
-        Threads that work on these parts together.
     """
     missing = []
     for part in parts:
@@ -93,8 +82,7 @@ def make_parts(
         part = missing[made.place]
         return part, _write(made, recipe, directory / "parts" / part_name(part))
 
-    numbers = [recipe.records_of_part(part) for part in missing]
-    yield from made_parts(recipe, numbers, written, lambda place, count: report(missing[place], count), meanwhile, crew)
+    yield from made_parts(recipe, map(recipe.records_of_part, missing), written)
 
 
 def _write(made: MadePart, recipe: Recipe, path: Path) -> Outcome:
@@ -119,17 +107,23 @@ def dataset_of(
     return dataset, failures
 
 
-def parts_in_order(
-    recipe: Recipe, numbers: Iterable[range], crew: Crew = ALONE
-) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
-    """Records of parts as from :func:`dataset_of`, in the order of their ``numbers``."""
+def parts_in_order(recipe: Recipe, parts: range, workers: int = 1) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
+    """Records of parts as from :func:`dataset_of`, in the order of their numbers, made in this process or in several."""
+    if workers == 1:
+        yield from _in_order(recipe, parts, 0, 1)
+        return
+    with in_processes(partial(_in_order, recipe, parts), workers) as shares:
+        for place in range(len(parts)):
+            yield next(shares[place % workers])
 
+
+def _in_order(recipe: Recipe, parts: range, share: int, shares: int) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
     def finished(made: MadePart) -> tuple[int, tuple[xr.Dataset, tuple[str, ...]]]:
         return made.place, dataset_of(made.records, made.step_error)
 
     early: dict[int, tuple[xr.Dataset, tuple[str, ...]]] = {}
     following = 0
-    for place, part in made_parts(recipe, numbers, finished, crew=crew):
+    for place, part in made_parts(recipe, map(recipe.records_of_part, parts[share::shares]), finished):
         early[place] = part
         while following in early:
             yield early.pop(following)

@@ -4,7 +4,6 @@ The records are those that :func:`gen.generate` makes of the same recipe, from t
 They are made in the parts of its corpus, in this process or in several, and come out in the order of their numbers.
 """
 
-import itertools
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
@@ -19,7 +18,6 @@ from gen.generation.compilation import compile_kernels, missing_kernels
 from gen.generation.parts import parts_in_order
 from gen.recipe import Recipe, corpus_identity, read_recipe
 from gen.support.errors import RecipeError, SimulationError
-from gen.support.processes import in_processes
 
 if TYPE_CHECKING:
     from gen.generation.torch_items import TorchStream
@@ -203,27 +201,14 @@ def records_from(
     recipe: Recipe, first: int, *, workers: int = 1, shard: int = 0, shards: int = 1
 ) -> Iterator[xr.Dataset]:
     """Records from the number ``first`` on, in rising order, a part at a time: every ``shards``-th part, beginning with ``shard``."""
-    made = _parts(recipe, first, shard, shards) if workers == 1 else _parts_of_processes(recipe, first, workers)
+    parts = range(first // recipe.storage.records_per_part, recipe.n_parts)[shard::shards]
     warned = False
-    for records, failures in made:
-        if not records.sizes["record"]:
+    for made, failures in parts_in_order(recipe, parts, workers):
+        if not made.sizes["record"]:
             raise SimulationError(failures[0])
         if failures and not warned:
             warnings.warn(f"records that cannot be simulated are left out; the first: {failures[0]}", stacklevel=3)
             warned = True
-        yield records.isel(record=records["recording"].values >= first)
-
-
-def _parts(recipe: Recipe, first: int, shard: int, shards: int) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
-    """Records of parts in m s-2, and a sentence for each that is left out."""
-    parts = itertools.count(first // recipe.storage.records_per_part + shard, shards)
-    for made, failures in parts_in_order(recipe, map(recipe.records_of_part, parts)):
         records = xr.decode_cf(made, decode_times=False).load()
         add_class_names(records)
-        yield records, failures
-
-
-def _parts_of_processes(recipe: Recipe, first: int, workers: int) -> Iterator[tuple[xr.Dataset, tuple[str, ...]]]:
-    with in_processes(partial(_parts, recipe, first), workers) as shares:
-        for share in itertools.cycle(shares):
-            yield next(share)
+        yield records.isel(record=records["recording"].values >= first)

@@ -1,10 +1,11 @@
-"""A task without end in several processes of this machine: each makes its share, a little ahead of who asks for the results."""
+"""A task in several processes of this machine: each makes its share, a little ahead of who asks for the results."""
 
 import signal
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import get_context
+from multiprocessing.connection import wait
 from multiprocessing.context import SpawnProcess
 from typing import Any
 
@@ -12,6 +13,7 @@ from gen.support.errors import ClusterError
 
 Task = Callable[[int, int], Iterable[Any]]
 _SPAWN = get_context("spawn")  # a copy of this process would hold locks that its threads had at that time
+_RESULT, _ERROR, _END = range(3)
 
 
 @contextmanager
@@ -25,37 +27,59 @@ def in_processes(task: Task, count: int) -> Iterator[list[Iterator[Any]]]:
     ClusterError
         From an iterator, if its process ended before its share. Errors of the task are raised there too.
     """
-    processes: list[SpawnProcess] = []
-    results = list[Iterator[Any]]()
+    with _started(task, count) as processes:
+        yield [_results(receiver, process) for receiver, process in processes.items()]
+
+
+def as_they_come(task: Task, count: int) -> Generator[Any]:
+    """The results of all shares in the order in which they come, as :func:`in_processes`; the processes end with the generator."""
+    with _started(task, count) as processes:
+        running = dict(processes)
+        while running:
+            for receiver in wait(list(running)):
+                kind, value = _receive(receiver, running[receiver])
+                if kind == _END:
+                    del running[receiver]
+                else:
+                    yield value
+
+
+@contextmanager
+def _started(task: Task, count: int) -> Iterator[dict[Any, SpawnProcess]]:
+    """Processes by the ends of their pipes."""
+    processes: dict[Any, SpawnProcess] = {}
     try:
         for share in range(count):
             receiver, sender = _SPAWN.Pipe(duplex=False)
             process = _SPAWN.Process(target=_work, args=(sender, task, share, count), daemon=True)
             process.start()
-            processes.append(process)
+            processes[receiver] = process
             sender.close()  # so that the end of the process ends the pipe
-            results.append(_received(receiver, process))
-        yield results
+        yield processes
     finally:
-        for process in processes:
+        for process in processes.values():
             process.terminate()
-        for process in processes:
+        for process in processes.values():
             process.join()
 
 
-def _received(receiver: Any, process: SpawnProcess) -> Iterator[Any]:
-    while True:
-        try:
-            result, error = receiver.recv()
-        except EOFError:
-            process.join()
-            raise ClusterError(
-                f"a process that makes records ended with code {process.exitcode}; use fewer workers if memory is short, and put what "
-                'starts them under if __name__ == "__main__":.'
-            ) from None
-        if error is not None:
-            raise error
-        yield result
+def _results(receiver: Any, process: SpawnProcess) -> Iterator[Any]:
+    while (message := _receive(receiver, process))[0] != _END:
+        yield message[1]
+
+
+def _receive(receiver: Any, process: SpawnProcess) -> tuple[int, Any]:
+    try:
+        kind, value = receiver.recv()
+    except (EOFError, OSError):  # a process that is killed may leave half a message
+        process.join()
+        raise ClusterError(
+            f"a process that makes records ended with code {process.exitcode}; use fewer workers if memory is short, and put what "
+            'starts them under if __name__ == "__main__":.'
+        ) from None
+    if kind == _ERROR:
+        raise value
+    return kind, value
 
 
 def _work(sender: Any, task: Task, share: int, count: int) -> None:
@@ -67,8 +91,9 @@ def _work(sender: Any, task: Task, share: int, count: int) -> None:
             for result in task(share, count):
                 if sent is not None:
                     sent.result()
-                sent = thread.submit(sender.send, (result, None))
+                sent = thread.submit(sender.send, (_RESULT, result))
+        sender.send((_END, None))
     except BrokenPipeError:
         return  # nobody listens any more
     except Exception as error:  # noqa: BLE001 - it is raised where the results are asked for
-        sender.send((None, error))
+        sender.send((_ERROR, error))

@@ -5,12 +5,11 @@ once and share its libraries. The rest of a task holds the lock: beyond ``MOST_T
 some threads. A task may run in any of them, so it holds :data:`gen.corpus.LIBRARY_LOCK` while it uses netCDF4 or h5py.
 """
 
-import ctypes
 import os
 import threading
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import partial
 from itertools import islice
 from queue import Empty, SimpleQueue
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
 
 MOST_THREADS = 4  # of a process: about a fifth of the time of a record holds the interpreter lock
 POLL_S = 0.5
-_ARENA_MAX = -8  # M_ARENA_MAX of malloc.h
 
 
 def run(
@@ -140,12 +138,3 @@ def threads_of(workers: int) -> int:
     [1, 4, 3, 1, 4]
     """
     return next(threads for threads in range(MOST_THREADS, 0, -1) if workers % threads == 0)
-
-
-def share_one_heap() -> None:
-    """Let all threads of this process take memory from one heap, where the C library is that of GNU.
-
-    Called before libraries start threads, it saves 70 MB of 560 with two threads, at the same speed.
-    """
-    with suppress(OSError, AttributeError):
-        ctypes.CDLL(None).mallopt(_ARENA_MAX, 1)

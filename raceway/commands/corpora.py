@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from gen.generation.plan import Plan
     from gen.recipe import Recipe
 
-WORTH_WORKERS = 1000  # records; starting a local cluster takes about as long as generating these
+WORTH_WORKERS = 400  # records; starting a process takes about as long as making these
 
 
 @click.command()
@@ -169,8 +169,8 @@ def generate(
     The corpus is a folder, or one netCDF file if TARGET ends in .nc. It is generated in parts; those of a file NAME.nc lie in the folder
     NAME.nc.parts until it is whole. If the command is interrupted, finished parts are kept, and the same command completes the corpus.
     With a larger --records it grows: a finished corpus in a folder gets the records that it lacks, and is then the one made at once.
-    The bytes of the parts do not depend on the number of workers. By default there is one worker per core, but at most four for up to
-    1000 records: up to four workers are threads, which start at once; more are processes, which take seconds to start.
+    The bytes of the parts do not depend on the number of workers, which are processes: one up to 400 records, by default one per core
+    beyond.
 
     Exits with 1 if more than 1 % of the records cannot be used, because they are clipped, all zeros or not numbers; the corpus is kept.
 
@@ -184,9 +184,7 @@ def generate(
     """
     from gen.corpus import complaint
     from gen.recipe import read_recipe
-    from gen.support.workers import share_one_heap
 
-    share_one_heap()
     wanted = read_recipe(recipe, seed=seed, records=records)
     start = time.monotonic()
     workers = team.workers or _default_workers(wanted)
@@ -248,11 +246,9 @@ def _kept(corpus: Path, recipe: "Recipe") -> str:
 
 
 def _default_workers(recipe: "Recipe") -> int:
-    from gen.support.workers import MOST_THREADS, cores
+    from gen.support.workers import cores
 
-    if recipe.n_parts < 2 or recipe.n_records <= WORTH_WORKERS:
-        return min(cores(), MOST_THREADS)
-    return min(cores(), max(recipe.n_parts, MOST_THREADS))
+    return min(cores(), recipe.n_parts) if recipe.n_records > WORTH_WORKERS else 1
 
 
 @click.command()

@@ -59,11 +59,11 @@ def draw_for_rig(section: Section, rng: np.random.Generator, rig: int, channels:
 
 def draw_for_record(section: Section, rng: np.random.Generator, record: int) -> Drawn:
     """Faults that come and go, and what faults of rigs have anew in each record."""
-    streams, found = rng.spawn(len(CHAIN)), dict[str, Any]()
-    for fault in mechanisms_of(section):
-        if fault.record_stream is not None:
-            draws = Draws(streams[fault.record_stream], record, f"record {record}")
-            found[fault.place] = fault.draw(draws, 0) if fault.rig_stream is None else fault.draw_anew(draws)
+    present = [fault for fault in mechanisms_of(section) if fault.record_stream is not None]
+    streams, found = rng.spawn(len(CHAIN)) if present else [], dict[str, Any]()
+    for fault in present:
+        draws = Draws(streams[fault.record_stream], record, f"record {record}")
+        found[fault.place] = fault.draw(draws, 0) if fault.rig_stream is None else fault.draw_anew(draws)
     return {place: drawn for place, drawn in found.items() if drawn is not None}
 
 

@@ -1,7 +1,7 @@
 """Laws of generation: a corpus is the same for any number of workers."""
 
-import threading
-import time
+import shutil
+from multiprocessing import active_children
 
 import numpy as np
 import pytest
@@ -43,30 +43,32 @@ def test_one_call_makes_one_file_with_the_same_records(single, whole):
         assert one.identical(other)
 
 
-def test_threads_make_the_same_corpus_as_one(recipe_file, whole, single, tmp_path):
+def test_processes_make_the_same_corpus_as_one(recipe_file, whole, single, tmp_path):
     done = []
     generate(recipe_file, tmp_path / "c", workers=3, progress=lambda *counts: done.append(counts))
     generate(recipe_file, tmp_path / "c.nc", workers=2)
     assert_the_same_corpus(tmp_path / "c", whole)
     assert_the_same_corpus(tmp_path / "c.nc", single)
-    assert done[-1] == (24, 24)
+    assert done == [(8, 24), (16, 24), (24, 24)]
 
 
-def test_processes_with_threads_make_the_same_corpus_as_one(recipe_file, whole, tmp_path, monkeypatch):
-    monkeypatch.setattr("gen.generation.corpus.threads_of", lambda _: 2)
-    generate(recipe_file, tmp_path / "four", workers=4)
-    assert_the_same_corpus(tmp_path / "four", whole)
+def test_processes_share_out_what_is_missing_alone(recipe_file, whole, tmp_path):
+    shutil.copytree(whole.path, tmp_path / "c")
+    (tmp_path / "c" / "parts" / "part-00001.nc").unlink()
+    made = generate(recipe_file, tmp_path / "c", workers=2)
+    assert made.kept == 2
+    assert_the_same_corpus(tmp_path / "c", whole)
 
 
-def test_an_error_in_a_thread_ends_all_threads_and_is_told(recipe_file, tmp_path, monkeypatch):
-    def full_disk(*_args):
-        raise CorpusError("no space left")
-
-    monkeypatch.setattr("gen.generation.parts.write_part", full_disk)
-    before = threading.active_count()
-    with pytest.raises(CorpusError, match="no space left"):
+def test_an_error_in_a_process_ends_all_processes_and_is_told(recipe_file, tmp_path):
+    (tmp_path / "c" / "parts").mkdir(parents=True)
+    generate(recipe_file, tmp_path / "d", records=8)
+    for name in ("manifest.json", "recipe.yaml"):
+        shutil.copy(tmp_path / "d" / name, tmp_path / "c" / name)
+    (tmp_path / "c" / "parts" / "part-00001.nc").mkdir()  # where a part is to be written
+    with pytest.raises(CorpusError, match=r"part-00001\.nc"):
         generate(recipe_file, tmp_path / "c", workers=2)
-    assert threading.active_count() == before
+    assert not active_children()
 
 
 def test_workers_of_a_given_scheduler_make_the_same_corpus(recipe_file, whole, tmp_path):
@@ -109,30 +111,19 @@ def test_a_scheduler_that_does_not_answer_is_refused_before_anything_is_written(
 
 
 @pytest.mark.parametrize("where", ["this process", "a cluster"])
-def test_progress_moves_within_a_part_and_ends_once_at_the_whole(write_recipe, tmp_path, monkeypatch, where):
-    """Two batches of one part: the first is reported before the part is written."""
-    recipe = write_recipe(tmp_path / "one.yaml", {"storage.records_per_part": 24})
-    done, written = [], []
-    from gen.generation.parts import write_part
+def test_records_count_when_their_part_is_on_disk(recipe_file, tmp_path, where):
+    corpus, done = tmp_path / "c", []
 
-    def slowly(*given):
-        time.sleep(0 if where == "this process" else 0.5)  # several times POLL_S
-        written.append(len(done))
-        return write_part(*given)
+    def note(count, total):
+        done.append((count, total))
+        assert len(list((corpus / "parts").glob("part-*.nc"))) * 8 >= count
 
-    monkeypatch.setattr("gen.generation.parts.write_part", slowly)
-    monkeypatch.setattr("gen.support.workers.POLL_S", 0.05)
     if where == "this process":
-        generate(recipe, tmp_path / "c", progress=lambda *counts: done.append(counts))
+        generate(recipe_file, corpus, progress=note)
     else:
         with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0") as cluster:
-            address = cluster.scheduler_address
-            generate(recipe, tmp_path / "c", scheduler=address, progress=lambda *counts: done.append(counts))
-    numbers = [number for number, _ in done]
-    assert numbers == sorted(numbers)
-    assert {total for _, total in done} == {24}
-    assert any(0 < number < 24 for number in numbers[: written[0]])
-    assert numbers.count(24) == 1
+            generate(recipe_file, corpus, scheduler=cluster.scheduler_address, progress=note)
+    assert done == [(8, 24), (16, 24), (24, 24)]
 
 
 def test_seed_and_size_given_in_the_call_are_remembered(recipe_file, whole, tmp_path):

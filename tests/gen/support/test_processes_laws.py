@@ -8,11 +8,15 @@ from multiprocessing import active_children
 import pytest
 
 from gen.support.errors import ClusterError, RecipeError
-from gen.support.processes import in_processes
+from gen.support.processes import as_they_come, in_processes
 
 
 def every(share, count):
     return itertools.count(share, count)
+
+
+def some(share, count):
+    return range(share, 10, count)
 
 
 def refused(share, _count):
@@ -44,4 +48,18 @@ def test_a_process_that_dies_is_one_sentence():
         with pytest.raises(ClusterError, match="ended with code -9; use fewer workers") as raised:
             list(shares[1])
         assert "\n" not in str(raised.value)
+    assert not active_children()
+
+
+def test_shares_with_an_end_come_whole_from_all_processes():
+    assert sorted(as_they_come(some, 3)) == list(range(10))
+    with in_processes(some, 2) as shares:
+        assert [list(share) for share in shares] == [[0, 2, 4, 6, 8], [1, 3, 5, 7, 9]]
+    assert not active_children()
+
+
+@pytest.mark.parametrize(("task", "error"), [(refused, RecipeError), (killed, ClusterError)])
+def test_an_error_of_any_share_ends_all_of_them(task, error):
+    with pytest.raises(error):
+        list(as_they_come(task, 2))
     assert not active_children()
