@@ -36,7 +36,7 @@ as JSON where they are not text. A fact without content is left out:
 | fact | content |
 |---|---|
 | `title`, `recipe` | title of the corpus, name of its recipe |
-| `recipe_sha256` | hash of the recipe, if all of its records are here and no others; `raceway generate` completes such a corpus |
+| `recipe_sha256` | hash of the recipe, if whole parts of it are here; `raceway generate` completes such a corpus |
 | `sources_sha256`, `versions` | hash of the source files of Raceway that made the records; versions of Raceway and its libraries |
 | `parts_sha256` | hash over those of the parts; a single file has that of the parts that it was made of |
 | `overrides` | `seed` and `records` that replaced those of the recipe |

@@ -77,7 +77,7 @@ class Manifest(Strict):
     recipe: str | None = None
     """Name of the recipe."""
     recipe_sha256: str | None = None
-    """Hash of the recipe that all records, and no others, were generated from; None for a choice of them."""
+    """Hash of the recipe that whole parts were generated from; None for a choice of records."""
     sources_sha256: str | None = None
     """Hash of the source files of Raceway that made the records."""
     parts_sha256: str | None = None

@@ -7,7 +7,7 @@ of a single file ``NAME.nc`` lie in the folder ``NAME.nc.parts`` until all are t
 
 import platform
 import time
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
@@ -90,6 +90,7 @@ def generate(
     scheduler: str | None = None,
     seed: int | None = None,
     records: int | None = None,
+    parts: range | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] = lambda _: None,
 ) -> Generated:
@@ -108,6 +109,9 @@ def generate(
         Address of a dask scheduler whose workers see the folder under the same path; replaces ``workers``.
     seed, records : int, optional
         Replace the seed and the number of records of the recipe.
+    parts : range, optional
+        Parts that are made, of a folder; the corpus then has their records, and those of parts that are in the folder. Corpora of other
+        parts, such as those of other machines, are joined by :func:`gen.copy`.
     progress : callable, optional
         Called with the number of records that are on disk and of all records; from a cluster in another thread.
     notice : callable, optional
@@ -127,14 +131,17 @@ def generate(
     check_place(target)
     folder = target.with_name(f"{target.name}.parts") if is_single_file(target) else target
     facts = facts_of(checked, {"seed": seed, "records": records})
-    if is_single_file(target) and target.exists():
+    if parts is not None:
+        _check_parts(checked, parts, target)
+    elif is_single_file(target) and target.exists():
         return _finished_before(target, folder, checked, facts)
     with client_of(scheduler, workers) as client, _claim(folder):
         if folder is not target:
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
         _prepare(folder, find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode(), facts, checked)
-        outcomes = _all_parts(checked, range(checked.n_parts), folder, workers, client, progress, notice)
+        wanted = range(checked.n_parts) if parts is None else _with_those_there(checked, parts, folder)
+        outcomes = _all_parts(checked, wanted, folder, workers, client, progress, notice)
         corpus = _finish(target, folder, outcomes, facts)
         if folder is not target:
             remove_parts(folder, map(part_name, range(checked.n_parts)))
@@ -149,6 +156,21 @@ def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
         "overrides": overrides,
         "publication": recipe.publication,
     }
+
+
+def _check_parts(recipe: Recipe, parts: range, target: Path) -> None:
+    last = recipe.n_parts - 1
+    if is_single_file(target):
+        raise CorpusError(f"{target}: is one file, which has all parts; give a folder for some of them.")
+    if not parts or parts.step != 1 or parts.start < 0 or parts[-1] > last:
+        asked = f"{parts.start}-{parts.stop - 1}"
+        raise RecipeError(f"parts: {asked} is not allowed; {recipe.name} has the parts 0-{last}, give a range of them.")
+
+
+def _with_those_there(recipe: Recipe, parts: range, folder: Path) -> list[int]:
+    """Numbers of the parts, and of those that are in the folder already."""
+    there = (part for part in range(recipe.n_parts) if (folder / "parts" / part_name(part)).exists())
+    return sorted({*parts, *there})
 
 
 def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, Any]) -> Generated:
@@ -174,7 +196,7 @@ def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, 
 
 def _all_parts(
     recipe: Recipe,
-    parts: range,
+    parts: Sequence[int],
     folder: Path,
     workers: int,
     client: "Client | None",
@@ -193,7 +215,7 @@ def _all_parts(
         for part, outcome in made:
             outcomes[part] = outcome
             done(part)
-    if work and not any(outcome.kept for outcome in outcomes.values()):
+    if work and len(parts) == recipe.n_parts and not any(outcome.kept for outcome in outcomes.values()):
         leave_rate(work, workers * (time.monotonic() - start))
     return [outcomes[number] for number in sorted(outcomes)]
 
@@ -290,7 +312,7 @@ def _check_generated(folder: Path, manifest: "Manifest") -> None:
         raise CorpusError(f"{folder}: holds a copy of a corpus, which is not generated again; choose another name.")
 
 
-def _tally(recipe: Recipe, parts: range, progress: Progress | None) -> Callable[[int], None]:
+def _tally(recipe: Recipe, parts: Sequence[int], progress: Progress | None) -> Callable[[int], None]:
     """What takes the number of a part that is on disk, and tells ``progress`` the number of records on disk; of repeated parts once."""
     sizes = {part: len(recipe.records_of_part(part)) for part in parts}
     count = counter(progress, sum(sizes.values()))
@@ -309,7 +331,12 @@ def client_of(scheduler: str | None, workers: int) -> "AbstractContextManager[Cl
 
 
 def _made(
-    recipe: Recipe, parts: range, folder: Path, workers: int, client: "Client | None", report: Callable[[int], None]
+    recipe: Recipe,
+    parts: Sequence[int],
+    folder: Path,
+    workers: int,
+    client: "Client | None",
+    report: Callable[[int], None],
 ) -> Generator[tuple[int, Outcome]]:
     """Number and outcome of every part in the order in which they finish: from this process, from several, or from a cluster.
 
@@ -334,7 +361,7 @@ def _share(
 
 
 def _unit(
-    recipe: Recipe, folder: Path, sources: str, report: Callable[[int], None], parts: range
+    recipe: Recipe, folder: Path, sources: str, report: Callable[[int], None], parts: Sequence[int]
 ) -> Iterator[tuple[int, Outcome]]:
     """Make some parts on a worker of a cluster, if it has the sources of the process that asks for them."""
     if sources_sha256() != sources:

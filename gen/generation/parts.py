@@ -46,16 +46,16 @@ def library_versions() -> dict[str, str]:
     return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
 
 
-def units(recipe: Recipe, parts: range, workers: int) -> list[range]:
-    """``parts`` in units: consecutive parts that one task makes together, as evenly as possible.
+def units(recipe: Recipe, parts: Sequence[int], workers: int) -> list[Sequence[int]]:
+    """``parts`` in units: parts that follow each other and that one task makes together, as evenly as possible.
 
     A unit has as many parts as ``UNIT_SAMPLES`` allows, but there are at least as many units as workers, if there are parts enough.
     """
     per_part = recipe.storage.records_per_part * timeline(settings_of(recipe)).integrated
     wanted = math.ceil(len(parts) * per_part / UNIT_SAMPLES)
     count = min(len(parts), math.ceil(wanted / workers) * workers)
-    edges = [parts.start + place * len(parts) // count for place in range(count + 1)]
-    return [range(*some) for some in itertools.pairwise(edges)]
+    edges = [place * len(parts) // count for place in range(count + 1)]
+    return [parts[first:stop] for first, stop in itertools.pairwise(edges)]
 
 
 def make_parts(recipe: Recipe, parts: Iterable[int], directory: Path) -> Generator[tuple[int, Outcome]]:

@@ -155,15 +155,14 @@ def _show_plan(planned: "Plan") -> None:
 @worker_options
 @seed_option
 @records_option
+@click.option(
+    "--parts",
+    metavar="A-B",
+    callback=lambda _context, _option, text: None if text is None else _range_of(text),
+    help="Make the parts A to B alone; copy joins them with those of other machines.",
+)
 @json_option
-def generate(
-    recipe: str,
-    output: Path,
-    team: Team,
-    seed: int | None,
-    records: int | None,
-    as_json: bool,
-) -> int:
+def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: Any) -> int:
     """Generate the corpus of RECIPE as TARGET, or complete one.
 
     The corpus is a folder, or one netCDF file if TARGET ends in .nc. It is generated in parts; those of a file NAME.nc lie in the folder
@@ -179,17 +178,18 @@ def generate(
       raceway generate domain_randomised -o large --workers 8
       raceway generate my_recipe.yaml -o try --records 20 --seed 7
       raceway generate my_recipe.yaml -o try --records 60 --seed 7
+      raceway generate domain_randomised -o second_half --parts 5-9
 
     Next: raceway info DIR, raceway benchmark DIR -o REPORT
     """
     from gen.corpus import complaint
     from gen.recipe import read_recipe
 
-    wanted = read_recipe(recipe, seed=seed, records=records)
+    wanted = read_recipe(recipe, seed=options["seed"], records=options["records"])
     start = time.monotonic()
     workers = team.workers or _default_workers(wanted)
     with if_interrupted(partial(_kept, output, wanted)):
-        made = _generate(recipe, output, workers=workers, scheduler=team.scheduler, seed=seed, records=records)
+        made = _generate(recipe, output, workers=workers, scheduler=team.scheduler, **options)
     for failure in made.failures:
         notice(f"left out: {failure}")
     useless = complaint(made.signals, made.records)
@@ -202,6 +202,14 @@ def generate(
     else:
         _show_generated(made)
     return DONE if useless is None else FOUND_WANTING
+
+
+def _range_of(text: str) -> range:
+    """Parts from their first and last number, ``A-B``, or from one number."""
+    first, _, last = text.partition("-")
+    if not (first.isdecimal() and (last or first).isdecimal()):
+        raise click.BadParameter(f"{text!r} is no range; give the first and the last part, such as 0-4.")
+    return range(int(first), int(last or first) + 1)
 
 
 def _generate(recipe: str, output: Path, **options: Any) -> "Generated":

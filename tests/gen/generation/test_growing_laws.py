@@ -2,11 +2,12 @@
 
 import pytest
 
+from gen import copy
 from gen.corpus import open_corpus
 from gen.generation.corpus import generate
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
-from gen.support.errors import CorpusError
+from gen.support.errors import CorpusError, RecipeError
 from tests.same_corpora import assert_the_same_corpus
 
 CHANGES = {
@@ -72,3 +73,25 @@ def test_a_corpus_does_not_shrink_and_one_in_a_file_does_not_grow(write_recipe, 
     with pytest.raises(CorpusError, match="holds 12 records and not 16; a corpus grows in a folder"):
         generate(recipe, tmp_path / "c.nc", records=16)
     assert open_corpus(tmp_path / "c.nc").sizes["record"] == 12
+
+
+def test_parts_of_one_corpus_made_apart_are_completed_or_joined(write_recipe, tmp_path):
+    recipe = write_recipe(tmp_path / "r.yaml")
+    at_once = generate(recipe, tmp_path / "at_once")
+    assert generate(recipe, tmp_path / "a", parts=range(2, 3)).records == 8
+    generate(recipe, tmp_path / "b", parts=range(1))
+    both = generate(recipe, tmp_path / "b", parts=range(1, 2), workers=2)
+    assert (both.records, both.parts, both.kept) == (16, 2, 1)
+    copy([tmp_path / "b", tmp_path / "a"], tmp_path / "joined")
+    with open_corpus(at_once.path) as whole, open_corpus(tmp_path / "joined") as joined:
+        assert joined.drop_attrs().equals(whole.drop_attrs())
+    generate(recipe, tmp_path / "b")
+    assert_the_same_corpus(tmp_path / "b", at_once)
+
+
+@pytest.mark.parametrize("parts", [range(3, 4), range(0), range(2, 1), range(0, 3, 2), range(-1, 2)])
+def test_parts_that_a_corpus_does_not_have_are_refused(write_recipe, tmp_path, parts):
+    with pytest.raises(RecipeError, match=r"^parts: .* is not allowed; small has the parts 0-2, give a range of them\.$"):
+        generate(write_recipe(tmp_path / "r.yaml"), tmp_path / "c", parts=parts)
+    with pytest.raises(CorpusError, match="is one file, which has all parts; give a folder"):
+        generate(write_recipe(tmp_path / "r.yaml"), tmp_path / "c.nc", parts=range(1))
