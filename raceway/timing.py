@@ -1,41 +1,39 @@
 """Speed of this machine from a recipe to records and features, stage by stage, with one worker.
 
-One part is made as :func:`gen.generate` makes it: draw, lay out in lanes, integrate, measure, write; then its features are computed.
-The rate of the kernel counts the steps of records, not of empty lanes. CPU time of all threads is measured, so that other processes on the
-machine count little.
+Records are made by the steps of :func:`gen.generate`, faults that are drawn again and idle lanes included, and discarded; then their
+features are computed. The rate of the kernel counts the steps of records, not of idle lanes. CPU time of all threads is measured, so that
+other processes on the machine count little.
 """
 
+import math
 import os
 import platform
-import statistics
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from features.table.corpora import block_features
-from gen.corpus import RecordBlock, write_part
-from gen.generation.labels import part_dataset
-from gen.measurement.measure import measure
-from gen.physics.kernel.layout import Batch
-from gen.recipe import Recipe, read_recipe
-from gen.scenarios import Scenario, draw_scenarios, settings_of
-from gen.simulation.batches import Group, integrate_batch
-from gen.simulation.simulate import Response, integrations, laid_out, simulate
+from gen.corpus import RecordBlock, part_name
+from gen.generation.compilation import compile_kernels, missing_kernels
+from gen.generation.forecast import expected_work, seconds_of
+from gen.generation.parts import Outcome, write_made
+from gen.generation.scheduling import STAGES, Making
+from gen.recipe import read_recipe
+from gen.scenarios import settings_of
 from gen.simulation.timeline import timeline
 from gen.support.errors import SimulationError
 
-STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
-REPEATS = 5
-BUDGET_S = 15.0  # wall time after which no repeat starts
+USUAL_S = 10.0  # of records to time
 
 
 @dataclass(frozen=True)
 class Bench:
-    """Medians over ``repeats`` runs, in CPU time; ``stage_seconds`` are for all ``records``, and the stage ``integrate`` is the kernel."""
+    """CPU times; ``stage_seconds`` are for all ``records``, and the stage ``integrate`` is the kernel."""
 
     recipe: str
     records: int
@@ -44,12 +42,11 @@ class Bench:
     records_per_second: float
     features_records_per_second: float
     stage_seconds: dict[str, float]
-    repeats: int
     machine: dict[str, Any]
 
 
 def bench(recipe: Path | str, records: int | None = None) -> Bench:
-    """Time the stages on the first records of a recipe, by default on the number of records of one part.
+    """Time the stages on the first records of a recipe, by default on as many as take some seconds.
 
     Raises
     ------
@@ -57,61 +54,43 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
         If the recipe cannot be simulated.
     """
     checked = read_recipe(recipe)
-    wanted = min(records or checked.storage.records_per_part, checked.n_records)
-    scenarios = draw_scenarios(checked, 0, wanted)
-    response = simulate(scenarios)  # compiles the kernels that are not compiled yet
-    if len(response.failures) == wanted:
-        raise SimulationError(response.failures[0])
-    seconds = _repeat(checked, scenarios, response)
-    stages = {stage: statistics.median(times) for stage, times in seconds.items()}
-    each = zip(scenarios, response.oversampling, strict=True)
-    steps = timeline(settings_of(checked)).integrated * sum(
-        int(some) * integrations([scenario]) for scenario, some in each
-    )
-    making = sum(stages.values()) - stages["features"]
+    usual = math.ceil(checked.n_records * USUAL_S / seconds_of(expected_work(checked)))
+    wanted, size = min(records or usual, checked.n_records), checked.storage.records_per_part
+    compile_kernels(checked, missing_kernels(checked))
+    seconds, steps = dict.fromkeys([*STAGES, "features"], 0.0), 0
+
+    @contextmanager
+    def timed(stage: str) -> Iterator[None]:
+        start = time.process_time()
+        yield
+        seconds[stage] += time.process_time() - start
+
+    with tempfile.TemporaryDirectory() as folder:
+        parts = [range(first, min(first + size, wanted)) for first in range(0, wanted, size)]
+        making = Making(checked, parts, lambda made: write_made(made, checked, Path(folder) / part_name(made.place)))
+        outcomes = list[Outcome]()
+        while (step := making.next_step()) is not None:
+            with timed(step.stage):
+                outcomes += step.do()
+            steps += step.per_sample * timeline(settings_of(checked)).integrated
+        blocks = [RecordBlock(Path(folder) / one.row.name, 0, one.row.records) for one in outcomes if one.row.records]
+        if not blocks:
+            raise SimulationError(outcomes[0].failures[0])
+        block_features(blocks[0]._replace(stop=1))  # loads libraries
+        for block in blocks:
+            with timed("features"):
+                block_features(block)
+    made = sum(block.stop for block in blocks)
     return Bench(
         recipe=checked.name,
-        records=wanted,
+        records=made,
         record_steps=steps,
-        kernel_record_steps_per_second=steps / stages["integrate"],
-        records_per_second=wanted / making,
-        features_records_per_second=wanted / stages["features"],
-        stage_seconds=stages,
-        repeats=len(seconds["features"]),
+        kernel_record_steps_per_second=steps / seconds["integrate"],
+        records_per_second=made / sum(seconds[stage] for stage in STAGES),
+        features_records_per_second=made / seconds["features"],
+        stage_seconds=seconds,
         machine=machine(),
     )
-
-
-def _repeat(recipe: Recipe, scenarios: list[Scenario], response: Response) -> dict[str, list[float]]:
-    """Seconds of each stage in every run; ``response`` belongs to ``scenarios``, the first records of the recipe."""
-    seconds: dict[str, list[float]] = {stage: [] for stage in STAGES}
-
-    def timed(stage: str, work: Callable[..., Any], *given: Any) -> Any:
-        start = time.process_time()
-        result = work(*given)
-        seconds[stage].append(time.process_time() - start)
-        return result
-
-    start = time.perf_counter()
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "part-00000.nc"
-        while len(seconds["features"]) < REPEATS and time.perf_counter() - start < BUDGET_S:
-            timed("draw", draw_scenarios, recipe, 0, len(scenarios))
-            in_lanes = timed("lay_out", laid_out, scenarios)
-            timed("integrate", _integrate, in_lanes, recipe)
-            measured = timed("measure", measure, response.acceleration, scenarios, response.twins)
-            timed("write", _write, measured, recipe, response, path)
-            timed("features", block_features, RecordBlock(path, 0, len(scenarios)))
-    return seconds
-
-
-def _integrate(in_lanes: list[tuple[Group, Batch]], recipe: Recipe) -> None:
-    for group, batch in in_lanes:
-        integrate_batch(group, batch, timeline(settings_of(recipe)))
-
-
-def _write(measured: Any, recipe: Recipe, response: Response, path: Path) -> None:
-    write_part(part_dataset(measured, response), path, recipe.storage.codec)
 
 
 def machine() -> dict[str, Any]:

@@ -47,7 +47,7 @@ from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.processes import as_they_come
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
-from gen.support.workers import run
+from gen.support.workers import run, too_many
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -115,7 +115,8 @@ def generate(
     progress : callable, optional
         Called with the number of records that are on disk and of all records; from a cluster in another thread.
     notice : callable, optional
-        Called with a sentence that says how long it takes, and one when a kernel is about to be compiled.
+        Called with a sentence that says how long it takes, one when a kernel is about to be compiled, and one about more workers than
+        cores.
 
     Raises
     ------
@@ -205,6 +206,8 @@ def _all_parts(
 ) -> list[Outcome]:
     """Make those of the parts that are missing; outcomes of all of them in their order."""
     work, workers = 0.0, min(workers, len(parts))
+    if client is None and (sentence := too_many(workers)) is not None:
+        notice(sentence)
     if client is None and not all((folder / "parts" / part_name(part)).exists() for part in parts):
         missing, work = missing_kernels(recipe), expected_work(recipe)
         notice(forecast_in_words(len(missing), recipe.n_records * workers / seconds_of(work)))

@@ -80,12 +80,12 @@ def make_parts(recipe: Recipe, parts: Iterable[int], directory: Path) -> Generat
 
     def written(made: MadePart) -> tuple[int, Outcome]:
         part = missing[made.place]
-        return part, _write(made, recipe, directory / "parts" / part_name(part))
+        return part, write_made(made, recipe, directory / "parts" / part_name(part))
 
     yield from made_parts(recipe, map(recipe.records_of_part, missing), written)
 
 
-def _write(made: MadePart, recipe: Recipe, path: Path) -> Outcome:
+def write_made(made: MadePart, recipe: Recipe, path: Path) -> Outcome:
     """Write one part."""
     dataset, failures = dataset_of(made.records, made.step_error)
     if not dataset.sizes["record"]:

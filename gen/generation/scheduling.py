@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import count, islice
-from typing import Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,8 @@ class MadePart(NamedTuple):
     step_error: NDArray[np.float64]
     """As from :func:`gen.generation.step_checks.step_changes`."""
 
+
+STAGES = ("draw", "integrate", "measure", "check", "write")
 
 Result = TypeVar("Result")
 
@@ -84,15 +86,23 @@ def made_parts(recipe: Recipe, parts: Iterable[range], finish: Callable[[MadePar
     finish : callable
         Called with each part.
     """
-    making = _Making(recipe, parts, finish)
+    making = Making(recipe, parts, finish)
     while (step := making.next_step()) is not None:
-        yield from step()
+        yield from step.do()
 
 
-Step = Callable[[], Iterable[Result]]
+class Step(NamedTuple):
+    """Some work on records under way."""
+
+    stage: str
+    """One of ``STAGES``."""
+    do: Callable[[], Iterable[Any]]
+    """Does it; returns the results of parts that are finished."""
+    per_sample: int = 0
+    """Steps of the kernel in a sample, summed over the records that are integrated."""
 
 
-class _Making(Generic[Result]):
+class Making(Generic[Result]):
     """Records under way, on which one step after the other is done."""
 
     def __init__(self, recipe: Recipe, parts: Iterable[range], finish: Callable[[MadePart], Result]) -> None:
@@ -108,23 +118,26 @@ class _Making(Generic[Result]):
         self._complete: deque[_Part] = deque()
         self._checked: deque[MadePart] = deque()
 
-    def next_step(self) -> Step[Result] | None:
+    def next_step(self) -> Step | None:
         """The next step: what completes parts, then full batches, then new records; a batch with idle lanes if nothing else is left."""
         if self._checked:
-            return partial(self._write, self._checked.popleft())
+            return Step("write", partial(self._write, self._checked.popleft()))
         if self._complete:
-            return partial(self._check_steps, self._complete.popleft())
+            return Step("check", partial(self._check_steps, self._complete.popleft()))
         if sum(len(family) for family in self._ready) >= _JUDGED:
-            return self._judge
+            return Step("measure", self._judge)
         if self._waiting.has_full_batch():
-            return partial(self._integrate, self._waiting.fullest())
+            return self._integration(self._waiting.fullest())
         if self._block is not None and self._under_way(self._block) < self._window:
-            return partial(self._draw, self._block)
+            return Step("draw", partial(self._draw, self._block))
         if self._ready:
-            return self._judge
+            return Step("measure", self._judge)
         if self._waiting:
-            return partial(self._integrate, self._waiting.fullest() if self._block is None else self._waiting.oldest())
-        return None if self._block is None else partial(self._draw, self._block)
+            return self._integration(self._waiting.fullest() if self._block is None else self._waiting.oldest())
+        return None if self._block is None else Step("draw", partial(self._draw, self._block))
+
+    def _integration(self, taken: list[tuple[Integration, _Pending]]) -> Step:
+        return Step("integrate", partial(self._integrate, taken), sum(one.group.steps for one, _ in taken))
 
     def _under_way(self, block: range) -> int:
         """Number of records that were drawn ahead of a block, from the first part on that is not finished."""

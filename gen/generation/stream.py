@@ -18,6 +18,7 @@ from gen.generation.compilation import compile_kernels, missing_kernels
 from gen.generation.parts import parts_in_order
 from gen.recipe import Recipe, corpus_identity, read_recipe
 from gen.support.errors import RecipeError, SimulationError
+from gen.support.workers import too_many
 
 if TYPE_CHECKING:
     from gen.generation.torch_items import TorchStream
@@ -71,6 +72,8 @@ def stream(
     for name, value, least in (("batch", batch, 1), ("workers", workers, 1), ("start", start, 0)):
         if type(value) is not int or value < least:
             raise RecipeError(f"{name}: {value!r} is not allowed; give a whole number, {least} or more.")
+    if (sentence := too_many(workers)) is not None:
+        warnings.warn(sentence, stacklevel=2)
     return Stream(endless(read_recipe(recipe, seed=seed)), batch, workers, start)
 
 

@@ -131,6 +131,18 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def too_many(workers: int) -> str | None:
+    """Sentence about more processes than cores; None if there are none too many.
+
+    >>> too_many(1)
+    """
+    if workers <= cores():
+        return None
+    return (
+        f"workers: {workers} processes share {cores()} cores, and each takes 0.4 GB of memory; {cores()} are as fast."
+    )
+
+
 def threads_of(workers: int) -> int:
     """Number of threads of each process for a number of workers: the largest one up to ``MOST_THREADS`` that divides it.
 

@@ -28,7 +28,7 @@ EXTRAS = ("excel", "parquet", "zarr")
     "--records",
     type=click.IntRange(1, 16_384),
     metavar="N",
-    help="Number of records to time with --speed; by default those of one part.",
+    help="Number of records to time with --speed; by default as many as take about ten seconds.",
 )
 @json_option
 def doctor(recipe: str | None, records: int | None, as_json: bool) -> int:
@@ -36,8 +36,9 @@ def doctor(recipe: str | None, records: int | None, as_json: bool) -> int:
 
     Exits with 1 if a package that Raceway needs is missing or too old; a line that begins with "note" is of an optional one.
 
-    With --speed one worker makes the first part of a corpus several times, stage by stage, and discards it; the medians of the CPU time
-    are shown. Integration steps are counted for records, settling time included, and not for empty lanes.
+    With --speed one worker makes the first records of a corpus as generate makes them, stage by stage, and discards them; the CPU time is
+    shown. Faults that are drawn again are included. Steps of the kernel are counted for records, settling time included, and not for
+    idle lanes, of which the last records of a corpus leave many: the more records, the higher the rate.
 
       raceway doctor
       raceway doctor --json
@@ -96,11 +97,7 @@ def _show_speed(recipe: str, records: int | None, as_json: bool) -> None:
     if as_json:
         show.as_json(times)
         return
-    show.text(
-        f"{times.recipe}: {show.count_text(times.records, 'record')}, median of {show.count_text(times.repeats, 'run')} on "
-        f"{times.machine['processor']}",
-        "",
-    )
+    show.text(f"{times.recipe}: {show.count_text(times.records, 'record')} on {times.machine['processor']}", "")
     show.table(
         ("stage", "ms per record"),
         ((name, f"{1e3 * s / times.records:.3g}") for name, s in times.stage_seconds.items()),

@@ -146,9 +146,9 @@ def test_generate_passes_on_scheduler_workers_seed_and_size(run, given, tiny_rec
 
 @pytest.mark.parametrize(
     ("records", "per_part", "cores", "workers"),
-    [(2000, 500, 2, 2), (1000, 500, 2, 2), (1000, 500, 8, 4), (2000, 2000, 8, 4), (4000, 500, 6, 6)],
+    [(2000, 500, 2, 2), (400, 50, 8, 1), (1000, 500, 8, 2), (2000, 2000, 8, 1), (4000, 500, 6, 6)],
 )
-def test_large_corpora_get_a_worker_per_core_and_small_ones_at_most_the_threads_of_a_process(
+def test_corpora_of_several_parts_get_a_worker_per_core_and_small_ones_one(
     run, given, tiny_recipe, tmp_path, monkeypatch, records, per_part, cores, workers
 ):
     monkeypatch.setattr("os.sched_getaffinity", lambda _: range(cores))
@@ -194,16 +194,14 @@ def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_p
     assert "features of 48 records; some are missing in 1 record." in shown
 
 
-def test_doctor_times_every_stage_and_names_the_machine_and_the_number_of_runs(run, told, tiny_recipe, monkeypatch):
-    monkeypatch.setattr("raceway.timing.REPEATS", 1)
+def test_doctor_times_every_stage_of_generate_and_names_the_machine(run, told, tiny_recipe):
     found = told("doctor", "--speed", tiny_recipe, "--records", 6)
-    assert (found["records"], found["repeats"]) == (6, 1)
+    assert found["records"] == 6
     seconds = found["stage_seconds"]
-    assert set(seconds) == {"draw", "lay_out", "integrate", "measure", "write", "features"}
+    assert set(seconds) == {"draw", "integrate", "measure", "check", "write", "features"}
     assert found["kernel_record_steps_per_second"] == pytest.approx(found["record_steps"] / seconds["integrate"])
     assert found["features_records_per_second"] == pytest.approx(6 / seconds["features"])
-    assert found["record_steps"] % 6 == 0
-    assert found["records_per_second"] > 0
+    assert found["records_per_second"] == pytest.approx(6 / (sum(seconds.values()) - seconds["features"]))
     assert found["machine"].keys() == {"processor", "cores", "python", "raceway", "numba", "numpy", "scipy"}
     shown = run("doctor", "--speed", tiny_recipe, "--records", 1).stdout
-    assert shown.startswith(f"tiny: 1 record, median of 1 run on {found['machine']['processor']}\n")
+    assert shown.startswith(f"tiny: 1 record on {found['machine']['processor']}\n")
