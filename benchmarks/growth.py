@@ -13,7 +13,7 @@ import os
 import resource
 import tempfile
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from multiprocessing.queues import Queue
@@ -29,6 +29,7 @@ from benchmarks.pipeline import SHORT, variant
 from gen.corpus import PartRow, part_name, read_manifest
 from gen.generation import corpus as making
 from gen.generation.parts import Outcome
+from gen.recipe import Recipe
 
 PARTS = (100, 1000)
 WORKERS = 64
@@ -102,16 +103,17 @@ def _made(
     model: Path,
     row: PartRow,
     task_s: float,
-    tally: making.Tally,
+    recipe: Recipe,
+    parts: Sequence[int],
     directory: Path,
     _workers: int,
     client: Client,
+    _report: Callable[[int], None],
 ) -> Generator[tuple[int, Outcome]]:
     """Stand-in for the making of parts by tasks that wait."""
     from gen.support.workers import run
 
-    task = partial(_linked, model, row, task_s, directory.resolve(), tally.recipe)
-    yield from run(task, range(tally.recipe.n_parts), scheduler=client, meanwhile=tally.show)
+    yield from run(partial(_linked, model, row, task_s, directory.resolve(), recipe), parts, scheduler=client)
 
 
 def _linked(

@@ -138,9 +138,7 @@ def too_many(workers: int) -> str | None:
     """
     if workers <= cores():
         return None
-    return (
-        f"workers: {workers} processes share {cores()} cores, and each takes 0.4 GB of memory; {cores()} are as fast."
-    )
+    return f"workers: {workers} is above the number of cores, {cores()}; more processes take memory and add no speed."
 
 
 def threads_of(workers: int) -> int:

@@ -57,12 +57,15 @@ def leave_if_interrupted() -> None:
 def _end(awaited: set[signal.Signals]) -> None:
     signal.sigwait(awaited)
     _came.set()
+    sentence_of = _sentences[
+        -1
+    ]  # before the main thread meets the end of the workers, and leaves what the sentence is about
     terminal = os.dup(2)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     for worker in multiprocessing.active_children():
         worker.kill()
         worker.join(_PATIENCE_S)
-    sentence = _sentences[-1]()
+    sentence = sentence_of()
     files = sys.modules.get("gen.corpus.files")  # loaded only if a file was written
     remove = (lambda: None) if files is None else files.remove_unfinished
     remove()

@@ -100,7 +100,7 @@ def test_a_wrong_number_is_refused(recipe, wrong):
 
 def test_more_workers_than_cores_are_told(recipe, monkeypatch):
     monkeypatch.setattr("gen.support.workers.cores", lambda: 1)
-    with pytest.warns(UserWarning, match="2 processes share 1 cores, and each takes"):
+    with pytest.warns(UserWarning, match="workers: 2 is above the number of cores, 1; more processes"):
         gen.stream(recipe, workers=2)
 
 
