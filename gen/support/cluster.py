@@ -1,4 +1,4 @@
-"""Independent tasks on dask: on processes of this machine or on a cluster, and a sentence when the cluster is lost.
+"""Independent tasks on a dask cluster, and a sentence when the cluster is lost.
 
 A task may run twice: dask repeats the tasks of a lost worker.
 """
@@ -15,7 +15,7 @@ from importlib.util import find_spec
 from typing import Any
 from uuid import uuid4
 
-from distributed import Client, KilledWorker, LocalCluster, get_worker
+from distributed import Client, KilledWorker, get_worker
 from distributed.comm.core import connect
 from distributed.protocol.pickle import dumps, loads
 from distributed.security import Security
@@ -26,16 +26,6 @@ CONNECT_S = 3.0  # a scheduler that is near answers within milliseconds
 COUNT_AGAIN_S = 10.0  # the workers of a batch system start one by one
 PATIENCE_S = 60.0
 """How long a cluster may be without workers before the call ends with an error [s]."""
-
-
-@contextmanager
-def local_client(workers: int | None = None, threads: int = 1) -> Iterator[Client]:
-    """Client of a cluster of processes on this machine, by default one for each core, with some threads each."""
-    with (
-        LocalCluster(n_workers=workers, threads_per_worker=threads, dashboard_address="127.0.0.1:0") as cluster,
-        Client(cluster) as client,
-    ):
-        yield client
 
 
 @contextmanager
@@ -94,22 +84,18 @@ def _check_workers(client: Client) -> None:
 
 @contextmanager
 def dask_pool(
-    task: Callable[..., Iterable[Any]], cluster: Client | str | tuple[int, int], report: Callable[..., None] | None
+    task: Callable[..., Iterable[Any]], cluster: Client | str, report: Callable[..., None] | None
 ) -> Iterator[tuple[Callable[[Any], Any], Callable[[], int]]]:
     """What begins a task with an item and returns a future of its results, and the number of tasks that run at a time.
 
-    ``cluster`` is a client, the address of a scheduler, or a number of processes on this machine and of the threads of each.
+    ``cluster`` is a client, or the address of a scheduler.
 
     Raises
     ------
     ClusterError
         If the scheduler cannot be used or is gone, no worker is left, or several workers died on the same task.
     """
-    if isinstance(cluster, tuple):
-        opened = local_client(*cluster)
-    else:
-        opened = client_of(cluster) if isinstance(cluster, str) else nullcontext(cluster)
-    with opened as client:
+    with client_of(cluster) if isinstance(cluster, str) else nullcontext(cluster) as client:
         topic = None if report is None else f"raceway-{uuid4().hex}"
         if topic is not None:
             client.subscribe_topic(topic, lambda event: report(*event[1]))  # pyright: ignore[reportOptionalCall]

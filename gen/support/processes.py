@@ -74,7 +74,7 @@ def _receive(receiver: Any, process: SpawnProcess) -> tuple[int, Any]:
     except (EOFError, OSError):  # a process that is killed may leave half a message
         process.join()
         raise ClusterError(
-            f"a process that makes records ended with code {process.exitcode}; use fewer workers if memory is short, and put what "
+            f"a worker process ended with code {process.exitcode}; use fewer workers if memory is short, and put what "
             'starts them under if __name__ == "__main__":.'
         ) from None
     if kind == _ERROR:
