@@ -47,7 +47,7 @@ from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.processes import as_they_come
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
-from gen.support.workers import run, too_many
+from gen.support.workers import cores, run, too_many
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -206,11 +206,12 @@ def _all_parts(
 ) -> list[Outcome]:
     """Make those of the parts that are missing; outcomes of all of them in their order."""
     work, workers = 0.0, min(workers, len(parts))
+    at_once = min(workers, cores())
     if client is None and (sentence := too_many(workers)) is not None:
         notice(sentence)
     if client is None and not all((folder / "parts" / part_name(part)).exists() for part in parts):
         missing, work = missing_kernels(recipe), expected_work(recipe)
-        notice(forecast_in_words(len(missing), recipe.n_records * workers / seconds_of(work)))
+        notice(forecast_in_words(len(missing), recipe.n_records * at_once / seconds_of(work)))
         compile_kernels(recipe, missing, notice)
     outcomes: dict[int, Outcome] = {}
     start, done = time.monotonic(), _tally(recipe, parts, progress)
@@ -219,7 +220,7 @@ def _all_parts(
             outcomes[part] = outcome
             done(part)
     if work and len(parts) == recipe.n_parts and not any(outcome.kept for outcome in outcomes.values()):
-        leave_rate(work, workers * (time.monotonic() - start))
+        leave_rate(work, at_once * (time.monotonic() - start))
     return [outcomes[number] for number in sorted(outcomes)]
 
 
