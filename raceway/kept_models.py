@@ -88,7 +88,7 @@ def recipe_tables(recipe: Path | str, team: Team = USUAL) -> "list[xr.Dataset]":
     from gen.recipe import read_recipe
 
     shipped = read_table(SHIPPED_TABLE)
-    if shipped.attrs["recipe_sha256"] != _hashes(both_lengths(read_recipe(recipe))):
+    if shipped.attrs["recipes"] != _identities(both_lengths(read_recipe(recipe))):
         return [make_table(recipe, team)]
     long = shipped[DURATION].values == LONG
     return [shipped.isel(record=long), shipped.isel(record=~long)]
@@ -117,7 +117,7 @@ def reference_table(recipe: "Recipe", team: Team = USUAL) -> "xr.Dataset":
         kept.attrs = {name: table.attrs[name] for name in _FACTS}
         parts.append(kept)
     both = xr.concat(parts, "record", data_vars="minimal", join="exact", combine_attrs="identical")
-    return both.assign_attrs(recipe_sha256=_hashes(recipes))
+    return both.assign_attrs(recipes=_identities(recipes))
 
 
 def both_lengths(recipe: "Recipe") -> tuple["Recipe", "Recipe"]:
@@ -130,11 +130,11 @@ def lasting(recipe: "Recipe", seconds: float) -> "Recipe":
     return recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"duration_s": seconds})})
 
 
-def _hashes(recipes: Iterable["Recipe"]) -> str:
-    """SHA-256 of the recipes that a table was made from."""
-    from gen.recipe import recipe_hash
+def _identities(recipes: Iterable["Recipe"]) -> str:
+    """What the records of a table depend on, whatever the number and the files of the corpora that it was made from."""
+    from gen.recipe import corpus_identity
 
-    return " ".join(map(recipe_hash, recipes))
+    return " ".join(map(corpus_identity, recipes))
 
 
 def make_table(recipe: "Path | str | Recipe", team: Team = USUAL) -> "xr.Dataset":

@@ -82,7 +82,11 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
 
 def without_progress(errors):
     """What a call says beside its forecast and its progress."""
-    return "".join(line for line in errors.splitlines(keepends=True) if not line.startswith(("about ", "generating: ")))
+    return "".join(
+        line
+        for line in errors.splitlines(keepends=True)
+        if not line.startswith(("about ", "generating: ", "workers: "))
+    )
 
 
 def kept_open(corpus):
