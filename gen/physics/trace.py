@@ -44,12 +44,12 @@ def ball_path(depths: FloatArray, width: float, ball: float, race: float) -> Flo
     return np.where(inside, surface + sagittas, np.inf).min(axis=1)
 
 
-def with_roughness(depths: FloatArray, rms: float, rng: np.random.Generator) -> FloatArray:
-    """Depth of a surface plus roughness of ``rms`` at wavelengths from a hundredth to a tenth of its width, shape (point,) [m]."""
-    waves = np.zeros(len(depths) // 2 + 1, complex)
+def rough_surface(rms: float, rng: np.random.Generator) -> FloatArray:
+    """Height of a surface at wavelengths from a hundredth to a tenth of its length, shape (point,) [m]."""
+    waves = np.zeros(TABLE_POINTS // 2 + 1, complex)
     waves[10:101] = np.exp(2j * np.pi * rng.random(91)) / np.arange(10, 101)
-    roughness = np.fft.irfft(waves, len(depths))
-    return np.maximum(depths + roughness * (rms / roughness.std()), 0.0)
+    height = np.fft.irfft(waves, TABLE_POINTS)
+    return height * (rms / height.std())
 
 
 def contact_mean(path: FloatArray, width: float, footprint: float, margin: float) -> FloatArray:

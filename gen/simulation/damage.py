@@ -14,7 +14,7 @@ from gen.physics.hertz import footprints
 from gen.physics.inputs import ROUND, SpallInput, Waviness
 from gen.physics.kernel.compiling import compiled_to_disk
 from gen.physics.kernel.drop import GEOMETRIC, PROFILES, drop
-from gen.physics.trace import ball_path, contact_mean, spall_positions, with_roughness
+from gen.physics.trace import ball_path, contact_mean, rough_surface, spall_positions
 from gen.scenarios import Purpose, Scenario, stream
 
 FloatArray = NDArray[np.float64]
@@ -22,6 +22,9 @@ FloatArray = NDArray[np.float64]
 FASTEST_WAVE = (
     0.4  # of the sample rate: gaps are computed once per sample, so waviness that passes a ball faster is left out
 )
+
+GROWING_FLOOR = 10e-3
+"""Length of the rough floor of which a growing spall lays bare ever more, from its middle on [m]: its waves are 0.1 to 1 mm long."""
 
 
 def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[SpallInput, ...]:
@@ -82,7 +85,8 @@ def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
     place = scenario.settings.seed, scenario.rig.number, specimen.number, number
     # radii of the races: a convex one (inner) is positive, a concave one (outer) negative
     races = _met(spall.site, bearing.inner_radius, -bearing.outer_radius)
-    return _paths(spall, bearing.ball_diameter / 2, races, place)
+    floor = spall.width if scenario.record.life is None else max(GROWING_FLOOR, spall.width)
+    return _paths(spall, floor, bearing.ball_diameter / 2, races, place)
 
 
 def largest_drop_over(scenario: Scenario, number: int) -> float:
@@ -103,7 +107,7 @@ def cached_drop(profile: int, offset: float, half: float, arc: float, ball: floa
 
 @functools.lru_cache(maxsize=256)
 def _paths(
-    spall: Spall, ball: float, races: tuple[float, ...], place: tuple[int, int, int, int]
+    spall: Spall, floor: float, ball: float, races: tuple[float, ...], place: tuple[int, int, int, int]
 ) -> tuple[FloatArray, ...]:
     at = spall_positions(spall.width)
     if spall.profile not in ("geometric", "trace"):
@@ -115,7 +119,8 @@ def _paths(
     if spall.profile == "trace":
         depths = np.interp(at, np.linspace(at[0], at[-1], len(spall.trace)), spall.trace)
     if spall.roughness > 0:
-        depths = with_roughness(depths, spall.roughness, stream(*place, Purpose.ROUGHNESS))
+        rough = rough_surface(spall.roughness, stream(*place, Purpose.ROUGHNESS))
+        depths = np.maximum(depths + np.interp(at, spall_positions(floor), rough), 0.0)
     return tuple(ball_path(depths, spall.width, ball, race) for race in races)
 
 
