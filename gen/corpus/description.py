@@ -38,6 +38,7 @@ as JSON where they are not text. A fact without content is left out:
 | `title`, `recipe` | title of the corpus, name of its recipe |
 | `recipe_sha256` | hash of the recipe, if whole parts of it are here; `raceway generate` completes such a corpus |
 | `sources_sha256`, `versions` | hash of the source files of Raceway that made the records; versions of Raceway and its libraries |
+| `records` | number of records |
 | `parts_sha256` | hash over those of the parts; a single file has that of the parts that it was made of |
 | `overrides` | `seed` and `records` that replaced those of the recipe |
 | `signals` | number of records that no analysis can use, see below |

@@ -238,7 +238,7 @@ def _manifest_of_file(file: Path) -> Manifest:
 
 def facts_as_attributes(content: Mapping[str, Any]) -> dict[str, str]:
     """Facts of a manifest as global attributes of a file."""
-    left_out = ("raceway_format", "complete", "records", "parts")
+    left_out = ("raceway_format", "complete", "parts")
     return {
         name: value if name in _TEXTS else json.dumps(value) for name, value in content.items() if name not in left_out
     }

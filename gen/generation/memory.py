@@ -159,7 +159,8 @@ def _made(recipe: Recipe, workers: int) -> xr.Dataset:
     """Records of a recipe, made in parts as those of a corpus."""
     parts = list(parts_in_order(recipe, range(recipe.n_parts), workers))
     failures = [text for _, texts in parts for text in texts]
-    attributes = part_attributes(recipe, failures) | {RECIPE_TEXT: recipe_text(recipe)}
+    count = sum(part.sizes["record"] for part, _ in parts)
+    attributes = part_attributes(recipe, failures) | {RECIPE_TEXT: recipe_text(recipe), "records": str(count)}
     return _decoded([part for part, _ in parts], failures, attributes)
 
 

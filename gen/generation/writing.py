@@ -70,7 +70,7 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
     stored = _stored(rows, np.where(replayable, draws, ""), signal, full_scale)
     recipe = _whole_recipe(rows) if replayable.all() else None
     if recipe is None:
-        size, codec, text = _PART_RECORDS, "zlib", None
+        parts, codec, text = np.arange(stored.sizes["record"]) // _PART_RECORDS, "zlib", None
         names = dict.fromkeys(of.recipe for of in settings if of is not None)
         facts = {
             "title": stored.attrs["title"],
@@ -78,14 +78,15 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
             "versions": json.loads(rows.attrs.get("versions", "{}")),
         }
     else:
-        size, codec, text = recipe.storage.records_per_part, recipe.storage.codec, recipe_text(recipe)
+        parts, codec = rows["recording"].values // recipe.storage.records_per_part, recipe.storage.codec
+        text = recipe_text(recipe)
         failures = tuple(json.loads(rows.attrs["failures"]))
         stored.attrs |= part_attributes(recipe, failures)
         facts = facts_of(recipe, {"seed": None, "records": None})
         facts |= {"publication": recipe.publication.dated(), "failures": failures}
     with new_corpus(target, codec=codec, recipe_text=text, **facts) as corpus:
-        for first in range(0, stored.sizes["record"], size):
-            corpus.write(stored.isel(record=slice(first, first + size)))
+        for part in np.unique(parts):
+            corpus.write(stored.isel(record=parts == part))
     return target
 
 
@@ -118,13 +119,12 @@ def _counts(values: NDArray[np.floating], settings: Settings | None) -> NDArray[
 
 def _whole_recipe(rows: xr.Dataset) -> Recipe | None:
     """Recipe that a Dataset carries, if its records are all those of the recipe in their order; else None."""
-    if RECIPE_TEXT not in rows.attrs:
+    if not {RECIPE_TEXT, "recipe_sha256", "records"} <= rows.attrs.keys():  # a choice of records has no hash
         return None
     recipe = read_recipe(rows)
     corpora = {str(text).partition("/")[0] for text in rows[IDENTITY].values}
     ascending = bool((np.diff(rows["recording"].values) > 0).all())
-    count = rows.sizes["record"] + len(json.loads(rows.attrs.get("failures", "[]")))
-    whole = ascending and count == recipe.n_records and corpora == {corpus_identity(recipe)}
+    whole = ascending and str(rows.sizes["record"]) == rows.attrs["records"] and corpora == {corpus_identity(recipe)}
     return recipe if whole else None
 
 

@@ -51,6 +51,7 @@ READABLE: Mapping[str, Mapping[str, float]] = {
     "Hz": {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60},
     "rad": {"rad": 1.0, "deg": math.pi / 180},
     "N": {"N": 1.0, "kN": 1e3},
+    "s": {"s": 1.0, "h": 3600.0},
 }
 """Units in which a stored quantity can be given and shown, with their factors, by its stored unit."""
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from gen.corpus import (
     INDEX_NAME,
+    LIFE,
     Manifest,
     SignalCounts,
     by_class,
@@ -83,7 +84,7 @@ def describe(directory: Path, where: str | None = None) -> dict[str, Any]:
 
 def _labels(files: Mapping[Path, int]) -> Columns:
     """Numbers that ``info`` shows; ``files`` are those that hold them, with their numbers of records."""
-    known = (*_SEVERITIES.keys() - {*_SHOWN}, *OF_FAULTS, "clipped", "step_error", "oversampling")
+    known = (*_SEVERITIES.keys() - {*_SHOWN}, *OF_FAULTS, "event", "clipped", "step_error", "oversampling")
     parts = [read_columns(file, records, _SHOWN, known) for file, records in files.items()]
     labels = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     for problem in operating_problems(labels):
@@ -117,6 +118,7 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
         "bearings": text_counts(bearings.tolist()),
         "rigs": units.rigs,
         "specimens": units.specimens,
+        "lives": _lives(labels),
         "recordings": units.recordings,
         "shaft_rate": _range(labels["shaft_rate"]),
         "load": _range(labels["load"]),
@@ -135,6 +137,15 @@ def _chosen(directory: Path, where: str) -> NDArray[Any]:
     with open_corpus(directory, check="size") as opened:
         (places,) = chosen_records([opened], where)
     return places
+
+
+def _lives(labels: Columns) -> dict[str, int] | None:
+    """Number of bearings by the end of their test; None unless the records are of lives."""
+    if "event" not in labels:
+        return None
+    (names,) = (variable.flags for variable in LIFE if variable.name == "event")
+    _, first = np.unique(labels["specimen"], return_index=True)
+    return text_counts(names[int(event)] for event in labels["event"][first])
 
 
 def _severities(labels: Columns) -> dict[str, dict[str, list[float]]]:
@@ -188,6 +199,7 @@ def _shown_content(facts: dict[str, Any]) -> dict[str, str]:
         "bearings": show.counts(facts["bearings"]),
         "rigs": f"{facts['rigs']:,}",
         "specimens": f"{facts['specimens']:,}",
+        **({} if facts["lives"] is None else {"lives": show.counts(facts["lives"])}),
         "recordings": f"{facts['recordings']:,}",
         "shaft rate": _shown_range("shaft_rate", facts["shaft_rate"], "Hz"),
         "load": _shown_range("load", facts["load"], "N"),

@@ -1,6 +1,7 @@
 """Laws of corpora of lives: labels, ends that are seen in the signal, replay, resumption, workers."""
 
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,9 @@ from gen.corpus import LIFE, open_corpus
 from gen.generation.corpus import generate
 from gen.generation.replaying import replay
 from gen.measurement.lives import velocity_rms
+from gen.physics.trace import spall_positions
+from gen.scenarios import draw_scenarios
+from gen.simulation.damage import spall_paths
 from tests.recipes import LIVES
 from tests.same_corpora import files
 
@@ -87,6 +91,31 @@ def test_two_workers_and_an_interrupted_call_give_the_same_files(lives, recipe_w
     (tmp_path / "half" / "parts" / "part-00001.nc").unlink()
     generate(recipe_with(SHORT), tmp_path / "half")
     assert files(tmp_path / "half") == files(lives)
+
+
+def test_a_spall_that_grows_lays_bare_more_of_the_same_floor(recipe_with):
+    one = next(of for of in draw_scenarios(recipe_with(LIVES)) if of.specimen.fault == "inner")
+    (spall,) = one.specimen.spalls
+    point = replace(one.specimen.bearing, ball_diameter=1e-9)  # a ball that reaches every point of the floor
+
+    def floor_at(places, width):
+        grown = replace(one.specimen, bearing=point, spalls=(replace(spall, width=width, depth=1e-4),))
+        (path,) = spall_paths(replace(one, specimen=grown), 0)
+        return np.interp(places, spall_positions(width), path)
+
+    places = np.linspace(-4e-4, 4e-4, 100)
+    young = floor_at(places, 1e-3)
+    assert young.std() > 1e-7
+    for width in (2e-3, 5e-3):
+        np.testing.assert_allclose(floor_at(places, width), young, atol=3e-8)
+
+
+def test_whole_lives_in_memory_are_written_with_their_recipe_and_others_without(lives, records, tmp_path):
+    whole = gen.write_corpus(records, tmp_path / "whole")
+    assert files(whole) == files(lives)
+    young = gen.write_corpus(records.isel(record=records.age.values < 400 * 3600), tmp_path / "young")
+    assert not (young / "recipe.yaml").exists()
+    assert replay(young, 12).identical
 
 
 def test_a_single_file_of_lives_is_kept_by_a_second_call(recipe_with, tmp_path):
