@@ -38,6 +38,8 @@ def _other_keys_problem(recipe: Sections, life: LifeSection) -> str | None:
             return f"faults[{number}].kind: {fault.kind} has no life; with life, use inner, outer and ball."
         if fault.n_spalls.support()[1] > 1:
             return f"faults[{number}].n_spalls: one spall grows in a life; leave n_spalls out."
+        if fault.profile == "trace":
+            return f"faults[{number}].profile: a trace would stretch as its spall grows; use another profile."
         if fault.width_mm.support()[0] >= life.end.length_mm:
             return f"faults[{number}].width_mm: a spall begins longer than life.end.length_mm; begin with 0.25 or so."
     for wrong, place, advice in (
@@ -46,6 +48,9 @@ def _other_keys_problem(recipe: Sections, life: LifeSection) -> str | None:
         (recipe.truth.undetected == "redraw", "truth.undetected", "a life is never drawn again; use keep or healthy"),
         (recipe.storage.records_per_part % size, "storage.records_per_part", f"use a multiple of the {size} snapshots of a life"),
         (recipe.n_records % size, "records", f"use a multiple of the {size} snapshots of a life"),
+        ((life.damaged_cadence_h or 0) > life.cadence_h, "life.damaged_cadence_h", "it is longer than cadence_h; use less"),
+        (life.damaged_from_mm >= life.end.length_mm, "life.damaged_from_mm", "it is beyond life.end.length_mm; use less"),
+        (life.withdrawal_h.support()[1] <= life.entry_h.support()[0], "life.withdrawal_h", "it is before entry_h; use more"),
         (recipe.contact.lubricant is None and life.temperature_history_k.support()[1] > 0, "life.temperature_history_k",
          "it has no effect without oil; give contact.lubricant"),
         (converter.kind == "adc" and (life.end.peak_m_s2 or 0) > converter.full_scale_m_s2, "life.end.peak_m_s2",

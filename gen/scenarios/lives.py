@@ -61,8 +61,7 @@ def draw_life(recipe: Recipe, rig: Rig, specimen: Specimen, conditions: Conditio
     count = 2 + int((drawn["entry"] + slots * cadence) / step)
     load, speed, warmer, noise = (history(rng, count) for rng in rngs)
     load, speed = log_normal(load, drawn["load_history"]), log_normal(speed, drawn["speed_history"])
-    of_law = {name: drawn[name] for name in ("critical", "acceleration")}
-    law = Growth(rate=drawn["growth"], exponent=drawn["growth_exponent"], **of_law)
+    law = Growth(*(drawn[name] for name in ("growth", "growth_exponent", "critical", "acceleration")))
     sums = ageing(
         step,
         conditions.shaft_rate * speed,
