@@ -68,7 +68,7 @@ def lives_of_file(path: Path) -> Lives:
             one = opened.isel(bearing=number)
             values = np.stack([one[name].transpose("snapshot", "channel").values for name in NAMES], axis=1)
             known = np.log(values[np.isfinite(values).all(axis=(1, 2))].astype(float))
-            age = EVERY * np.arange(len(known))
+            age = np.linspace(0, EVERY * (len(known) - 1), len(known))
             same = np.ones(len(known), bool)
             parts.append(Lives(known.reshape(len(known), -1), age, age[-1] - age, same, number * same, same))
     return Lives(*map(np.concatenate, zip(*parts, strict=True)))
