@@ -27,6 +27,8 @@ def run_blocks(page: str, folder: Path, replacements: Mapping[str, str] | None =
             block = re.sub(whole, part, block, flags=re.MULTILINE)
         if module := re.match(r"# (\w+\.py)\n", block):
             (folder / module[1]).write_text(block, encoding="utf-8")
-        elif "import torch" not in block or importlib.util.find_spec("torch"):
+        elif all(
+            importlib.util.find_spec(name) for name in re.findall(r"^import (torch|tensorflow)", block, re.MULTILINE)
+        ):
             exec(compile(block, f"docs/{page}", "exec"), names)  # noqa: S102 - our own page
     return names

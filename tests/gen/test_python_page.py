@@ -20,6 +20,8 @@ SMALLER = {
     "duration_s=1": "duration_s=0.1",
     "duration_s: 1": "duration_s: 0.1",
     "n=4,": "n=1,",
+    r"(fresh|loader), 20": r"\1, 2",
+    "num_workers=2": "num_workers=1",  # PyTorch warns of more workers than cores
     r"gen\.record\(\n": "gen.record(\n    waviness_nm=20,",
 }
 
