@@ -119,7 +119,8 @@ def by_boosting(lives: Lives, inputs: Callable[[Lives], FloatArray] | None = Non
     chosen, unit = lives.failed, float(np.median(np.diff(lives.age)[np.diff(lives.bearing) == 0]))
     # an early end would be chosen on snapshots of bearings of the training
     options: Any = {"loss": "absolute_error", "max_iter": 60, "max_leaf_nodes": 15, "early_stopping": False}
-    model = HistGradientBoostingRegressor(random_state=0, **options)
+    # scikit-learn finds each end of a bin of weighted samples alone: 255 bins of 258 inputs take 18 s, 31 take 2 s
+    model = HistGradientBoostingRegressor(max_bins=31, random_state=0, **options)
     weight = 1 / np.maximum(uncensored[place], 0.05)
     model.fit(inputs(lives)[chosen], np.log1p(lives.rul[chosen] / unit), sample_weight=weight[chosen])
     return lambda tested: unit * np.expm1(np.maximum(model.predict(inputs(tested)), 0.0))
