@@ -104,7 +104,7 @@ def generate(
         Single file of the corpus if the name ends in ``.nc``, else its folder; created if it does not exist. It may hold the same corpus,
         unfinished or finished; a folder may also hold fewer of its records, and then the rest is made.
     workers : int
-        Number of processes that make parts; 1 is this one. A script that starts several needs ``if __name__ == "__main__":``.
+        Number of processes that make parts, this one among them. A script that starts several needs ``if __name__ == "__main__":``.
     scheduler : str, optional
         Address of a dask scheduler whose workers see the folder under the same path; replaces ``workers``.
     seed, records : int, optional

@@ -27,29 +27,40 @@ def in_processes(task: Task, count: int) -> Iterator[list[Iterator[Any]]]:
     ClusterError
         From an iterator, if its process ended before its share. Errors of the task are raised there too.
     """
-    with _started(task, count) as processes:
+    with _started(task, range(count), count) as processes:
         yield [_results(receiver, process) for receiver, process in processes.items()]
 
 
 def as_they_come(task: Task, count: int) -> Generator[Any]:
-    """The results of all shares in the order in which they come, as :func:`in_processes`; the processes end with the generator."""
-    with _started(task, count) as processes:
+    """The results of all shares in the order in which they come, as :func:`in_processes`; this process makes the first share.
+
+    It starts at once, while the others load their libraries. The processes end with the generator.
+    """
+    with _started(task, range(1, count), count) as processes:
         running = dict(processes)
+        for result in task(0, count):
+            yield result
+            yield from _arrived(running, 0)
         while running:
-            for receiver in wait(list(running)):
-                kind, value = _receive(receiver, running[receiver])
-                if kind == _END:
-                    del running[receiver]
-                else:
-                    yield value
+            yield from _arrived(running, None)
+
+
+def _arrived(running: dict[Any, SpawnProcess], patience: float | None) -> Generator[Any]:
+    """Results that other processes have sent; those that have ended leave ``running``."""
+    for receiver in wait(list(running), patience):
+        kind, value = _receive(receiver, running[receiver])
+        if kind == _END:
+            del running[receiver]
+        else:
+            yield value
 
 
 @contextmanager
-def _started(task: Task, count: int) -> Iterator[dict[Any, SpawnProcess]]:
+def _started(task: Task, shares: range, count: int) -> Iterator[dict[Any, SpawnProcess]]:
     """Processes by the ends of their pipes."""
     processes: dict[Any, SpawnProcess] = {}
     try:
-        for share in range(count):
+        for share in shares:
             receiver, sender = _SPAWN.Pipe(duplex=False)
             process = _SPAWN.Process(target=_work, args=(sender, task, share, count), daemon=True)
             process.start()
