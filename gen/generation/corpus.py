@@ -170,8 +170,12 @@ def _check_parts(recipe: Recipe, parts: range, target: Path) -> None:
 
 def _with_those_there(recipe: Recipe, parts: range, folder: Path) -> list[int]:
     """Numbers of the parts, and of those that are in the folder already."""
-    there = (part for part in range(recipe.n_parts) if (folder / "parts" / part_name(part)).exists())
-    return sorted({*parts, *there})
+    return sorted({*parts, *_there(folder, range(recipe.n_parts))})
+
+
+def _there(folder: Path, parts: Sequence[int]) -> list[int]:
+    """Those of the parts that have a file, whole or not."""
+    return [part for part in parts if (folder / "parts" / part_name(part)).exists()]
 
 
 def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, Any]) -> Generated:
@@ -209,7 +213,7 @@ def _all_parts(
     at_once = min(workers, cores())
     if client is None and (sentence := too_many(workers)) is not None:
         notice(sentence)
-    if client is None and not all((folder / "parts" / part_name(part)).exists() for part in parts):
+    if client is None and len(_there(folder, parts)) < len(parts):
         missing, work = missing_kernels(recipe), expected_work(recipe)
         notice(forecast_in_words(len(missing), recipe.n_records * at_once / seconds_of(work)))
         compile_kernels(recipe, missing, notice)
@@ -352,7 +356,7 @@ def _made(
         return run(task, units(recipe, parts, max(sum(threads), 1)), scheduler=client, report=report)
     if workers == 1:
         return make_parts(recipe, parts, folder)
-    there = [part for part in parts if (folder / "parts" / part_name(part)).exists()]
+    there = _there(folder, parts)
     return as_they_come(partial(_share, recipe, folder.resolve(), there, sorted({*parts} - {*there})), workers)
 
 

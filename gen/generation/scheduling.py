@@ -23,7 +23,7 @@ from gen.simulation.batches import Integration, Waiting, integrate_together
 from gen.simulation.simulate import open_integrations
 from gen.simulation.timeline import timeline
 
-# Records under way. With 500 of domain_randomised the kernel works 10 % longer in idle lanes than with 1500, and with 1000 2 %; but with
+# Records under way. With 500 of domain_randomised the kernel works 12 % longer in idle lanes than with 1500, and with 1000 2 %; but with
 # 1500 a part of 250 records is complete after 42 % of the time for 3000, and with 1000 after 31 %.
 WINDOW_RECORDS = 1000
 WINDOW_BYTES = 64e6  # of a process: signals, scenarios and kernel inputs of the records under way

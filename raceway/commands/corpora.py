@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from gen.generation.plan import Plan
     from gen.recipe import Recipe
 
-WORTH_WORKERS = 400  # records; starting a process takes about as long as making these
+WORTH_WORKERS = 400  # records; up to these, starting a process takes about as long as it saves
 
 
 @click.command()
@@ -206,10 +206,11 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
 
 def _range_of(text: str) -> range:
     """Parts from their first and last number, ``A-B``, or from one number."""
-    first, _, last = text.partition("-")
-    if not (first.isdecimal() and (last or first).isdecimal()):
+    first, dash, last = text.partition("-")
+    last = last if dash else first
+    if not (first.isdecimal() and last.isdecimal()):
         raise click.BadParameter(f"{text!r} is no range; give the first and the last part, such as 0-4.")
-    return range(int(first), int(last or first) + 1)
+    return range(int(first), int(last) + 1)
 
 
 def _generate(recipe: str, output: Path, **options: Any) -> "Generated":

@@ -65,7 +65,8 @@ def test_an_error_in_a_process_ends_all_processes_and_is_told(recipe_file, tmp_p
     generate(recipe_file, tmp_path / "d", records=8)
     for name in ("manifest.json", "recipe.yaml"):
         shutil.copy(tmp_path / "d" / name, tmp_path / "c" / name)
-    (tmp_path / "c" / "parts" / "part-00001.nc").mkdir()  # where a part is to be written
+    shutil.copy(tmp_path / "d" / "parts" / "part-00000.nc", tmp_path / "c" / "parts")
+    (tmp_path / "c" / "parts" / "part-00001.nc").mkdir()  # where the second process, whose share this is, writes a part
     with pytest.raises(CorpusError, match=r"part-00001\.nc"):
         generate(recipe_file, tmp_path / "c", workers=2)
     assert not active_children()
