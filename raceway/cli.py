@@ -157,5 +157,8 @@ def main() -> NoReturn:
     """Run the command line of this process."""
     os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "critical")  # its errors come as exceptions too
     logging.getLogger("distributed.client").disabled = True
+    os.environ["MPLBACKEND"] = (
+        "agg"  # a notebook names a backend that this process may not have, and no command needs a window
+    )
     listen_for_signals()
     cli.main(prog_name="raceway")
