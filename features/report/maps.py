@@ -13,7 +13,7 @@ from features.report.pictures import VERMILION
 from features.signal.cyclic import Coherence
 from features.signal.impulsive import BandTree
 from features.signal.orders import OrderMap
-from features.signal.rows import FloatArray, IntArray
+from features.signal.rows import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,7 +48,7 @@ def plot(result: BandTree | OrderMap | Coherence, axes: Axes | None = None, *, r
         axes = plt.gca()
     match result:
         case BandTree():
-            _draw_bands(axes, result.levels, result.edges, np.atleast_2d(result.score)[record])
+            _draw_bands(axes, result, np.atleast_2d(result.score)[record])
         case OrderMap():
             amplitude = result.amplitude if result.amplitude.ndim == 2 else result.amplitude[record]
             level = level_over_median(amplitude[:, 1:])
@@ -63,7 +63,8 @@ def plot(result: BandTree | OrderMap | Coherence, axes: Axes | None = None, *, r
     return axes
 
 
-def _draw_bands(axes: Axes, levels: IntArray, edges: FloatArray, score: FloatArray) -> None:
+def _draw_bands(axes: Axes, tree: BandTree, score: FloatArray) -> None:
+    levels, edges, _, quantity = tree
     divisions, drawn = np.unique(levels), score[np.isfinite(score)]
     limits = {"vmin": min(0.0, float(drawn.min())), "vmax": max(1.0, float(drawn.max())), "cmap": "Greys"}
     mesh: Any = None
@@ -78,8 +79,8 @@ def _draw_bands(axes: Axes, levels: IntArray, edges: FloatArray, score: FloatArr
     axes.set_yticks(range(len(divisions)), [f"{division}" for division in divisions])
     axes.set(xlabel="frequency [kHz]", ylabel="number of bands", xlim=(0, edges.max() / 1e3))
     axes.invert_yaxis()
-    axes.figure.colorbar(mesh, ax=axes, label="score", pad=0.01)
-    axes.set_title(f"{score[best]:.3g} is the highest score, in {low:.3g}-{high:.3g} kHz")
+    axes.figure.colorbar(mesh, ax=axes, label=quantity, pad=0.01)
+    axes.set_title(f"Highest {quantity}: {score[best]:.3g}, in {low:.3g}-{high:.3g} kHz")
 
 
 def level_over_median(amplitude: FloatArray) -> FloatArray:

@@ -50,11 +50,14 @@ class BandTree(NamedTuple):
         Lower and upper edge of each band [Hz], shape (band, 2).
     score
         Shape (record, band).
+    quantity
+        What the score is, with its unit.
     """
 
     levels: IntArray
     edges: FloatArray
     score: Rows
+    quantity: str
 
     def __repr__(self) -> str:
         low, high = np.atleast_2d(self.best())[0]
@@ -82,7 +85,7 @@ def kurtogram(x: Rows, fs: Positive, *, narrowest: NotNegative = 0.0) -> BandTre
     """
     coefficients = fourier_coefficients(x, fs, fs / 2)
     levels, bands, edges = _tree(coefficients, fs / x.shape[-1], narrowest)
-    return BandTree(levels, edges, band_kurtosis(coefficients, bands, OVERLAP))
+    return BandTree(levels, edges, band_kurtosis(coefficients, bands, OVERLAP), "kurtosis")
 
 
 @checked
@@ -105,7 +108,8 @@ def comb_bands(x: Rows, fs: Positive, rate: OfEach) -> BandTree:
     score = np.stack(
         [_comb_level(analytic_band(coefficients, *band), x.shape[-1] / fs, rate) for band in bands], axis=-1
     )
-    return BandTree(levels, edges, np.where(COMB_WIDTH * rate[:, None] > np.diff(edges).T, -np.inf, score))
+    too_narrow = COMB_WIDTH * rate[:, None] > np.diff(edges).T
+    return BandTree(levels, edges, np.where(too_narrow, -np.inf, score), "level of the fault line [nepers]")
 
 
 class SpectralKurtosis(NamedTuple):

@@ -116,7 +116,7 @@ def brief(result: Any) -> str:
 
     >>> from collections import namedtuple
     >>> brief(namedtuple("Spectrum", "level, fs")(np.zeros((2, 3)), 5.0))
-    'Spectrum(level: (2, 3), fs: 5)'
+    'Spectrum(level: (2, 3), fs: 5.0)'
     """
-    told = (f"{name}: {np.shape(value) or format(value, 'g')}" for name, value in result._asdict().items())
+    told = (f"{name}: {np.shape(value) or value}" for name, value in result._asdict().items())
     return f"{type(result).__name__}({', '.join(told)})"

@@ -39,6 +39,16 @@ def test_a_record_is_drawn_as_it_is_among_several(compute, records):
         np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.parametrize(
+    ("compute", "quantity"), [("kurtogram", "kurtosis"), ("comb_bands", "level of the fault line")]
+)
+def test_the_title_of_bands_tells_the_quantity_its_highest_value_and_its_band(compute, quantity, records):
+    bands = RESULTS[compute](records[1])
+    title, _ = drawn(bands)
+    assert title.startswith(f"Highest {quantity}")
+    assert f": {bands.score.max():.3g}, in {bands.best()[0] / 1e3:.3g}-{bands.best()[1] / 1e3:.3g} kHz" in title
+
+
 def test_the_coherence_of_an_impact_train_is_darkest_at_its_rate(records):
     axes = features.plot(signal.spectral_coherence(records[1], FS, 400.0), Figure().subplots())
     (mesh,) = axes.collections
