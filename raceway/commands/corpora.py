@@ -200,7 +200,7 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
         seconds = round(time.monotonic() - start, 3)
         show.as_json({"corpus": made.path, **facts, "signals": made.signals._asdict(), "seconds": seconds})
     else:
-        _show_generated(made)
+        _show_generated(made, wanted)
     return DONE if useless is None else FOUND_WANTING
 
 
@@ -220,7 +220,7 @@ def _generate(recipe: str, output: Path, **options: Any) -> "Generated":
         return generate_corpus(recipe, output, **options, progress=report, notice=notice)
 
 
-def _show_generated(made: "Generated") -> None:
+def _show_generated(made: "Generated", wanted: "Recipe") -> None:
     from gen.corpus import counts_in_words
 
     kept = f", {made.kept} of them kept from before" if made.kept else ""
@@ -228,6 +228,9 @@ def _show_generated(made: "Generated") -> None:
     failed = f"; {len(made.failures):,} could not be simulated and are left out" if made.failures else ""
     size = f"{show.count_text(made.records, 'record')} in {show.count_text(made.parts, 'part')}"
     show.text(f"{made.path}: {size}{kept}{failed}{unusable}.")
+    missing = wanted.n_records - made.records - len(made.failures)
+    if wanted.life is not None and missing and made.parts == wanted.n_parts:
+        show.text(f"The other {missing:,} of {wanted.n_records:,} snapshots would come after the end of a life.")
     show.text(f"Next: raceway info {shlex.quote(str(made.path))}")
 
 

@@ -53,3 +53,13 @@ def test_only_lives_are_scored(run, tiny_corpus):
     result = run("prognose", tiny_corpus)
     assert result.exit_code == 2
     assert "has no age; it needs records of lives" in result.stderr
+
+
+def test_generate_says_why_records_are_fewer_than_asked(run, lives, tmp_path):
+    recipe = lives / "recipe.yaml"
+    told = run("generate", recipe, "-o", lives).stdout
+    with open_corpus(lives) as corpus:
+        records = corpus.sizes["record"]
+    assert f": {records} records in" in told
+    assert f"The other {480 - records} of 480 snapshots would come after the end of a life.\n" in told
+    assert "snapshots" not in run("generate", recipe, "-o", tmp_path / "c", "--parts", "0").stdout
