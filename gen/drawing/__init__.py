@@ -28,11 +28,11 @@ from gen.drawing.distributions import (
     within,
 )
 from gen.drawing.draws import Combination, Drawn, Draws, Known, in_si, known_of
-from gen.drawing.section import Count, Name, Probability, Section, Weight, plain, quantities
+from gen.drawing.section import Count, Name, Probability, Section, Weight, composed, plain, quantities
 from gen.drawing.streams import Purpose, stream
 
 __all__ = [
     "DISTRIBUTIONS", "KINDS", "Choice", "Combination", "Count", "Distribution", "Drawn", "Draws", "Grid", "Known", "LogUniform", "Name",
-    "Normal", "Number", "Probability", "Purpose", "Section", "Support", "Uniform", "Weight", "in_si", "interval", "is_within", "known_of",
-    "plain", "quantities", "stream", "weighted_index", "within",
+    "Normal", "Number", "Probability", "Purpose", "Section", "Support", "Uniform", "Weight", "composed", "in_si", "interval", "is_within",
+    "known_of", "plain", "quantities", "stream", "weighted_index", "within",
 ]  # fmt: skip

@@ -5,10 +5,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, create_model
+from pydantic import Field
 
 from gen.corpus.schema import Variable
-from gen.drawing import Probability, Section
+from gen.drawing import Probability, Section, composed
 
 FloatArray = NDArray[np.floating]
 
@@ -29,12 +29,12 @@ class Mechanism(Section):
 
 
 def section_with(name: str, module: str, base: type[Section], mechanisms: Iterable[type[Mechanism]]) -> Any:
-    """Section of a recipe with the keys of ``base``, and one for each mechanism. As ``name`` in ``module`` it can be pickled."""
+    """Section of a recipe with the keys of ``base``, and one for each mechanism."""
     keys: dict[str, Any] = {
         one.place: (one | None, Field(default=None, description=f"{str(one.__doc__).rstrip('.')}; none if left out."))
         for one in mechanisms
     }
-    return create_model(name, __module__=module, __base__=base, __doc__=base.__doc__, **keys)
+    return composed(name, module, (base,), base.__doc__, **keys)
 
 
 def mechanisms_of(section: Section) -> Iterator[Any]:

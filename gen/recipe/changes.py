@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Any, get_type_hints
 
-from pydantic import ConfigDict, Field, create_model, model_serializer
+from pydantic import ConfigDict, Field, model_serializer
 
-from gen.drawing import Section
+from gen.drawing import Section, composed
 from gen.recipe.operation import OperationSection
 from gen.recipe.sensing import SnrLevel
 
@@ -34,7 +34,7 @@ def _changes_of(section: type[Section], name: str, meaning: str) -> Any:
         for key, field in section.model_fields.items()
         if key != "kind"
     }
-    return create_model(name, __base__=Changes, __doc__=meaning, __module__=__name__, **fields)
+    return composed(name, __name__, (Changes,), meaning, **fields)
 
 
 if TYPE_CHECKING:

@@ -4,10 +4,10 @@ import functools
 import operator
 from typing import TYPE_CHECKING, Annotated, Any, get_args
 
-from pydantic import Field, create_model
+from pydantic import Field
 
 from gen.corpus import FAULTS
-from gen.drawing import Weight
+from gen.drawing import Weight, composed
 from gen.mechanisms.faults import KINDS
 from gen.mechanisms.faults.bearing_fault import BearingFault
 from gen.recipe.changes import LevelChanges, OperationChanges
@@ -25,7 +25,7 @@ class FaultEntry(BearingFault):
 
 
 def _entry(kind: type[BearingFault]) -> Any:
-    return create_model(kind.__name__, __base__=(kind, FaultEntry), __doc__=kind.__doc__, __module__=__name__)
+    return composed(kind.__name__, __name__, (kind, FaultEntry), kind.__doc__)
 
 
 _ENTRIES = tuple(map(_entry, KINDS))
