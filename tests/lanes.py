@@ -59,8 +59,9 @@ def with_room(shape: Shape, batch: Batch, n_steps: int) -> Batch:
     """A copy of a batch that the kernel may change, with all rows of ``params`` and ``slow``."""
     params = np.zeros(param_rows(shape, n_steps) * LANES)
     params[: batch.params.size] = batch.params
-    own = {name: array.copy() for name, array in batch._asdict().items()}
-    return Batch(**own | {"params": params, "slow": np.zeros(2 * slow_rows(shape) * LANES)})
+    own = {name: array.copy() for name, array in batch._asdict().items() if name != "n_records"}
+    own |= {"params": params, "slow": np.zeros(2 * slow_rows(shape) * LANES)}
+    return Batch(batch.n_records, **own)
 
 
 @compiled_to_disk
@@ -72,4 +73,4 @@ def _march(shape, batch, dt, n_steps, states, angles, history):
         if knot + 1 < len(states):
             to_next_knot(shape, batch, knot, n_steps, dt, work)
             since = 2.0 * n_steps * (knot % STRIDE)
-            advance(shape, batch.state, batch.params, dt, n_steps, since, history, knot * n_steps * AXES)
+            advance(shape, batch, dt, n_steps, since, history, knot * n_steps * AXES)

@@ -6,7 +6,6 @@ compiled kernels.
 """
 
 import math
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -16,7 +15,7 @@ import numpy as np
 from gen.generation.step_checks import CHECKED_SHARE
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, draw_scenarios, first_records, settings_of
-from gen.simulation.batches import Group, filled_lanes, group_of
+from gen.simulation.batches import Group, group_of
 from gen.simulation.inputs import kernel_inputs
 from gen.simulation.kernels import cache_folder
 from gen.simulation.motion import draw_motion
@@ -67,12 +66,11 @@ def expected_work(recipe: Recipe) -> float:
 
 
 def work_of(recipe: Recipe, groups: Sequence[Group]) -> float:
-    """Steps of a rolling element that all lanes of a corpus take, from the groups of a sample of its records."""
+    """Steps of a rolling element that a corpus takes, from the groups of a sample of its records."""
     some = draw_scenarios(recipe, 0, min(CONTIGUOUS, recipe.n_records))
     scale = recipe.n_records * integrations(some) / len(some) / len(groups)
-    work = sum(_cost(group) * filled_lanes(round(count * scale)) for group, count in Counter(groups).items())
-    checked = filled_lanes(round(len(first_records(recipe)) + CHECKED_SHARE * recipe.n_records))
-    work += 2 * checked * sum(map(_cost, groups)) / len(groups)
+    checked = len(first_records(recipe)) + CHECKED_SHARE * recipe.n_records
+    work = (len(groups) * scale + 2 * checked) * sum(map(_cost, groups)) / len(groups)
     return timeline(settings_of(recipe)).integrated * work
 
 

@@ -68,11 +68,6 @@ def batches(groups: Mapping[int, Group]) -> Iterator[tuple[Group, list[int]]]:
             yield group, members[first : first + LANES]
 
 
-def filled_lanes(count: int) -> int:
-    """Lanes that the batches of ``count`` records of one group take, free lanes included."""
-    return -(-count // LANES) * LANES
-
-
 def integrate_batch(group: Group, batch: Batch, timeline: Timeline) -> Integral:
     """Integrate one batch along the time axis of the recipe."""
     load_kernel(group.shape)

@@ -42,5 +42,5 @@ def load_kernel(shape: Shape) -> None:
 @functools.cache
 def signature(shape: Shape) -> tuple[Any, ...]:
     """Types of the arguments of the kernel of a shape."""
-    arrays = Batch(*(np.empty((0,) * DIMENSIONS.get(field, 1)) for field in Batch._fields))
+    arrays = Batch(1, *(np.empty((0,) * DIMENSIONS.get(field, 1)) for field in Batch._fields[1:]))
     return tuple(numba.typeof(argument) for argument in (shape, arrays, 1e-5, 1, decimation(1), 0, 1))

@@ -9,8 +9,9 @@ from numba import njit
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.extent import MAX_BALLS
 from gen.physics.kernel.compiling import LANES
-from gen.physics.kernel.layout import STATE_ROWS, make_shape, param_rows
+from gen.physics.kernel.layout import STATE_ROWS, Batch, make_shape, param_rows
 from gen.physics.kernel.step import advance
+from gen.simulation.kernels import DIMENSIONS
 
 STAGES = 2  # stages that the assembly holds as separate code, each with the force of every ball
 # a square root is an instruction of the processor, or starts from half the exponent, a vector shift by one bit
@@ -32,13 +33,15 @@ BALL_COUNTS = sorted({bearing.n_balls for bearing in CATALOGUE.values()})
 
 
 @njit
-def advance_once(shape, state, params, history):
-    advance(shape, state, params, 1e-6, 1, 0.0, history, 0)
+def advance_once(shape, batch, history):
+    advance(shape, batch, 1e-6, 1, 0.0, history, 0)
 
 
 def assembly(shape):
     """Code of a step; each takes three seconds to compile."""
-    advance_once(shape, np.zeros(STATE_ROWS * LANES), np.ones(param_rows(shape, 1) * LANES), np.zeros(LANES))
+    arrays = {name: np.empty((0,) * DIMENSIONS.get(name, 1)) for name in Batch._fields}
+    arrays |= {"state": np.zeros(STATE_ROWS * LANES), "params": np.ones(param_rows(shape, 1) * LANES)}
+    advance_once(shape, Batch(**arrays | {"n_records": LANES}), np.zeros(LANES))
     return advance_once.inspect_asm(advance_once.signatures[-1])
 
 

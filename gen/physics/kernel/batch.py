@@ -1,6 +1,7 @@
 """Records laid out in lanes for the kernel.
 
-A batch holds at most ``LANES`` records of one shape; free lanes are filled with copies of its first record. Every row starts as NaN and is
+A batch holds at most ``LANES`` records of one shape; free lanes have copies of its first record, and only those that fill up a vector of
+the processor are computed. Every row starts as NaN and is
 set by its name in :mod:`gen.physics.kernel.layout`, so a row that is forgotten makes a record diverge instead of bending its physics.
 """
 
@@ -65,6 +66,7 @@ def lay_out(records: list[KernelInput], shape: Shape, knot: float) -> Batch:
     turnings = as_columns([record.turning for record in padded])
     spalls, tables = _spalls(padded)
     return Batch(
+        n_records=len(records),
         state=_state(padded, turnings).ravel(),
         params=_params(padded, machines, shape).ravel(),
         drive=_drive(padded, turnings, machines, knot).ravel(),

@@ -18,8 +18,7 @@ from numba.extending import intrinsic, register_jitable
 from gen.support.kernels import keep_on_disk
 from gen.support.sources import hash_sources
 
-# Records advanced side by side. With 32 the kernel is as fast, but more lanes stay free (domain_randomised: 36 % of all instead of 19 %);
-# with 8 LLVM unrolls the loop over lanes and leaves it scalar.
+# Records advanced side by side. With 32 the kernel is as fast, but more lanes stay free.
 LANES = 16
 
 
@@ -81,17 +80,37 @@ def _make_wide(context: Any) -> Any:  # noqa: ARG001
     return types.void(), generate
 
 
-def _make_lane_count(context: Any) -> Any:  # noqa: ARG001
-    """``LANES``, hidden from LLVM, which otherwise unrolls a short loop over lanes before it tries to vectorise it."""
+def _make_lane_count(context: Any, n_records: Any) -> Any:  # noqa: ARG001
+    """Lanes of whole vectors that hold so many records, at most ``LANES``.
+
+    Their number is hidden from LLVM, which otherwise unrolls a short loop over lanes before it tries to vectorise it.
+    """
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
-        whole, flag, eights = ir.IntType(64), ir.IntType(1), ir.Constant(ir.IntType(64), LANES // 8)
-        hidden = builder.asm(ir.FunctionType(whole, [whole]), "", "=r,0", [eights], side_effect=False)
-        assume = builder.module.declare_intrinsic("llvm.assume", (), ir.FunctionType(ir.VoidType(), [flag]))
-        builder.call(assume, [builder.icmp_unsigned("<=", hidden, eights)])  # so that rows of an array do not overlap
-        return builder.shl(hidden, whole(3), flags=("nuw", "nsw"))
+        _, _, features = context.codegen().magic_tuple()
+        whole, bits = ir.IntType(64), 3 if "+avx512f" in features else 2  # numbers of 64 bits in a vector: 8 or 4
+        vectors = builder.lshr(builder.add(arguments[0], whole((1 << bits) - 1)), whole(bits))
+        hidden = builder.asm(ir.FunctionType(whole, [whole]), "", "=r,0", [vectors], side_effect=False)
+        _assume_below(builder, hidden, (LANES >> bits) + 1)  # so that rows of an array do not overlap
+        return builder.shl(hidden, whole(bits), flags=("nuw", "nsw"))
 
-    return types.intp(), generate
+    return types.intp(types.intp), generate
+
+
+def _make_as_lane(context: Any, number: Any) -> Any:  # noqa: ARG001
+    """A number that is a lane; LLVM does not see that in long loops, and would load vectors value by value."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+        _assume_below(builder, arguments[0], LANES)
+        return arguments[0]
+
+    return types.intp(types.intp), generate
+
+
+def _assume_below(builder: Any, number: Any, limit: int) -> None:
+    flag = ir.IntType(1)
+    assume = builder.module.declare_intrinsic("llvm.assume", (), ir.FunctionType(ir.VoidType(), [flag]))
+    builder.call(assume, [builder.icmp_unsigned("<", number, ir.Constant(ir.IntType(64), limit))])
 
 
 def _make_fma(context: Any, a: Any, b: Any, c: Any) -> Any:  # noqa: ARG001
@@ -132,7 +151,8 @@ def _make_number(context: Any, bits: Any) -> Any:  # noqa: ARG001
 
 
 wide = cast("Callable[[], None]", intrinsic(_make_wide))
-lane_count = cast("Callable[[], int]", intrinsic(_make_lane_count))
+lane_count = cast("Callable[[int], int]", intrinsic(_make_lane_count))
+as_lane = cast("Callable[[int], int]", intrinsic(_make_as_lane))
 fma = cast("Callable[[float, float, float], float]", intrinsic(_make_fma))
 fast_divider = cast("Callable[[], bool]", intrinsic(_make_fast_divider))
 _bits = cast("Callable[[float], int]", intrinsic(_make_bits))

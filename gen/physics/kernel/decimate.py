@@ -114,7 +114,7 @@ def filter_rows(
     """
     wide()
     taps, width = stage.taps, len(channels) * LANES
-    for i in range(n_outputs * len(channels) * lane_count()):
+    for i in range(n_outputs * len(channels) * lane_count(LANES)):
         total[i] = 0.0
     for row in range(0, len(taps), 4):
         a0, b0, c0, d0 = taps[row, 0], taps[row, 1], taps[row, 2], taps[row, 3]
@@ -130,5 +130,5 @@ def filter_rows(
                 sums[2 * width + i] = fma(c0, w, fma(c1, x, fma(c2, y, fma(c3, z, sums[2 * width + i]))))
                 sums[3 * width + i] = fma(d0, w, fma(d1, x, fma(d2, y, fma(d3, z, sums[3 * width + i]))))
     outputs = out[at * width :]
-    for i in range(n_outputs * len(channels) * lane_count()):
+    for i in range(n_outputs * len(channels) * lane_count(LANES)):
         outputs[i] = total[i]

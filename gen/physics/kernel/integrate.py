@@ -74,6 +74,7 @@ def set_out(shape: Shape, batch: Batch, n_steps: int) -> Batch:
     for i in range(batch.params.size):
         params[i] = batch.params[i]
     return Batch(
+        n_records=batch.n_records,
         state=copied(batch.state),
         params=params,
         drive=copied(batch.drive),
@@ -123,12 +124,12 @@ def keep(history: Single, size: int, start: int) -> None:
 
 
 @njit(**INLINE)
-def watch(state: FloatArray, knot: int, diverged: NDArray[np.int64]) -> None:
+def watch(batch: Batch, knot: int, diverged: NDArray[np.int64]) -> None:
     """Store the knot in ``diverged`` for the lanes that first leave the finite range at it."""
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         inside = True
         for row in range(AXES):
-            inside &= abs(state[row * LANES + lane]) < FAR_OFF
+            inside &= abs(batch.state[row * LANES + lane]) < FAR_OFF
         if not inside and diverged[lane] < 0:
             diverged[lane] = knot
 
@@ -138,7 +139,7 @@ def largest_stiffness(shape: Shape, batch: Batch) -> FloatArray:
     """Largest contact stiffness of each lane, shape (lane,) [N/m]: ``n K cos(alpha)^2`` times the largest sum of ``squeeze**(n - 1)``."""
     steepest = np.empty(LANES)
     exponent = 10 / 9 if len(shape.roller) else 1.5
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         cosine, factor = (
             batch.params[Param.CONTACT_COSINE * LANES + lane],
             batch.params[Param.LOAD_DEFLECTION_FACTOR * LANES + lane],
@@ -169,8 +170,8 @@ def integrate_lanes(
             to_next_knot(shape, batch, knot, n_steps, dt, work)
             since = 2.0 * n_steps * (knot % STRIDE)
             at = (kept + (knot - first) * n_steps) * n_channels
-            advance(shape, batch.state, batch.params, dt, n_steps, since, history, at)
-            watch(batch.state, knot, diverged)
+            advance(shape, batch, dt, n_steps, since, history, at)
+            watch(batch, knot, diverged)
         start = 2 * BLOCK * (first // BLOCK % ROOM) if two_stages else 0
         if two_stages:
             filter_rows(

@@ -226,6 +226,8 @@ def n_process_terms(n_balls: int) -> int:
 class Batch(NamedTuple):
     """Records side by side, one per lane; arrays are flat, ``row * LANES + lane``, unless they say otherwise."""
 
+    n_records: int
+    """Number of records; the lanes behind them are not computed."""
     state: FloatArray
     """Rows of :class:`State`."""
     params: FloatArray

@@ -43,7 +43,7 @@ def outer_forces(batch: Batch, knot: int, knot_seconds: float, ahead: int, moves
     wide()
     drive, state = batch.drive, batch.state
     scheduled = min(knot + ahead, len(batch.schedule) - 1)
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         load = 1.0
         if scheduled >= 0:
             load = batch.schedule[scheduled, 1, lane]
@@ -56,7 +56,7 @@ def outer_forces(batch: Batch, knot: int, knot_seconds: float, ahead: int, moves
         ]
         out[lane] = fma(load, drive[Drive.LOAD_X * LANES + lane], pull * drive[Drive.TWICE_X * LANES + lane])
         out[LANES + lane] = fma(load, drive[Drive.LOAD_Y * LANES + lane], pull * drive[Drive.TWICE_Y * LANES + lane])
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         hit, place = 0.0, drive[Drive.KNOCK_ANGLE * LANES + lane]
         if drive[Drive.KNOCK * LANES + lane] != 0.0:
             hit = knock(batch, knot_seconds, ahead, lane, moves)
@@ -70,6 +70,6 @@ def move_forces(batch: Batch, knot: int, n_steps: int, dt: float, moves: FloatAr
     wide()
     for ahead in range(2):
         outer_forces(batch, knot, n_steps * dt, ahead, moves, work[4 * ahead * LANES :])
-    for i in range(4 * lane_count()):
+    for i in range(4 * lane_count(LANES)):
         batch.params[Param.SHAFT_FORCE_X * LANES + i] = work[i]
         batch.params[(Param.SHAFT_FORCE_X + 4) * LANES + i] = (work[4 * LANES + i] - work[i]) * (0.5 / n_steps)

@@ -56,7 +56,7 @@ def jump_axes(batch: Batch) -> None:
     as after a small random rotation of the ball.
     """
     drive = batch.drive
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         probability = drive[Drive.AXIS_JUMPS * LANES + lane]
         if probability > 0.0:
             past = batch.angles[Angle.CAGE * LANES + lane] - drive[Drive.AXIS_ANGLE * LANES + lane]
@@ -239,7 +239,7 @@ def move_spalls(shape: Shape, batch: Batch, n_steps: int, moves: FloatArray, wor
     angles, starts, slopes, near, falls = batch.angles, 0, LANES, 2 * LANES, work[3 * LANES :]
     for spall in range(batch.spalls.size // (SPALL_ROWS * LANES)):
         this = batch.spalls[spall * SPALL_ROWS * LANES :]
-        for lane in range(lane_count()):
+        for lane in range(lane_count(batch.n_records)):
             with_cage, with_shaft = this[SpallRow.WITH_CAGE * LANES + lane], this[SpallRow.WITH_SHAFT * LANES + lane]
             with_spin, period = this[SpallRow.WITH_SPIN * LANES + lane], this[SpallRow.PERIOD * LANES + lane]
             start = with_cage * angles[Angle.CAGE * LANES + lane] + with_shaft * angles[Angle.SHAFT * LANES + lane]
@@ -251,7 +251,7 @@ def move_spalls(shape: Shape, batch: Batch, n_steps: int, moves: FloatArray, wor
             away = abs(middle - period * np.rint(middle / period)) - 0.5 * abs(slope)
             work[starts + lane], work[slopes + lane] = start, slope
             work[near + lane] = 1.0 if away < this[SpallRow.REACH * LANES + lane] else 0.0
-        for lane in range(lane_count()):
+        for lane in range(lane_count(batch.n_records)):
             if work[near + lane] > 0.0:
                 start, slope = work[starts + lane], work[slopes + lane]
                 meet_spall(shape, batch, spall, lane, n_steps, start, slope, falls, met)

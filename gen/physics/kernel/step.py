@@ -8,9 +8,9 @@ is not faster, and compiling it takes twice as long.
 import numpy as np
 from numba import njit
 
-from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
+from gen.physics.kernel.compiling import INLINE, LANES, as_lane, fma, lane_count, wide
 from gen.physics.kernel.equations import Instant, accelerations
-from gen.physics.kernel.layout import AXES, PICKUPS, FloatArray, Param, Shape, State, drop_row
+from gen.physics.kernel.layout import AXES, PICKUPS, Batch, FloatArray, Param, Shape, State, drop_row
 
 Dynamic = tuple[float, ...]
 """Coordinates and rates of a lane, or their slopes."""
@@ -91,10 +91,12 @@ def slopes_of(
 
 
 @njit(**INLINE)
-def first_stage(shape: Shape, state: FloatArray, params: FloatArray, dt: float, instant: Instant) -> None:
+def first_stage(shape: Shape, batch: Batch, dt: float, instant: Instant) -> None:
     """First stage: store the beginning of the step and its slope, and move half a step along that slope."""
     wide()
-    for lane in range(LANES):
+    state, params = batch.state, batch.params
+    for number in range(lane_count(batch.n_records)):
+        lane = as_lane(number)
         q, slope, roots = slopes_of(shape, state, params, instant, lane)
         state[State.STEEPEST * LANES + lane] = max(state[State.STEEPEST * LANES + lane], roots)
         write(shape, state, State.BEGINNING, lane, q)
@@ -103,9 +105,7 @@ def first_stage(shape: Shape, state: FloatArray, params: FloatArray, dt: float, 
 
 
 @njit(**INLINE)
-def later_stage(
-    shape: Shape, state: FloatArray, params: FloatArray, dt: float, instant: Instant, stage: int | np.int64
-) -> None:
+def later_stage(shape: Shape, batch: Batch, dt: float, instant: Instant, stage: int | np.int64) -> None:
     """Stage 1, 2 or 3: add its slope to the weighted sum of slopes, and compute the state at which the next stage begins.
 
     That state is the beginning of the step plus ``along_all`` times the sum plus ``ahead`` times the new slope [s]; the sum counts at the
@@ -115,7 +115,9 @@ def later_stage(
     last = stage == 3
     weight, ahead, along_all = (1.0, 0.0, dt / 6) if last else (2.0, dt * (0.5 * stage), 0.0)
     wide()
-    for lane in range(LANES):
+    state, params = batch.state, batch.params
+    for number in range(lane_count(batch.n_records)):
+        lane = as_lane(number)
         if stage != 2:
             half_turn(state, params, lane)
         _, slope, _ = slopes_of(shape, state, params, instant, lane)
@@ -131,12 +133,12 @@ def later_stage(
 
 
 @njit(**INLINE)
-def pick_up(shape: Shape, state: FloatArray, params: FloatArray, received: FloatArray) -> None:
+def pick_up(shape: Shape, batch: Batch, received: FloatArray) -> None:
     """Weighted sum of the displacements or accelerations at the beginning of a step, for each channel."""
     wide()
-    picked = state[(State.BEGINNING if len(shape.displacement) else State.SLOPES + AXES) * LANES :]
-    weights = params[PICKUPS * LANES :]
-    for lane in range(lane_count()):
+    picked = batch.state[(State.BEGINNING if len(shape.displacement) else State.SLOPES + AXES) * LANES :]
+    weights = batch.params[PICKUPS * LANES :]
+    for lane in range(lane_count(batch.n_records)):
         for channel in range(len(shape.channels)):
             value = 0.0
             for axis in range(AXES if len(shape.resonator) else 4):
@@ -145,24 +147,15 @@ def pick_up(shape: Shape, state: FloatArray, params: FloatArray, received: Float
 
 
 @njit(**INLINE)
-def advance(
-    shape: Shape,
-    state: FloatArray,
-    params: FloatArray,
-    dt: float,
-    n_steps: int,
-    since: float,
-    history: FloatArray,
-    at: int,
-) -> None:
+def advance(shape: Shape, batch: Batch, dt: float, n_steps: int, since: float, history: FloatArray, at: int) -> None:
     """Advance every lane from one knot to the next by ``n_steps`` classical Runge-Kutta steps.
 
     Parameters
     ----------
     shape : Shape
         Parts that the kernel contains.
-    state, params : array, shape (row * LANES + lane)
-        Rows of :class:`State`, which the steps advance, and of :class:`Param`, which hold until the next knot.
+    batch : Batch
+        Its ``state`` is advanced; its ``params`` hold until the next knot.
     dt : float
         Step [s].
     n_steps : int
@@ -174,18 +167,18 @@ def advance(
     at : int
         First row of ``history`` to fill; a row is a step and a channel.
     """
-    drops, width = drop_row(shape) * LANES, 0
+    params, drops, width = batch.params, drop_row(shape) * LANES, 0
     if len(shape.spalled) and params[drops - LANES] > 0.0:  # otherwise the zeros of one half step serve them all
         width = len(shape.balls) * LANES
     for step in range(n_steps):
         half_step = 2.0 * step
         # a view of the drops: for an index, numba would test whether it counts from the end
         start = Instant(half_step, since + half_step, params[drops + 2 * step * width :])
-        first_stage(shape, state, params, dt, start)
-        pick_up(shape, state, params, history[(at + step * len(shape.channels)) * LANES :])
+        first_stage(shape, batch, dt, start)
+        pick_up(shape, batch, history[(at + step * len(shape.channels)) * LANES :])
         for stage in range(1, 4):
             passed = 1 if stage < 3 else 2
             instant = Instant(
                 half_step + passed, since + half_step + passed, params[drops + (2 * step + passed) * width :]
             )
-            later_stage(shape, state, params, dt, instant, stage)
+            later_stage(shape, batch, dt, instant, stage)

@@ -47,18 +47,17 @@ def turn_and_sum(
     turning: tuple[None, ...],
     first: int,
     rms: int,
-    phasors: FloatArray,
-    drive: FloatArray,
+    batch: Batch,
     values: FloatArray,
 ) -> None:
     """Value of one process for every lane, into ``values``.
 
     Its phasors are rotated by ``STRIDE`` knots first, unless ``turning`` is empty. ``first`` is the first of its terms, ``rms`` the row of
-    ``drive`` with its rms.
+    ``batch.drive`` with its rms.
     """
     wide()
-    own, size, scale = phasors[4 * first * LANES :], drive[rms * LANES :], math.sqrt(2.0 / len(terms))
-    for lane in range(lane_count()):
+    own, size, scale = batch.phasors[4 * first * LANES :], batch.drive[rms * LANES :], math.sqrt(2.0 / len(terms))
+    for lane in range(lane_count(batch.n_records)):
         total = 0.0
         for term in range(len(terms)):
             i = 4 * term * LANES + lane
@@ -74,15 +73,15 @@ def turn_and_sum(
 @njit(**INLINE)
 def processes(shape: Shape, batch: Batch, turning: tuple[None, ...], values: FloatArray) -> None:
     """Values of all processes, rows of :class:`Process`; see :func:`turn_and_sum`."""
-    phasors, drive = batch.phasors, batch.drive
-    turn_and_sum(OF_SPEED, turning, 0, Drive.SPEED_RMS, phasors, drive, values[Process.SPEED * LANES :])
-    turn_and_sum(OF_SLIP, turning, SLIP_FIRST, Drive.SLIP_RMS, phasors, drive, values[Process.SLIP * LANES :])
-    turn_and_sum(OF_SPIN, turning, SPIN_FIRST, Drive.SPIN_RMS, phasors, drive, values[Process.SPIN * LANES :])
-    turn_and_sum(OF_TILT, turning, TILT_FIRST, Drive.AXIS_RMS, phasors, drive, values[Process.TILT * LANES :])
+    drive = batch.drive
+    turn_and_sum(OF_SPEED, turning, 0, Drive.SPEED_RMS, batch, values[Process.SPEED * LANES :])
+    turn_and_sum(OF_SLIP, turning, SLIP_FIRST, Drive.SLIP_RMS, batch, values[Process.SLIP * LANES :])
+    turn_and_sum(OF_SPIN, turning, SPIN_FIRST, Drive.SPIN_RMS, batch, values[Process.SPIN * LANES :])
+    turn_and_sum(OF_TILT, turning, TILT_FIRST, Drive.AXIS_RMS, batch, values[Process.TILT * LANES :])
     for ball in range(len(shape.balls) if len(shape.jittered) else 0):
         jitter, first = values[(Process.JITTER + ball) * LANES :], JITTER_FIRST + ball * JITTER_TERMS
-        turn_and_sum(OF_JITTER, turning, first, Drive.JITTER_RMS, phasors, drive, jitter)
-        for lane in range(lane_count()):
+        turn_and_sum(OF_JITTER, turning, first, Drive.JITTER_RMS, batch, jitter)
+        for lane in range(lane_count(batch.n_records)):
             late = drive[Drive.LATE_BALL * LANES + lane] == ball
             jitter[lane] += drive[Drive.LATE_BY * LANES + lane] if late else 0.0
 
@@ -107,7 +106,7 @@ def move_processes(shape: Shape, batch: Batch, n_steps: int, after: FloatArray) 
             line = batch.params[(direction_row(shape) + 4 * ball) * LANES :]
             now, later = batch.slow[(Process.JITTER + ball) * LANES :], after[(Process.JITTER + ball) * LANES :]
             ball_c, ball_s = COS[len(shape.balls), ball], SIN[len(shape.balls), ball]
-            for lane in range(lane_count()):
+            for lane in range(lane_count(batch.n_records)):
                 c, s = cosine(now[lane]), sine(now[lane])
                 start_c, start_s = fma(ball_c, c, -(ball_s * s)), fma(ball_s, c, ball_c * s)
                 c, s = cosine(later[lane]), sine(later[lane])
@@ -116,14 +115,14 @@ def move_processes(shape: Shape, batch: Batch, n_steps: int, after: FloatArray) 
                 line[2 * LANES + lane] = (fma(ball_c, c, -(ball_s * s)) - start_c) * per_half_step
                 line[3 * LANES + lane] = (fma(ball_s, c, ball_c * s) - start_s) * per_half_step
     slopes = batch.slow[rows * LANES :]
-    for i in range(rows * lane_count()):
+    for i in range(rows * lane_count(LANES)):
         slopes[i] = (after[i] - batch.slow[i]) * (1 / STRIDE)
 
 
 @njit(**INLINE)
 def new_walk(batch: Batch, knot: int) -> None:
     """Draw the random slip of every lane for the next ``STRIDE`` knots: white noise, so that the angle of the cage walks at random."""
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         rms = batch.drive[Drive.WALK * LANES + lane]
         if rms > 0.0:
             drawn = standard_normal(knot // STRIDE, batch.drive[Drive.WALK_SEED * LANES + lane])
@@ -141,7 +140,7 @@ def turn_rings(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float, m
     slopes = slow[slow_rows(shape) * LANES :]
     half, per_second = 0.5 / n_steps, 1 / (n_steps * dt) ** 2
     scheduled = min(knot, len(batch.schedule) - 1)
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         speed = 1 + fma(0.5, slopes[Process.SPEED * LANES + lane], slow[Process.SPEED * LANES + lane])
         slip = fma(0.5, slopes[Process.SLIP * LANES + lane], slow[Process.SLIP * LANES + lane])
         slip = drive[Drive.MEAN_SLIP * LANES + lane] + slip + drive[Drive.WALK_NOW * LANES + lane]
@@ -164,7 +163,7 @@ def turn_rings(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float, m
     # after 1e5 rotations a direction keeps its angle to 1e-13, but its length drifts: bring it back to 1
     for row in (State.CAGE_COS, State.SHAFT_COS):
         direction = state[row * LANES :]
-        for lane in range(lane_count()):
+        for lane in range(lane_count(batch.n_records)):
             c, s = direction[lane], direction[LANES + lane]
             stretch = 1.5 - 0.5 * fma(c, c, s * s)
             direction[lane], direction[LANES + lane] = c * stretch, s * stretch
@@ -174,7 +173,7 @@ def turn_rings(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float, m
 def keep_turning(shape: Shape, batch: Batch, moves: FloatArray) -> None:
     """Advance angles and processes to the next knot."""
     wide()
-    for i in range(N_ANGLES * lane_count()):
+    for i in range(N_ANGLES * lane_count(LANES)):
         batch.angles[i] += moves[i]
     slopes = batch.slow[slow_rows(shape) * LANES :]
     for i in range(slopes.size):

@@ -63,10 +63,10 @@ def powered(c: float, s: float, exponent: int) -> tuple[float, float]:
 
 
 @njit(**INLINE)
-def start_rotations(shape: Shape, z: FloatArray) -> None:
+def start_rotations(shape: Shape, n_records: int, z: FloatArray) -> None:
     """Set ``TURN`` of both races to 1, and ``POWER`` from ``DIRECTION``."""
     wide()
-    for lane in range(lane_count()):
+    for lane in range(lane_count(n_records)):
         for race in range(2):
             i = race * OUTER + lane
             c, s = powered(z[i], z[i + LANES], len(shape.balls))
@@ -93,28 +93,28 @@ def folded_orders(shape: Shape, amplitudes: FloatArray, z: FloatArray, i: int, l
 
 
 @njit(**INLINE)
-def fold_waviness(shape: Shape, waves: FloatArray, z: FloatArray, folded: FloatArray) -> None:
+def fold_waviness(shape: Shape, batch: Batch, z: FloatArray, folded: FloatArray) -> None:
     """Fold the waviness of both races, rotated to the directions in ``z``: two rows of ``folded`` for each ball."""
     wide()
-    start_rotations(shape, z)
+    start_rotations(shape, batch.n_records, z)
     for first in range(len(shape.balls)):
-        inner, outer = waves[2 * first * LANES :], waves[(race_rows(shape) // 2 + 2 * first) * LANES :]
+        inner, outer = batch.waves[2 * first * LANES :], batch.waves[(race_rows(shape) // 2 + 2 * first) * LANES :]
         sums = folded[2 * first * LANES :]
-        for lane in range(lane_count()):
+        for lane in range(lane_count(batch.n_records)):
             a, b = folded_orders(shape, inner, z, lane, lane)
             c, d = folded_orders(shape, outer, z, OUTER + lane, lane)
             sums[lane], sums[LANES + lane] = a + c, b + d
 
 
 @njit(**INLINE)
-def unfold(shape: Shape, folded: FloatArray, gaps: FloatArray) -> None:
+def unfold(shape: Shape, n_records: int, folded: FloatArray, gaps: FloatArray) -> None:
     """Subtract the waviness under every ball, the real part of the Fourier transform of ``folded``, from ``gaps``.
 
     Balls ``i`` and ``n - i`` have the same sums of even and of odd parts.
     """
     wide()
     n_balls = len(shape.balls)
-    for lane in range(lane_count()):
+    for lane in range(lane_count(n_records)):
         for order in range(1, (n_balls + 1) // 2):
             low, high = 2 * order * LANES + lane, 2 * (n_balls - order) * LANES + lane
             folded[low] += folded[high]
@@ -124,7 +124,7 @@ def unfold(shape: Shape, folded: FloatArray, gaps: FloatArray) -> None:
         other = 1.0 if ball < n_balls - ball < n_balls else 0.0
         first = FIRST_TURN[n_balls] + ball * (n_balls // 2 + 1)
         cosines, sines = COS_OF_TURNS[first:], SIN_OF_TURNS[first:]
-        for lane in range(lane_count()):
+        for lane in range(lane_count(n_records)):
             even, odd = folded[lane], 0.0
             for order in range(1, n_balls // 2 + 1):
                 even = fma(folded[2 * order * LANES + lane], cosines[order], even)
@@ -140,12 +140,12 @@ def subtract_ball_waviness(
     """Subtract the waviness of the balls, at both contacts of each, ``ahead`` knots from now; all balls spin at the same rate."""
     wide()
     n_balls = len(shape.balls)
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         twice = 2 * (batch.angles[Angle.SPIN * LANES + lane] + ahead * moves[Angle.SPIN * LANES + lane])
         z[lane], z[LANES + lane] = math.cos(twice), math.sin(twice)
     for ball in range(n_balls):
         waves, here = batch.waves[(race_rows(shape) + 2 * ball) * LANES :], gaps[ball * LANES :]
-        for lane in range(lane_count()):
+        for lane in range(lane_count(batch.n_records)):
             c, s = z[lane], z[LANES + lane]
             real = imag = 0.0
             for order in range(BALL_ORDERS):
@@ -162,11 +162,11 @@ def ball_gaps(shape: Shape, batch: Batch, ahead: int, moves: FloatArray, work: F
     """
     wide()
     state, n_balls = batch.state, len(shape.balls)
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         for ball in range(n_balls):
             gaps[ball * LANES + lane] = batch.drive[Drive.HALF_CLEARANCE * LANES + lane]
     z, folded = work, work[N_ROTATION_ROWS * LANES :]
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         c, s = state[State.CAGE_COS * LANES + lane], state[State.CAGE_SIN * LANES + lane]
         cage, shaft = ahead * moves[Angle.CAGE * LANES + lane], ahead * moves[Angle.SHAFT * LANES + lane]
         dc, ds = cosine(cage), sine(cage)
@@ -176,8 +176,8 @@ def ball_gaps(shape: Shape, batch: Batch, ahead: int, moves: FloatArray, work: F
         p, q = fma(p, dc, -(q * ds)), fma(q, dc, p * ds)
         z[lane], z[LANES + lane] = fma(c, p, s * q), fma(s, p, -(c * q))
         z[OUTER + lane], z[OUTER + LANES + lane] = c, s
-    fold_waviness(shape, batch.waves, z, folded)
-    unfold(shape, folded, gaps)
+    fold_waviness(shape, batch, z, folded)
+    unfold(shape, batch.n_records, folded, gaps)
     if batch.waves.size > race_rows(shape) * LANES:
         subtract_ball_waviness(shape, batch, ahead, moves, z, gaps)
 
@@ -195,11 +195,11 @@ def move_gaps(
     # in a loop, so that the code of ball_gaps is compiled once
     for ahead in range(0 if knot == 0 else 1, 2):
         if ahead == 1:
-            for lane in range(lane_count()):
+            for lane in range(lane_count(batch.n_records)):
                 for ball in range(len(shape.balls)):
                     gaps[2 * ball * LANES + lane] = next_gaps[ball * LANES + lane]
         ball_gaps(shape, batch, ahead, moves, work, next_gaps)
-    for lane in range(lane_count()):
+    for lane in range(lane_count(batch.n_records)):
         for ball in range(len(shape.balls)):
             further = next_gaps[ball * LANES + lane] - gaps[2 * ball * LANES + lane]
             gaps[(2 * ball + 1) * LANES + lane] = further * per_half_step

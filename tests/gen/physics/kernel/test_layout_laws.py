@@ -95,7 +95,7 @@ def rows_without_effect(laid_out, name, rows, place=0, n_rows=None):
         for lane, row in enumerate(some, start=1):
             at = place * (n_rows or 0) + row
             by_row[at, lane] = changed(by_row[at, lane], row)
-        trips = march_batch(shape, batch._replace(**{name: array}), N_KNOTS, N_STEPS, KNOT)
+        trips = march_batch(shape, batch._replace(**{"n_records": LANES, name: array}), N_KNOTS, N_STEPS, KNOT)
         without_effect += [
             row.name
             for lane, row in enumerate(some, start=1)
