@@ -1,9 +1,11 @@
 """A task in several processes of this machine: each makes its share, a little ahead of who asks for the results."""
 
 import signal
+from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from importlib import import_module
 from multiprocessing import get_context
 from multiprocessing.connection import wait
 from multiprocessing.context import SpawnProcess
@@ -14,6 +16,12 @@ from gen.support.errors import ClusterError
 Task = Callable[[int, int], Iterable[Any]]
 _SPAWN = get_context("spawn")  # a copy of this process would hold locks that its threads had at that time
 _RESULT, _ERROR, _END = range(3)
+_standing_by: deque[tuple[Any, SpawnProcess]] = deque()
+
+
+def load_ahead(module: str, count: int) -> None:
+    """Start processes that load a module, and wait for a task that this process is about to prepare."""
+    _standing_by.extend(_start(module) for _ in range(count))
 
 
 @contextmanager
@@ -61,17 +69,25 @@ def _started(task: Task, shares: range, count: int) -> Iterator[dict[Any, SpawnP
     processes: dict[Any, SpawnProcess] = {}
     try:
         for share in shares:
-            receiver, sender = _SPAWN.Pipe(duplex=False)
-            process = _SPAWN.Process(target=_work, args=(sender, task, share, count), daemon=True)
-            process.start()
-            processes[receiver] = process
-            sender.close()  # so that the end of the process ends the pipe
+            connection, process = _standing_by.popleft() if _standing_by else _start(__name__)
+            processes[connection] = process
+            with suppress(OSError):  # a process that has ended is told of when its results are asked for
+                connection.send((task, share, count))
         yield processes
     finally:
         for process in processes.values():
             process.terminate()
         for process in processes.values():
             process.join()
+
+
+def _start(module: str) -> tuple[Any, SpawnProcess]:
+    """A process that waits for its task, and this end of its pipe."""
+    here, there = _SPAWN.Pipe()
+    process = _SPAWN.Process(target=_work, args=(there, module), daemon=True)
+    process.start()
+    there.close()  # so that the end of the process ends the pipe
+    return here, process
 
 
 def _results(receiver: Any, process: SpawnProcess) -> Iterator[Any]:
@@ -93,18 +109,20 @@ def _receive(receiver: Any, process: SpawnProcess) -> tuple[int, Any]:
     return kind, value
 
 
-def _work(sender: Any, task: Task, share: int, count: int) -> None:
-    """Send the results of a share; the next one is made while one is sent or waits."""
+def _work(sender: Any, module: str) -> None:
+    """Receive a task and send the results of a share; the next one is made while one is sent or waits."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that began this one ends it
+    import_module(module)
     sent: Future[None] | None = None
     try:
+        task, share, count = sender.recv()
         with ThreadPoolExecutor(1) as thread:
             for result in task(share, count):
                 if sent is not None:
                     sent.result()
                 sent = thread.submit(sender.send, (_RESULT, result))
         sender.send((_END, None))
-    except BrokenPipeError:
+    except (BrokenPipeError, ConnectionResetError, EOFError):
         return  # nobody listens any more
     except Exception as error:  # noqa: BLE001 - it is raised where the results are asked for
         sender.send((_ERROR, error))

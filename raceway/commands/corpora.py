@@ -184,10 +184,13 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     """
     from gen.corpus import complaint
     from gen.recipe import read_recipe
+    from gen.support.processes import load_ahead
 
     wanted = read_recipe(recipe, seed=options["seed"], records=options["records"])
     start = time.monotonic()
     workers = team.workers or _default_workers(wanted)
+    if team.scheduler is None:
+        load_ahead("gen.generation.corpus", min(workers, wanted.n_parts) - 1)
     with if_interrupted(partial(_kept, output, wanted)):
         made = _generate(recipe, output, workers=workers, scheduler=team.scheduler, **options)
     for failure in made.failures:

@@ -1,8 +1,8 @@
 """Records laid out in lanes for the kernel.
 
 A batch holds at most ``LANES`` records of one shape; free lanes have copies of its first record, and only those that fill up a vector of
-the processor are computed. Every row starts as NaN and is
-set by its name in :mod:`gen.physics.kernel.layout`, so a row that is forgotten makes a record diverge instead of bending its physics.
+the processor are computed. Every row starts as NaN and is set by its name in :mod:`gen.physics.kernel.layout`, so a row that is forgotten
+makes a record diverge instead of bending its physics.
 """
 
 import numpy as np

@@ -8,7 +8,7 @@ from multiprocessing import active_children, parent_process
 import pytest
 
 from gen.support.errors import ClusterError, RecipeError
-from gen.support.processes import as_they_come, in_processes
+from gen.support.processes import as_they_come, in_processes, load_ahead
 
 
 def every(share, count):
@@ -64,3 +64,23 @@ def test_an_error_of_any_share_ends_all_of_them(task, error):
     with pytest.raises(error):
         list(as_they_come(task, 2))
     assert not active_children()
+
+
+def own_number(_share, _count):
+    yield os.getpid()
+
+
+def test_a_process_that_stands_by_takes_the_next_task():
+    load_ahead("json", 1)
+    (waiting,) = active_children()
+    assert set(as_they_come(own_number, 2)) == {os.getpid(), waiting.pid}
+    assert not active_children()
+
+
+def test_a_process_that_died_while_it_stood_by_is_one_sentence():
+    load_ahead("json", 1)
+    (waiting,) = active_children()
+    waiting.kill()
+    waiting.join()
+    with pytest.raises(ClusterError, match="ended with code -9"):
+        list(as_they_come(some, 2))
