@@ -23,9 +23,9 @@ from gen.simulation.batches import Integration, Waiting, integrate_together
 from gen.simulation.simulate import open_integrations
 from gen.simulation.timeline import timeline
 
-# Records under way. With 500 of domain_randomised the kernel works 12 % longer in idle lanes than with 1500, and with 1000 2 %; but with
-# 1500 a part of 250 records is complete after 42 % of the time for 3000, and with 1000 after 31 %.
-WINDOW_RECORDS = 1000
+# Records under way. 1,800 records of domain_randomised take 4 % longer with 500 than with 1000, and 1 % with 600; but the first part of
+# 300 records is complete after 35 % of the time with 600, and after 52 % with 1000.
+WINDOW_RECORDS = 600
 WINDOW_BYTES = 64e6  # of a process: signals, scenarios and kernel inputs of the records under way
 _RECORD_BYTES = 16_000  # of a record besides its signal
 _DRAWN, _JUDGED = 128, 64  # records in a block; functions that take many records at once need some
