@@ -33,6 +33,7 @@ def stream(
     workers: int = 1,
     seed: int | None = None,
     start: int = 0,
+    notice: Callable[[str], None] = lambda _: None,
 ) -> "Stream":
     """Batches of fresh records of a recipe, without end.
 
@@ -48,6 +49,8 @@ def stream(
         Replaces that of the recipe.
     start : int
         Number of the first record.
+    notice : callable, optional
+        Called with a sentence when a kernel is about to be compiled, ahead of the first batch.
 
     Returns
     -------
@@ -74,16 +77,18 @@ def stream(
             raise RecipeError(f"{name}: {value!r} is not allowed; give a whole number, {least} or more.")
     if (sentence := too_many(workers)) is not None:
         warnings.warn(sentence, stacklevel=2)
-    return Stream(endless(read_recipe(recipe, seed=seed)), batch, workers, start)
+    return Stream(endless(read_recipe(recipe, seed=seed)), batch, workers, start, notice)
 
 
 def torch_stream(
     recipe: Path | str | Mapping[str, Any] | Recipe,
     *,
     label: str = "fault",
-    transform: Callable[[Any], Any] | None = None,
+    operating: bool = False,
+    transform: Callable[..., Any] | None = None,
     seed: int | None = None,
     start: int = 0,
+    notice: Callable[[str], None] = lambda _: None,
 ) -> "TorchStream":
     """Fresh records of a recipe without end, for the data loader of PyTorch.
 
@@ -93,12 +98,16 @@ def torch_stream(
 
     Parameters
     ----------
-    recipe, seed, start :
+    recipe, seed, start, notice :
         As for :func:`gen.stream`.
     label : str
         Per-record variable that is the label; a class such as ``fault`` gives its code.
+    operating : bool
+        Gives each item, between signal and label, what is known on site: shaft rate, nominal orders and more by name, which the loader
+        makes a tensor each.
     transform : callable, optional
-        Called with each signal, in the process that makes it.
+        Called with each signal, and with what is known on site if ``operating`` asks for it, in the process that makes them; gives the
+        signal of the item.
 
     Raises
     ------
@@ -112,15 +121,15 @@ def torch_stream(
             "torch_stream: needs PyTorch, which is not installed; install torch, or use gen.stream."
         ) from None
     fresh = endless(read_recipe(recipe, seed=seed))
-    compile_kernels(fresh, missing_kernels(fresh))  # once, ahead of the workers of the loader
-    return TorchStream(partial(records_from, fresh, start), label, transform)
+    compile_kernels(fresh, missing_kernels(fresh), notice)  # once, ahead of the workers of the loader
+    return TorchStream(partial(records_from, fresh, start), label, operating, transform)
 
 
 class Stream(Iterator[xr.Dataset]):
     """Batches of records; made by :func:`stream`. It is closed when it ends its ``with`` block, or is no longer used."""
 
-    def __init__(self, recipe: Recipe, batch: int, workers: int, start: int) -> None:
-        self.recipe, self.batch, self.workers = recipe, batch, workers
+    def __init__(self, recipe: Recipe, batch: int, workers: int, start: int, notice: Callable[[str], None]) -> None:
+        self.recipe, self.batch, self.workers, self.notice = recipe, batch, workers, notice
         self._next = start
         self._made: Iterator[xr.Dataset] | None = None
         self._ready: list[xr.Dataset] = []
@@ -132,7 +141,7 @@ class Stream(Iterator[xr.Dataset]):
     def __next__(self) -> xr.Dataset:
         """Return the next batch."""
         if self._made is None:
-            compile_kernels(self.recipe, missing_kernels(self.recipe))
+            compile_kernels(self.recipe, missing_kernels(self.recipe), self.notice)
             self._made = records_from(self.recipe, self._next, workers=self.workers)
         while sum(some.sizes["record"] for some in self._ready) < self.batch:
             self._ready.append(next(self._made))

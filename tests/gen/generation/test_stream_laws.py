@@ -134,5 +134,10 @@ def test_workers_of_a_data_loader_and_ranks_have_no_record_in_common(recipe, mon
     )  # worker 1 of 2 on rank 1 of 3
     np.testing.assert_array_equal(signal, -expected["acceleration"].values[0])
     assert label == expected["fault"].values[0]
-    with pytest.raises(RecipeError, match="there is no variable colour"):
-        next(iter(gen.torch_stream(recipe, label="colour")))
+    fresh = gen.torch_stream(recipe, operating=True, transform=lambda signal, known: signal / known["shaft_rate"])
+    signal, known, _ = next(iter(fresh))
+    first = expected.isel(record=0)
+    assert known["bpfo"] == np.float32(first["bpfo"])
+    np.testing.assert_array_equal(signal, first["acceleration"].values / np.float32(first["shaft_rate"]))
+    with pytest.raises(RecipeError, match="there is no variable faut; the nearest is fault"):
+        next(iter(gen.torch_stream(recipe, label="faut")))
