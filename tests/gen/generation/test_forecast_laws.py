@@ -5,7 +5,6 @@ import pytest
 from gen.generation import forecast
 from gen.generation.corpus import generate
 from gen.generation.forecast import LEAST_S, TYPICAL_RATE, expected_work, leave_rate, seconds_of
-from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.integrate import integrate
 from gen.recipe import read_recipe
 
@@ -18,14 +17,14 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("changes", [{}, {"truth.twins": False}, {"operation.jitter_deg": "grid(0, 0.3)"}])
-def test_the_work_of_a_forecast_is_that_of_the_lanes_that_generation_integrates(
+def test_the_work_of_a_forecast_is_that_of_the_records_that_generation_integrates(
     write_recipe, tmp_path, monkeypatch, changes
 ):
-    """Batches that are not full count too, and so does the check at half the step."""
+    """The check at half the step counts too."""
     counted = []
 
     def count(shape, lanes, dt, n_steps, taps, n_settle, n_out):
-        counted.append(len(shape.balls) * n_steps * (n_settle + n_out) * LANES)
+        counted.append(len(shape.balls) * n_steps * (n_settle + n_out) * lanes.n_records)
         return integrate(shape, lanes, dt, n_steps, taps, n_settle, n_out)
 
     path = write_recipe(tmp_path / "r.yaml", {"storage.records_per_part": 20} | changes)
