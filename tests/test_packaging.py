@@ -88,12 +88,13 @@ def test_every_relative_link_of_a_page_leads_to_a_file_of_the_project():
     assert (missing, outside) == ([], [])
 
 
-def test_lines_of_pages_end_at_120_columns():
-    """Tables and blocks, which are fenced or indented, may be wider."""
-    wide = []
+def test_lines_of_pages_end_at_120_columns_and_none_is_a_comment():
+    """Tables and blocks, which are fenced or indented, may be wider; the site leaves a line out that begins with a percent sign."""
+    wide, comments = [], []
     for page in (*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")):
         prose = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
         wide += [
             (page.name, line) for line in prose.splitlines() if len(line) > 120 and not line.startswith(("|", "    "))
         ]
-    assert wide == []
+        comments += [(page.name, line) for line in prose.splitlines() if line.startswith("%")]
+    assert (wide, comments) == ([], [])

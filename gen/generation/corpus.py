@@ -140,7 +140,8 @@ def generate(
         if folder is not target:
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
-        _prepare(folder, find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode(), facts, checked)
+        text = find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode()
+        _prepare(folder, text, facts, checked, range(checked.n_parts) if parts is None else parts)
         wanted = range(checked.n_parts) if parts is None else _with_those_there(checked, parts, folder)
         outcomes = _all_parts(checked, wanted, folder, workers, client, progress, notice)
         corpus = _finish(target, folder, outcomes, facts)
@@ -252,12 +253,12 @@ def _claim(folder: Path) -> Iterator[None]:
         yield
 
 
-def _prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe) -> None:
-    """Check what the folder holds, and write the manifest of an unfinished corpus.
+def _prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe, parts: range) -> None:
+    """Check what the folder holds, and write the manifest of an unfinished corpus, unless it has all parts.
 
     The manifest is written first: it tells a corpus without any part from a folder that holds something else.
     """
-    again: set[int] = set()
+    again, finished = set[int](), False
     with writing(folder):
         remove_temporary_files(folder)
         if (folder / MANIFEST_NAME).exists():
@@ -267,9 +268,13 @@ def _prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe) -
             again = _parts_again(folder, manifest, recipe)
             if not facts["publication"].stored:
                 facts["publication"] = manifest.publication  # given after the corpus was made
+            finished = (
+                manifest.complete and not again and {*map(part_name, parts)} <= {row.name for row in manifest.parts}
+            )
         elif any(folder.iterdir()):
             raise CorpusError(f"{folder}: is not empty and holds no corpus; choose another folder.")
-        write_manifest(folder, facts_of_parts([], facts, complete=False))
+        if not finished:
+            write_manifest(folder, facts_of_parts([], facts, complete=False))
         write_durably(text, folder / RECIPE_NAME)
         (folder / "parts").mkdir(exist_ok=True)
         for part in again:

@@ -167,7 +167,8 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
 
     The corpus is a folder, or one netCDF file if TARGET ends in .nc. It is generated in parts; those of a file NAME.nc lie in the folder
     NAME.nc.parts until it is whole. If the command is interrupted, finished parts are kept, and the same command completes the corpus.
-    With a larger --records it grows: a finished corpus in a folder gets the records that it lacks, and is then the one made at once.
+    With a larger --records it grows: a finished corpus in a folder gets the records that it lacks, and is then the one made at once; a part
+    that was not full is made again, and so may be one whose steps are checked.
     The bytes of the parts do not depend on the number of workers, which are processes: one up to 400 records, by default one per core
     beyond.
 
@@ -234,6 +235,8 @@ def _show_generated(made: "Generated", wanted: "Recipe") -> None:
     missing = wanted.n_records - made.records - len(made.failures)
     if wanted.life is not None and missing and made.parts == wanted.n_parts:
         show.text(f"The other {missing:,} of {wanted.n_records:,} snapshots would come after the end of a life.")
+    if made.parts < wanted.n_parts:
+        show.text(f"The recipe has {wanted.n_parts:,} parts; raceway copy joins these with the others.")
     show.text(f"Next: raceway info {shlex.quote(str(made.path))}")
 
 
