@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 from filelock import FileLock, Timeout
 from platformdirs import user_cache_path
 
+from features.baselines.names import DEFAULT_ESTIMATOR
 from features.table.durations import DURATION
 from gen.corpus import write_durably
 from gen.support.errors import CorpusError
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from gen.recipe import Recipe
 
 REFERENCE = "domain_randomised"
-ESTIMATOR = "ensemble"
 CACHE_VARIABLE = "RACEWAY_CACHE"
 LONG = 2.0  # s, duration of the records of the reference model
 HASH_LETTERS = 16
@@ -182,7 +182,7 @@ def reference_model() -> "Model":
 
 
 def kept_model(
-    recipe: Path | str, estimator: str = ESTIMATOR, *, team: Team = USUAL
+    recipe: Path | str, estimator: str = DEFAULT_ESTIMATOR, *, team: Team = USUAL
 ) -> tuple["Model", Path, "Scores | None"]:
     """Kept model of a recipe, its file, and its scores if it was trained now.
 
@@ -197,7 +197,9 @@ def kept_model(
     return Model.load(path), path, scores
 
 
-def keep_model(recipe: Path | str, estimator: str = ESTIMATOR, *, team: Team = USUAL) -> tuple[Path, "Scores | None"]:
+def keep_model(
+    recipe: Path | str, estimator: str = DEFAULT_ESTIMATOR, *, team: Team = USUAL
+) -> tuple[Path, "Scores | None"]:
     """Train a model on a recipe and keep it in the cache of this user, unless it is there as it was made.
 
     Parameters
@@ -257,7 +259,7 @@ def _seal_text(path: Path) -> bytes:
     return f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n".encode()
 
 
-def kept_path(recipe: Path | str, estimator: str = ESTIMATOR) -> Path:
+def kept_path(recipe: Path | str, estimator: str = DEFAULT_ESTIMATOR) -> Path:
     """File of the kept model of a recipe, whether it exists or not."""
     from features.baselines.sources import score_sources
     from gen.generation.sources import sources_sha256
