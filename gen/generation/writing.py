@@ -25,7 +25,7 @@ from gen.corpus import (
     new_corpus,
 )
 from gen.corpus.joining import new_numbers
-from gen.corpus.schema import NAMED, records_in_memory, schema_problems
+from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
 from gen.generation.corpus import facts_of
 from gen.generation.parts import part_attributes
 from gen.measurement.measure import LARGEST_COUNT
@@ -144,9 +144,10 @@ def _stored(
     further = {}
     for name in sorted(map(str, set(rows.variables) - known.keys() - derived)):
         found = rows[name]
-        if found.dims != ("record",) or "long_name" not in found.attrs or "role" not in found.attrs:
+        if found.dims != ("record",) or "long_name" not in found.attrs or found.attrs.get("role") not in ROLES:
             raise CorpusError(
-                f"{name}: needs one value for each record and the attributes long_name and role; add them, or drop it."
+                f"{name}: needs one value for each record and the attributes long_name and role, one of "
+                f"{', '.join(ROLES)}; set them in its attrs, or drop it."
             )
         kind = "str" if found.dtype.kind in "OU" else found.dtype.str[1:]
         further[name] = Variable(

@@ -170,6 +170,14 @@ def test_an_opened_corpus_is_written_as_it_was(ladder, tmp_path):
         (lambda ladder: ladder.drop_vars(["fault", SIGNAL]), "the Dataset has no variable acceleration, fault;"),
         (lambda ladder: ladder.assign(fault=ladder.fault + 7), "fault has values other than 0 healthy, 1 inner"),
         (lambda ladder: ladder.assign(mine=("record", np.arange(6))), "mine: needs one value for each record and the"),
+        (
+            lambda ladder: ladder.assign(mine=ladder[SIGNAL].std("elapsed_time").isel(channel=0)),
+            "and role, one of operating, label, latent, provenance; set them in its attrs, or drop it.",
+        ),
+        (
+            lambda ladder: ladder.assign(mine=("record", np.arange(6), {"long_name": "rms", "role": "feature"})),
+            "and role, one of operating, label, latent, provenance; set them in its attrs, or drop it.",
+        ),
     ],
 )
 def test_a_dataset_that_is_not_in_the_format_is_refused(ladder, tmp_path, changed, sentence):
