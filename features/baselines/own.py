@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 import numpy as np
+import pandas as pd
 from scipy.special import softmax
 from sklearn.base import BaseEstimator, clone
 
@@ -125,8 +126,14 @@ class OwnClassifier:
         try:
             return getattr(self.fitted if method != "fit" else self.made, method)(*arguments)
         except (Exception, SystemExit) as error:
+            features = isinstance(arguments[0], pd.DataFrame)
+            given = (
+                "a table of features, signals come with --waveforms or features.open_waveforms"
+                if features
+                else "signals"
+            )
             raise EstimatorError(
-                f"{self.name}: {method} failed ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where."
+                f"{self.name}: {method} failed ({_brief(error)}; it got {given}); RACEWAY_TRACEBACK=1 shows where."
             ) from error
 
 
@@ -180,7 +187,7 @@ def _seed_argument(maker: Callable[..., Any], seed: int) -> dict[str, int]:
 
 
 def load_maker(address: str) -> Maker:
-    """Import a classifier, or a class or function that makes one, from ``module:name``.
+    """Import a classifier, or a class or function that makes one, from ``module:name`` or ``module.py:name``.
 
     The module is searched in the current folder and among the installed packages. This runs its code.
 
@@ -189,7 +196,8 @@ def load_maker(address: str) -> Maker:
     EstimatorError
         If there is no such module or name, its code fails, or it makes no classifier.
     """
-    module_name, _, name = address.partition(":")
+    file, _, name = address.partition(":")
+    module_name = file.removesuffix(".py")
     here = str(Path.cwd())
     if here not in sys.path:
         sys.path.insert(0, here)

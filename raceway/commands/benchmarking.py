@@ -144,14 +144,14 @@ def benchmark(
     Rows of earlier calls with the same corpora and settings stay in OUTDIR: a classifier that is scored later becomes a further row.
 
     MODULE:NAME is an estimator as of scikit-learn, or a class or function that makes one; its code is run. MODULE is a file of the
-    current folder, without .py, or an installed module. With --estimator or several tracks, the other baselines are left out.
+    current folder or an installed module. With --estimator or several tracks, the other baselines are left out.
 
       raceway benchmark corpus -o report
       raceway benchmark corpus --test cwru --test mfpt -o report --track rig
       raceway benchmark corpus --test cwru -o report --model reference
       raceway benchmark corpus -o report --track all --learning-curve
       raceway benchmark corpus -o report --estimator mine:make --estimator ensemble
-      raceway benchmark corpus --test cwru -o report --waveforms --estimator cnn:EnvelopeNetwork
+      raceway benchmark corpus --test cwru -o report --waveforms --estimator cnn:Classifier
       raceway benchmark corpus --track rig --folds 3 --estimator mine:make --submit mine.csv
       raceway benchmark corpus --track rig --folds 3 --check mine.csv
     """

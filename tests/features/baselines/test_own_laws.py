@@ -185,11 +185,14 @@ class Predicting:
 @pytest.mark.parametrize(
     ("made", "sentence"),
     [
-        (Broken("fit"), r"^Broken: fit failed \(ZeroDivisionError: by zero\); RACEWAY_TRACEBACK=1 shows where\.$"),
+        (
+            Broken("fit"),
+            r"^Broken: fit failed \(ZeroDivisionError: by zero; it got a table of features, signals come with --waveforms or fea",
+        ),
         (Broken("codes"), "Broken: its classes_ are 0, 1, 2, 3; leave y as it is, the names of the classes"),
         (Broken("nan"), r"predict_proba gives numbers that are not finite; give finite numbers of shape \(16, 4\)"),
         (Broken("shape"), r"predict_proba gives an array of shape \(16, 3\); give finite numbers of shape \(16, 4\)"),
-        (Predicting(), r"^Predicting: fit failed \(SystemExit: 3\)"),
+        (Predicting(), r"^Predicting: fit failed \(SystemExit: 3; it got a table"),
         (Predicting(1), "Predicting: predict gives 1; give one of healthy, inner, outer, ball for each of 16 records"),
         (Predicting("cage"), "predict gives 'cage'; give one of healthy, inner, outer, ball"),
         (Predicting("inner", "ball"), r"predict gives an array of shape \(2,\); give one of healthy"),
@@ -202,6 +205,12 @@ def test_a_classifier_that_cannot_be_used_is_refused_in_one_sentence(made, sente
     with pytest.raises(EstimatorError, match=sentence) as caught:
         cross_validate(make_table(), made)
     assert "\n" not in str(caught.value)
+
+
+def test_a_classifier_that_fails_on_signals_is_not_told_to_take_them(tmp_path):
+    write_corpus(tmp_path / "corpus")
+    with pytest.raises(EstimatorError, match=r"by zero; it got signals\); RACEWAY"):
+        Model(Broken("fit")).fit(open_waveforms(tmp_path / "corpus"))
 
 
 @pytest.fixture
@@ -222,7 +231,13 @@ def module(tmp_path, monkeypatch):
 
 def test_a_module_is_imported_from_the_current_folder_or_from_an_installed_package(module):
     module("own_one", "from sklearn.naive_bayes import GaussianNB\nmade = GaussianNB()\ndef make(seed): return made\n")
-    for address in ("own_one:make", "own_one:made", "own_one:GaussianNB", "sklearn.naive_bayes:GaussianNB"):
+    for address in (
+        "own_one:make",
+        "own_one.py:make",
+        "own_one:made",
+        "own_one:GaussianNB",
+        "sklearn.naive_bayes:GaussianNB",
+    ):
         assert cross_validate(make_table(), load_maker(address)).balanced_accuracy > 0.9
 
 
