@@ -27,6 +27,7 @@ class Geometry(Keys):
         Millimetres, Field(ge=0.01, validation_alias=AliasChoices("ball_diameter_mm", "roller_diameter_mm"))
     ]
     contact_angle_deg: Annotated[float, Field(ge=0, lt=90)] = 0.0
+    roller_length_mm: Millimetres | None = None
 
     @model_validator(mode="after")
     def _balls_fit(self) -> Self:
@@ -49,7 +50,9 @@ def bearing_orders(bearing: str | Mapping[str, Any]) -> FaultOrders:
 def bearing_from_text(text: str) -> Bearing:
     """Bearing with a designation of the catalogue, or with the keys of a geometry, separated by commas.
 
-    >>> bearing_from_text("n_rollers=8,pitch_diameter_mm=33.5,roller_diameter_mm=7.938").n_balls
+    The length of rollers is taken, because records need it; the orders do not depend on it.
+
+    >>> bearing_from_text("n_rollers=8,pitch_diameter_mm=33.5,roller_diameter_mm=7.938,roller_length_mm=9").n_balls
     8
 
     Raises
@@ -99,5 +102,5 @@ def _of_geometry(values: Mapping[str, Any]) -> Bearing:
         to_si(given.pitch_diameter_mm, "mm"),
         to_si(given.ball_diameter_mm, "mm"),
         to_si(given.contact_angle_deg, "deg"),
-        rolling_element="roller" if "n_rollers" in values else "ball",
+        rolling_element="roller" if any("roller" in key for key in values) else "ball",
     )

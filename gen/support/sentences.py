@@ -5,7 +5,8 @@ import functools
 import reprlib
 from typing import Any, get_args
 
-from pydantic import BaseModel, ValidationError
+from pydantic import AliasChoices, BaseModel, ValidationError
+from pydantic.fields import FieldInfo
 
 _MOST_SENTENCES = 20
 _LONGEST_KEY = 60  # characters shown
@@ -133,7 +134,12 @@ class _Cursor:
         return _Cursor(*sections) if sections else self
 
     def keys(self) -> list[str]:
-        return sorted({name for model in self.models for name in model.model_fields})
+        fields = [item for model in self.models for item in model.model_fields.items()]
+        return sorted({name for key, field in fields for name in (key, *_other_names(field))})
+
+
+def _other_names(field: FieldInfo) -> list[Any]:
+    return field.validation_alias.choices if isinstance(field.validation_alias, AliasChoices) else []
 
 
 def _sections(annotations: list[Any]) -> list[type[BaseModel]]:

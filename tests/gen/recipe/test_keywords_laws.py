@@ -11,7 +11,7 @@ import gen
 from gen.drawing.section import plain
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_hash, recipe_text, shipped_recipes
 from gen.recipe.keywords import _places
-from gen.support.errors import RecipeError
+from gen.support.errors import CorpusError, RecipeError
 from tests.gen.conftest import small_with
 
 OUTER = gen.outer(width_mm=0.5)
@@ -50,6 +50,21 @@ def test_a_roller_bearing_has_the_same_hash_by_the_keys_of_rollers_and_of_balls(
     rollers = {"n_rollers": 12, "pitch_diameter_mm": 40, "roller_diameter_mm": 7, "roller_length_mm": 8}
     one, other = (gen.make_recipe(bearing=bearing) for bearing in (balls, rollers))
     assert recipe_hash(one) == recipe_hash(other)
+
+
+@pytest.mark.parametrize("keys", [("n_balls", "ball_diameter_mm"), ("n_rollers", "roller_diameter_mm")])
+def test_the_dimensions_of_a_record_with_rollers_give_its_orders(keys):
+    rollers = {keys[0]: 14, "pitch_diameter_mm": 50, keys[1]: 8, "roller_length_mm": 9}
+    text = ",".join(f"{key}={value}" for key, value in rollers.items())
+    record = gen.record(bearing=rollers, duration_s=0.05)
+    stored = [float(record[name]) for name in ("ftf", "bpfo", "bpfi", "bsf")]
+    assert stored == [*gen.bearing_orders(rollers)] == [*gen.bearing_orders(text)]
+
+
+def test_the_keys_that_a_geometry_allows_are_those_of_balls_and_of_rollers():
+    allowed = "n_balls, n_rollers, pitch_diameter_mm, roller_diameter_mm, roller_length_mm"
+    with pytest.raises(CorpusError, match=allowed):
+        gen.bearing_orders({"teeth": 14, "pitch_diameter_mm": 50})
 
 
 def test_every_name_has_a_section_unless_several_share_it():
