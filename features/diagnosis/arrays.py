@@ -10,6 +10,7 @@ from features.baselines.models import Model
 from features.diagnosis.answer import diagnose_recording
 from features.diagnosis.result import Diagnosis, Recorded
 from features.diagnosis.search import ANY_RATE, Given
+from features.signal.door import fault_orders, rows
 from features.table.indicators import Orders
 from gen.support.units import rpm_to_hertz
 
@@ -43,15 +44,15 @@ def diagnose(
     Raises
     ------
     ValueError
-        If ``x`` has other dimensions, or ``fs`` or ``rpm`` is not a positive number.
+        If a recording has other dimensions or values that are not finite, or ``fs``, ``rpm`` or an order is not a positive number.
     CorpusError
-        If a recording has values that are not finite, or the model cannot take its features or the healthy recording.
+        If the model cannot take the features of the recording or the healthy recording.
     """
     low, high = (60 * rate for rate in ANY_RATE) if rpm is None else np.broadcast_to(rpm, 2).tolist()
     if not (0 < fs < np.inf and 0 < low <= high < np.inf):
         raise ValueError(f"fs and rpm: {fs} and {rpm} are not positive numbers; give Hz, and revolutions per minute.")
     bearings = orders if isinstance(orders, Mapping) else {"the bearing": orders}
-    nominal = {name: Orders(*map(np.asarray, one)) for name, one in bearings.items()}
+    nominal = {name: Orders(*map(np.asarray, fault_orders(f"orders of {name}", one))) for name, one in bearings.items()}
     given = Given(nominal, (rpm_to_hertz(low), rpm_to_hertz(high)))
     known = model if isinstance(model, Model) else Model.load(model)
     references = [_recorded(one, fs, f"healthy recording {number}") for number, one in enumerate(healthy, start=1)]
@@ -59,9 +60,7 @@ def diagnose(
 
 
 def _recorded(x: ArrayLike, fs: float, name: str) -> Recorded:
-    signals = np.asarray(x, dtype=float)
-    if signals.ndim == 1:
-        return Recorded({"": signals}, fs, name)
-    if signals.ndim != 2:
-        raise ValueError(f"{name}: has the shape {signals.shape}; give (time,) or (channel, time).")
+    signals = rows(name, x, "channel").astype(float)
+    if np.ndim(x) == 1:
+        return Recorded({"": signals[0]}, fs, name)
     return Recorded({str(number): signal for number, signal in enumerate(signals)}, fs, name)

@@ -23,15 +23,17 @@ Rule = Callable[[str, Any], Any]
 FEWEST_SAMPLES = 8  # of a record: an array of shape (time, channel) is not taken for short records
 
 
-def rows(name: str, value: Any) -> FloatArray:
+def rows(name: str, value: Any, axis: str = "record") -> FloatArray:
     """Records of shape (record, time), in single precision if it holds the values exactly, else in double precision.
+
+    ``axis`` names the first axis in sentences.
 
     Raises
     ------
     ValueError
         For an array that is empty, masked, complex, not finite, no array of numbers, or of another shape.
     """
-    x = _records(name, _array(name, value, "biuf", "real numbers"))
+    x = _records(name, _array(name, value, "biuf", "real numbers"), axis)
     return np.require(x, np.float32 if np.can_cast(x.dtype, np.float32) else np.float64, ["C", "W"])
 
 
@@ -103,6 +105,17 @@ def of_each(name: str, value: Any) -> FloatArray:
     if found.ndim > 1 or not found.size or (found <= 0).any():
         raise ValueError(f"{name}: {_shown(value)} is given in place of a number above 0 for each record.")
     return found
+
+
+def fault_orders(name: str, value: Any) -> FloatArray:
+    """Nominal orders ``ftf, bpfo, bpfi, bsf`` of one bearing, shape (4,)."""
+    x = np.asarray(value)
+    if x.shape != (4,) or x.dtype.kind not in "iuf" or not (np.isfinite(x) & (x > 0)).all():
+        raise ValueError(
+            f"{name}: {_shown(value)} is given in place of ftf, bpfo, bpfi and bsf, four numbers above 0; "
+            'gen.bearing_orders("6205") gives them.'
+        )
+    return x.astype(float)
 
 
 _RECORDS = (rows, spectra)
@@ -194,14 +207,13 @@ def _array(name: str, value: Any, kinds: str, meant: str) -> np.ndarray:
     return x
 
 
-def _records(name: str, x: np.ndarray) -> np.ndarray:
-    x = x[None] if x.ndim == 1 else x
-    if x.ndim != 2 or not len(x) or x.shape[1] < FEWEST_SAMPLES:
+def _records(name: str, x: np.ndarray, axis: str = "record") -> np.ndarray:
+    if x.ndim not in (1, 2) or not x.size or x.shape[-1] < FEWEST_SAMPLES:
         raise ValueError(
-            f"{name}: an array of shape {x.shape} is given in place of (record, time) or (time,), with at least "
+            f"{name}: an array of shape {x.shape} is given in place of ({axis}, time) or (time,), with at least "
             f"{FEWEST_SAMPLES} samples in time."
         )
-    return _finite(name, x)
+    return _finite(name, np.atleast_2d(x))
 
 
 def _finite(name: str, x: np.ndarray) -> np.ndarray:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from features.signal.demodulation import ZERO_PADDING, running_median
+from features.signal.door import fault_orders
 from features.signal.lines import LINE_TOLERANCE, Orders
 from features.signal.rows import FloatArray
 from features.table.indicators import FLOOR_WIDTH
@@ -68,7 +69,7 @@ def fault_bands(
     Raises
     ------
     ValueError
-        If there is no harmonic, or a shaft rate or tolerance that is not positive.
+        If there is no harmonic, or a shaft rate, tolerance or order that is not positive.
     """
     import pandas as pd
 
@@ -77,7 +78,7 @@ def fault_bands(
             f"shaft_rate {shaft_rate}, harmonics {harmonics}, sidebands {sidebands}, tolerance {tolerance}: give a positive "
             f"rate, one harmonic or more, no negative number of sidebands and a tolerance between 0 and 1."
         )
-    nominal = dict(zip(Orders._fields, map(float, orders), strict=True)) | {SHAFT.base: 1.0}
+    nominal = dict(zip(Orders._fields, fault_orders("orders", orders).tolist(), strict=True)) | {SHAFT.base: 1.0}
     rows = [
         (row.name, _label(row, harmonic, side), harmonic, side, _order(row, nominal, harmonic, side))
         for row in CLASSES.values()

@@ -207,8 +207,10 @@ def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
     assert axes.sentence.endswith("; channels 0 and 1, as axes of one housing.")
     with pytest.raises(CorpusError, match=r"has other channels \(one without a name\) than the recording \(0 and 1\)"):
         features.diagnose([signal, signal], FS, rpm=rpm, healthy=[signal], **known)
-    with pytest.raises(ValueError, match=r"shape \(1, 1, 2\)"):
-        features.diagnose([[[1.0, 2.0]]], FS, rpm=rpm, **known)
+    for wrong, shape in (([[[1.0, 2.0]]], (1, 1, 2)), (signal[:, None], (len(signal), 1)), (signal[:3], (3,))):
+        sentence = f"an array of shape {shape} is given in place of (channel, time) or (time,), with at least 8 samples in time."
+        with pytest.raises(ValueError, match=re.escape(sentence)):
+            features.diagnose(wrong, FS, rpm=rpm, **known)
     with pytest.raises(ValueError, match="not positive numbers"):
         features.diagnose(signal, FS, rpm=-rpm, **known)
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
+import features
 import gen
 from features.signal import order_spectrum
 from features.signal.demodulation import amplitude_spectrum
@@ -24,6 +25,10 @@ def envelope(records=1, noise=0.01):
     return x * np.arange(1, records + 1)[:, None] + noise * np.random.default_rng(2).standard_normal((records, len(t)))
 
 
+def diagnose_with(orders):
+    return features.diagnose(np.zeros(100), FS, orders=orders, model="unread.skops")
+
+
 def test_bands_are_at_harmonics_and_at_sidebands_of_shaft_and_cage():
     bands = fault_bands(ORDERS, RATE, harmonics=2, sidebands=1, tolerance=0.01).set_index("line")
     assert bands.order["BPFO"] == ORDERS.bpfo
@@ -34,6 +39,17 @@ def test_bands_are_at_harmonics_and_at_sidebands_of_shaft_and_cage():
     np.testing.assert_allclose(bands[["frequency", "low", "high"]], RATE * bands[["order", "order_low", "order_high"]])
     with pytest.raises(ValueError, match="give a positive rate"):
         fault_bands(ORDERS, 0.0)
+
+
+@pytest.mark.parametrize(
+    "orders", ["6205", ORDERS._asdict(), ORDERS[:3], (0.4, 3.6, 5.4, 0.0), (0.4, 3.6, np.nan, 2.4)]
+)
+@pytest.mark.parametrize(
+    "call", [lambda orders: fault_bands(orders, RATE), lambda orders: diagnose_with({"mine": orders})]
+)
+def test_orders_that_are_not_four_numbers_are_refused_with_the_call_that_gives_them(call, orders):
+    with pytest.raises(ValueError, match=r'four numbers above 0; gen.bearing_orders\("6205"\) gives them'):
+        call(orders)
 
 
 def test_metrics_tell_peak_place_power_and_level_of_lines_that_were_made():
