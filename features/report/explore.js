@@ -154,6 +154,13 @@ async function conditions(text) {
   return tests;
 }
 
+// Sentence of the command line on a condition that no record meets: a unit is easily mistaken.
+function noneMeets(condition) {
+  const named = [...new Set(condition.match(/[A-Za-z_]\w*/g))].filter((name) => quantity(name)?.range);
+  const ranges = named.map((name) => `${name} is ${quantity(name).range}`).join(", ");
+  return `where '${condition}': none of ${about.records} records is chosen; choose others${ranges && ` (${ranges})`}.`;
+}
+
 function withinRange(axis, values) {
   const [from, to] = ["from", "to"].map((end) => byId(`${axis}_${end}`).value);
   return (row) => (from === "" || values[row] >= +from) && (to === "" || values[row] <= +to);
@@ -168,7 +175,10 @@ async function choose() {
   const tests = [(row) => classes.has(faults[row]), withinRange("x", across), withinRange("y", upwards)];
   let complaint = "";
   try {
-    tests.push(...(await conditions(byId("condition").value)));
+    const condition = byId("condition").value;
+    const further = await conditions(condition);
+    if (!faults.some((_, row) => further.every((test) => test(row)))) complaint = noneMeets(condition);
+    tests.push(...further);
   } catch (error) {
     complaint = error.message;
   }

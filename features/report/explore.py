@@ -51,11 +51,12 @@ from gen.corpus import (
     open_corpus,
     write_text_durably,
 )
+from gen.corpus.facts import extent
 from gen.corpus.fault_classes import COMBS, FUNDAMENTALS, LOOKS, SHAFT
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
 from gen.support.shown import visible
-from gen.support.units import READABLE, shown_unit
+from gen.support.units import READABLE, range_text, shown_unit
 from gen.support.workers import run
 
 if TYPE_CHECKING:
@@ -338,6 +339,8 @@ def _told(column: ExplorerColumn) -> dict[str, Any]:
     unit, factor = shown_unit(column.name, column.unit)
     numeric = not any(isinstance(value, str) for value in column.values)
     about = {name: getattr(column, name) for name in ("name", "unit", "meaning", "role")}
+    ends = extent(np.array(column.values, float)) if numeric and column.unit else None
+    about["range"] = ends and range_text(column.name, ends[0], ends[-1], column.unit)
     return about | {"numeric": numeric, "shown_unit": unit, "factor": factor}
 
 

@@ -1,9 +1,9 @@
 """Conditions on records, such as ``fault == 'inner' and shaft_rate > 1200 rpm``: evaluated by pandas, after a check of each word.
 
-Allowed are comparisons of per-record variables with numbers, with texts in quotes or with each other, ``in`` with a list of values,
-``and``, ``or``, ``not`` and parentheses: no call, no attribute, no name but those of the variables, so that a condition cannot run code. A
-class variable (``fault``, ``split``) is compared with the names of its values. A number may have a unit, ``width > 0.5 mm``; without one
-it is in the stored unit.
+Allowed are comparisons of per-record variables with numbers, with texts or with each other, ``in`` with a list of values, ``and``, ``or``,
+``not`` and parentheses: no call, no attribute, no name but those of the variables, so that a condition cannot run code. A class variable
+(``fault``, ``split``) is compared with the names of its values. A text that is one word needs no quotes, ``fault == inner``. A number may
+have a unit, ``width > 0.5 mm``; without one it is in the stored unit.
 """
 
 import ast
@@ -72,26 +72,37 @@ def _evaluated(line: str, variables: Mapping[str, str], column: Callable[[str], 
     marked = _WITH_UNIT.sub(lambda found: found[1] or f"{found[2]} @ '{_MICRO.sub('u', found[3])}'", line)
     with warnings.catch_warnings(action="error"):  # Python warns of an unknown escape in a text
         tree = ast.parse(marked, mode="eval").body
-    names = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
-    for name in names:
-        if name not in variables:
-            raise CorpusError(f"where: there is no variable {name} (a text needs quotes){nearest(name, [*variables])}")
-    tree = _InStoredUnits(variables).visit(tree)
-    table = pd.DataFrame({name: column(name) for name in names})
+    names = dict.fromkeys(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
+    table = pd.DataFrame({name: column(name) for name in names if name in variables})
+    tree = _Stored(variables, table).visit(tree)
+    unknown = next((one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and one.id not in variables), None)
+    if unknown is not None:
+        near = difflib.get_close_matches(unknown, variables, 1)
+        told = f"the nearest is {near[0]}." if near else f"raceway info lists them; {_EXAMPLE}"
+        raise CorpusError(f"where: there is no variable {unknown}; {told}")
     _check(tree, table)
     chosen: Any = table.eval(ast.unparse(tree), engine="python", local_dict={}, global_dict={})
     return chosen.to_numpy(bool)
 
 
-class _InStoredUnits(ast.NodeTransformer):
-    """Replaces each number with a unit by the number in the stored unit of the variable that it is compared with."""
+class _Stored(ast.NodeTransformer):
+    """Replaces values by stored ones, as the variables that they are compared with need them.
 
-    def __init__(self, units: Mapping[str, str]) -> None:
+    A number with a unit becomes one in the stored unit; a word beside a variable of text, and no variable itself, becomes a text.
+    """
+
+    def __init__(self, units: Mapping[str, str], table: pd.DataFrame) -> None:
         self._units, self._named = units, list[str]()
+        self._texts = {str(name) for name in table if not pd.api.types.is_numeric_dtype(table[name])}
 
     def visit_Compare(self, node: ast.Compare) -> ast.AST:
-        self._named = [one.id for one in ast.walk(node) if isinstance(one, ast.Name)]
+        names = [one.id for one in ast.walk(node) if isinstance(one, ast.Name)]
+        self._named = [name for name in names if name in self._units]
         return self.generic_visit(node)
+
+    def visit_Name(self, node: ast.Name) -> ast.AST:
+        word = node.id not in self._units and self._texts & {*self._named}
+        return ast.Constant(node.id) if word else node
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
         match node:

@@ -14,6 +14,8 @@ from features.report.shown import shown_recording
 from features.table.band import DEFAULT_BAND
 from features.table.corpora import feature_table
 from features.table.files import read_table, write_table
+from gen.corpus import open_corpus
+from gen.corpus.choice import chosen_records
 from gen.support.errors import CorpusError
 from tests.browser import CHROMIUM, browser
 from tests.features.report.test_report import write_corpus
@@ -120,7 +122,7 @@ def test_features_of_other_records_or_of_another_channel_are_refused(corpus, pag
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium")
-def test_the_page_works_in_a_browser_by_keys_at_any_width(page, tmp_path):
+def test_the_page_works_in_a_browser_by_keys_at_any_width(page, corpus, tmp_path):
     name, count = "byId('name').textContent", "byId('count').textContent"
     with browser(tmp_path / "profile") as opened:
         opened.look(1400)
@@ -146,6 +148,12 @@ def test_the_page_works_in_a_browser_by_keys_at_any_width(page, tmp_path):
             opened.value(f"byId('condition').value = '{condition}'; choose()")
             told = opened.value("byId('complaint').textContent")
             assert told.endswith(("the nearest is width.", "with a unit (m, mm, um) or in m."))
+        opened.value("byId('condition').value = 'width > 5'; choose()")
+        opened.until("byId('complaint').textContent.startsWith('where')")
+        told = opened.value("byId('complaint').textContent")
+        with open_corpus(corpus) as records, pytest.raises(CorpusError) as refused:
+            chosen_records([records], "width > 5")
+        assert told == str(refused.value)
         opened.value("show(79)")
         opened.until(f"{name}.startsWith('Record 79: ball')")
         opened.look(500, dark=True)
