@@ -261,6 +261,7 @@ def _advice(recording: Recorded, compared: bool) -> tuple[str, ...]:
 def _conclude(judged: list[Judged], elsewhere: tuple[Pair, ...], given: Given, strange: float | None) -> Diagnosis:
     """Diagnosis at the first pair, "unsure" if others give another class or if a strong comb is not explained."""
     first = judged[0]
+    differing = len({one.verdict for one in judged}) > 1
     why = first.why
     advice: tuple[str, ...] = ("Measure the speed during the recording, and check the bearing designation.",)
     if elsewhere or strange is not None:
@@ -268,11 +269,11 @@ def _conclude(judged: list[Judged], elsewhere: tuple[Pair, ...], given: Given, s
         advice = (
             "Measure the speed, check the bearing, and give them as ranges or alternatives if they are not known.",
         )
-    elif len({one.verdict for one in judged}) > 1:
+    elif differing:
         why = different_classes([(one.pair, one.verdict) for one in judged])
         advice = ("Measure the speed during the recording, or give a narrower range.",)
     verdict = UNSURE if why else first.verdict
-    told = pair_in_words(first.pair, given, len(judged) - 1)
+    told = pair_in_words(first.pair, given, [one.pair for one in judged[1:] if not differing])
     if why:
         sentence = f"Unsure ({candidates(first.probabilities)}): {why}; {told}."
     elif verdict == DAMAGED:

@@ -99,11 +99,10 @@ def missed_faults(seconds: float, *, compared: bool) -> tuple[int, int]:
     return row[2] if compared else row[1]
 
 
-def pair_in_words(pair: Pair, given: Given, others: int) -> str:
-    """Bearing, if several are given, and speed of the shaft with its source; ``others`` is the number of other pairs that fit."""
-    return _pair(pair, given) + (
-        f", one of {others + 1} pairs of bearing and speed that fit the lines" if others else ""
-    )
+def pair_in_words(pair: Pair, given: Given, others: Sequence[Pair]) -> str:
+    """Bearing, if several are given, and speed of the shaft with its source; then other pairs that fit the lines as well."""
+    fitting = f", and the lines fit {listed([_place(one) for one in others], 'and')} as well" if others else ""
+    return _pair(pair, given) + fitting
 
 
 def _pair(pair: Pair, given: Given) -> str:

@@ -65,7 +65,7 @@ class Values(NamedTuple):
         return rates[0], []
 
     def stated_unit(self, given: Unit | None) -> tuple[Unit, list[str]]:
-        """Unit to be used, and a sentence without its end if it is not given or another one is stated.
+        """Unit to be used, and a sentence without its end if none or another one is stated.
 
         Raises
         ------
@@ -83,7 +83,7 @@ class Values(NamedTuple):
             said = self.unit and known is None
             return given, [f"states {self.named} in its header; the given unit {given} is used"] if said else []
         if known is not None:
-            return known, [f"its unit is taken as {known}, from {self.named} in its header"]
+            return known, []
         return "m/s2", ["it states no unit, and m/s2 is assumed"] if self.absolute else []
 
 
@@ -138,7 +138,7 @@ def signal_of(header: Header, column: int | str | None, loaded: Mapping[int, Flo
         rate = unit and _rate_of(loaded[place] * unit)
         rates += [(rate, f"times in column {name}")] if rate else []
     own = header.unit_of(signals[0])
-    named = header.name(signals[0]) if own else header.unit
+    named = f"column {header.name(signals[0])}" if own else header.unit
     return Values(loaded[signals[0]], tuple(rates), unit=own or header.unit, named=named)
 
 

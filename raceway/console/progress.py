@@ -53,10 +53,10 @@ def _bar(doing: str, unit: str) -> "Iterator[Progress]":
         yield lambda done, total: bars.update(task, completed=done, total=total, pace=pace(done, total))
 
 
-def show_progress(doing: str = "done", unit: str = "records") -> "Progress":
+def show_progress(doing: str = "done", unit: str = "") -> "Progress":
     """Progress in lines, for the argument ``progress`` of calls such as ``gen.generate``; a notebook renews one line.
 
-    ``doing`` is the activity, such as "generating"; ``unit`` is the unit that is counted.
+    ``doing`` is the activity, such as "generating"; ``unit`` is the unit that the call counts, such as "records" or "parts".
     """
     start = last = time.monotonic()
     pace = _pace(unit)
@@ -69,7 +69,7 @@ def show_progress(doing: str = "done", unit: str = "records") -> "Progress":
         if done == total or now - last >= between:
             last = now
             ending = f"in {show.duration(now - start)}" if done == total else current
-            (renew or notice)(f"{doing}: {done:,} of {total:,} {unit}, {ending}")
+            (renew or notice)(f"{doing}: {f'{done:,} of {total:,} {unit}'.rstrip()}, {ending}")
 
     return report
 
@@ -95,10 +95,10 @@ def _pace(unit: str) -> Callable[[int, int], str]:
             bursts.append((now, done))
         (then, before), (latest, after) = bursts[0], bursts[-1]
         if after == before:
-            return "speed not known yet"
+            return "speed not known yet" if done < total else ""
         rate = (after - before) / (latest - then)
         left = f", {show.duration((total - done) / rate)} left" if done < total else ""
-        return f"{rate:,.3g} {unit}/s{left}"
+        return f"{f'{rate:,.3g} {unit}'.rstrip()}/s{left}"
 
     return pace
 

@@ -24,7 +24,7 @@ def lines(monkeypatch):
 
 
 def test_a_line_comes_every_ten_seconds_and_at_the_end(clock, lines):
-    report = progress.show_progress("generating")
+    report = progress.show_progress("generating", "records")
     for clock[0], done in ((9.0, 9), (11.0, 11), (12.0, 12), (22.0, 21), (30.0, 30)):
         report(done, 30)
     assert [line.partition(",")[0] for line in lines] == [f"generating: {done} of 30 records" for done in (11, 21, 30)]
@@ -43,10 +43,21 @@ def test_speed_and_time_left_are_those_between_the_bursts(clock):
 
 
 def test_the_last_line_tells_the_time_taken(clock, lines):
-    report = progress.show_progress("generating")
+    report = progress.show_progress("generating", "records")
     clock[0] = 4.2
     report(30, 30)
     assert lines == ["generating: 30 of 30 records, in 4 s"]
+
+
+def test_a_call_that_counts_something_else_is_not_said_to_count_records(clock, lines):
+    report = progress.show_progress("features")
+    for clock[0], done in ((1.0, 1), (11.0, 3), (12.0, 4)):
+        report(done, 4)
+    assert lines == ["features: 3 of 4, 0.2/s, 5 s left", "features: 4 of 4, in 12 s"]
+
+
+def test_work_that_is_done_at_once_has_no_speed_that_is_not_known_yet():
+    assert progress._pace("records")(112, 112) == ""
 
 
 def test_a_notebook_renews_one_line(clock, lines, monkeypatch):
@@ -55,7 +66,7 @@ def test_a_notebook_renews_one_line(clock, lines, monkeypatch):
     display = SimpleNamespace(display=lambda *_, **__: line)
     notebook = SimpleNamespace(get_ipython=lambda: SimpleNamespace(kernel=1), display=display)
     monkeypatch.setitem(sys.modules, "IPython", notebook)
-    report = progress.show_progress("generating")
+    report = progress.show_progress("generating", "records")
     for clock[0], done in ((0.1, 1), (2.1, 2), (2.2, 3)):
         report(done, 3)
     assert lines == []

@@ -165,9 +165,14 @@ def concluded(*names, elsewhere=(), strange=None, given=GIVEN):
 
 def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
     given = GIVEN._replace(rates=(RATE, 2 * RATE))
-    assert concluded("outer", "outer", given=given).verdict == "outer"
+    same = concluded("outer", "outer", "outer", given=given)
+    assert same.verdict == "outer"
+    assert same.sentence.endswith(
+        "; shaft 1,500 rpm as found between 1,500 and 3,000 rpm, and the lines fit 6205 at 1,560 rpm and 6205 at 1,620 rpm as well."
+    )
     found = concluded("outer", "inner", given=given)
     assert found.verdict == UNSURE
+    assert "as well" not in found.sentence
     assert "cannot tell apart 6205 at 1,500 rpm (outer) and 6205 at 1,560 rpm (inner)" in found.sentence
 
 

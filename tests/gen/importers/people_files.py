@@ -302,10 +302,10 @@ REFUSED = {  # file, content or writer, what is given, part of the sentence
     "slow.wav": (wav(X, fs=100), {}, RATE),
     # units
     "other_unit.csv": (THREE, {"column": 1, "unit": "m/s2"},
-                       "states 1 DE [g] in its header, and the unit m/s2 is given; correct what is given with --unit."),
+                       "states column 1 DE [g] in its header, and the unit m/s2 is given; correct what is given with --unit."),
     "volts.csv": (text(T, X, header="t [s];x [mV]\n"), {}, "the unit is mV and the sensitivity of the sensor is missing"),
     "velocity.csv": (text(T, X, header="t [s];v [mm/s]\n"), {},
-        "states 1 v [mm/s] in its header, which is no unit that is read; give the unit"),
+        "states column 1 v [mm/s] in its header, which is no unit that is read; give the unit"),
     **{f"unit_{n}.csv": (text(T, X, header=f"t [s];{name}\n"), {}, UNIT) for n, name in enumerate(
         ["x [counts]", "x (dB)", "x [A]", "x [Gal]", "x [in/s]", "x/in/s", "x [G]", "x [g rms]", "s (µm)", "x []", "accel_g", "Velocity",
         "Beschl. m/s²",
