@@ -116,8 +116,8 @@ def lines_of(condition: Drawn, angles: FloatArray) -> FloatArray:
         return np.zeros(len(angles))
     spectrum = [0.0, *(line["level"] * np.exp(1j * line["phase"]) for line in lines)]
     period = irfft(spectrum, _PERIOD) * (_PERIOD / math.sqrt(2))
-    turn = np.arange(_PERIOD) * (2 * math.pi / _PERIOD)
-    return np.interp(condition["order"] * angles, turn, period, period=2 * math.pi)
+    turn = np.arange(_PERIOD + 1) * (2 * math.pi / _PERIOD)
+    return np.interp(condition["order"] * angles % (2 * math.pi), turn, np.append(period, period[0]))
 
 
 def bursts_of(drawn: Drawn, angles: FloatArray, rng: np.random.Generator) -> FloatArray:
