@@ -1,8 +1,7 @@
 """Speed of this machine from a recipe to records and features, stage by stage, with one worker.
 
-Records are made by the steps of :func:`gen.generate`, faults that are drawn again and idle lanes included, and discarded; then their
-features are computed. The rate of the kernel counts the steps of records, not of idle lanes. CPU time of all threads is measured, so that
-other processes on the machine count little.
+Records are made by the steps of :func:`gen.generate`, faults that are drawn again included, and discarded; then their features are
+computed. CPU time of all threads is measured, so that other processes on the machine count little.
 """
 
 import math

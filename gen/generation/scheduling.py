@@ -2,7 +2,7 @@
 
 Parts are drawn block after block, and every integration waits until its batch is full: those of records, of their twins, of faults drawn
 again and of step checks. Only so many records are drawn beyond the first part that is not complete; if all of them wait, the oldest get a
-batch with idle lanes. A record does not depend on its batch, so the parts are those that would be made one by one.
+batch that is not full. A record does not depend on its batch, so the parts are those that would be made one by one.
 """
 
 from collections import deque
@@ -119,7 +119,7 @@ class Making(Generic[Result]):
         self._checked: deque[MadePart] = deque()
 
     def next_step(self) -> Step | None:
-        """The next step: what completes parts, then full batches, then new records; a batch with idle lanes if nothing else is left."""
+        """The next step: what completes parts, then full batches, then new records; a batch that is not full if nothing else is left."""
         if self._checked:
             return Step("write", partial(self._write, self._checked.popleft()))
         if self._complete:

@@ -73,6 +73,8 @@ def _started(task: Task, shares: range, count: int) -> Iterator[dict[Any, SpawnP
             processes[connection] = process
             with suppress(OSError):  # a process that has ended is told of when its results are asked for
                 connection.send((task, share, count))
+        while _standing_by:  # more than there are shares
+            _standing_by.pop()[1].terminate()
         yield processes
     finally:
         for process in processes.values():

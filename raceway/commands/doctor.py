@@ -37,8 +37,8 @@ def doctor(recipe: str | None, records: int | None, as_json: bool) -> int:
     Exits with 1 if a package that Raceway needs is missing or too old; a line that begins with "note" is of an optional one.
 
     With --speed one worker makes the first records of a corpus as generate makes them, stage by stage, and discards them; the CPU time is
-    shown. Faults that are drawn again are included. Steps of the kernel are counted for records, settling time included, and not for
-    idle lanes, of which the last records of a corpus leave many: the more records, the higher the rate.
+    shown. Faults that are drawn again are included. Steps of the kernel are counted for records, settling time included. The
+    last records of a corpus share batches that are not full: the more records, the higher the rate.
 
       raceway doctor
       raceway doctor --json
