@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 
 from gen.generation.step_checks import CHECKED_SHARE
-from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, draw_scenarios, first_records, settings_of
 from gen.simulation.batches import Group, group_of
@@ -71,7 +70,6 @@ def work_of(recipe: Recipe, groups: Sequence[Group]) -> float:
     some = draw_scenarios(recipe, 0, min(CONTIGUOUS, recipe.n_records))
     scale = recipe.n_records * integrations(some) / len(some) / len(groups)
     checked = len(first_records(recipe)) + CHECKED_SHARE * recipe.n_records
-    checked = math.ceil(checked / LANES) * LANES  # the batches of step checks are filled
     work = (len(groups) * scale + 2 * checked) * sum(map(_cost, groups)) / len(groups)
     return timeline(settings_of(recipe)).integrated * work
 

@@ -1,15 +1,14 @@
 """Check of the step: some records of a corpus are integrated again at half the step, and the relative change is stored with them."""
 
-from collections import Counter
-from collections.abc import Mapping
+import math
+from collections.abc import Collection, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, first_records, settings_of
-from gen.simulation.batches import Group, Integration, group_of
+from gen.simulation.batches import Integration, group_of
 from gen.simulation.simulate import Response, Run, motion_of
 from gen.simulation.timeline import timeline
 
@@ -21,11 +20,11 @@ CHECKED_PARTS, CHECKED_SHARE = 32, 0.01  # every 32nd part repeats 1 % of the re
 def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -> dict[int, Run]:
     """Some records of a part at half their step, by place."""
     usable = {place: some for place, some in enumerate(response.inputs) if some and place not in response.failures}
-    groups = {place: group_of(some, int(response.oversampling[place])) for place, some in usable.items()}
     finer = {}
-    for place in checked_places(scenarios, recipe, groups):
+    for place in checked_places(scenarios, recipe, usable):
         other, number = response.others[place], scenarios[place].record.number
-        own = _halved(Integration(number, usable[place], groups[place]))
+        group = group_of(usable[place], int(response.oversampling[place]))
+        own = _halved(Integration(number, usable[place], group))
         if other is not None and other.own is not None:
             other = other._replace(own=_halved(other.own), twin=None)
         finer[place] = Run(response.motions[place], usable[place], "", own, None, other)
@@ -49,40 +48,26 @@ def step_changes(finer: Mapping[int, Run], response: Response, recipe: Recipe) -
     return errors
 
 
-def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[int, Group]) -> list[int]:
-    """Places in a part of the records whose step is to be checked; ``groups`` has the possible records by place.
+def checked_places(scenarios: list[Scenario], recipe: Recipe, usable: Collection[int]) -> list[int]:
+    """Places in a part of the records whose step is to be checked, of those that are ``usable``.
 
-    These are the first record of each class, in the part where the first specimen of the class begins; in every ``CHECKED_PARTS``-th part
-    also ``CHECKED_SHARE`` of the records of so many parts; and records that fill the batches of these at no more cost.
+    These are the first record of each class, in the part where the first specimen of the class begins; and in every ``CHECKED_PARTS``-th
+    part ``CHECKED_SHARE`` of the records of so many parts.
     """
     begun = {scenario.record.number for scenario in scenarios}
     new = {fault for fault, number in first_records(recipe).items() if number in begun}
     first: dict[str, int] = {}
-    for place in groups:
+    for place in usable:
         if scenarios[place].specimen.fault in new:
             first.setdefault(scenarios[place].specimen.fault, place)
     span = CHECKED_PARTS * recipe.storage.records_per_part
     done = scenarios[0].record.number
     wanted = CHECKED_SHARE * min(span, recipe.n_records - done) if done % span == 0 else 0
-    chosen = _with_full_batches(list(first.values()), groups)
-    for place in groups:
-        if len(chosen) >= wanted:
-            break
-        if place not in chosen:
-            chosen = _with_full_batches([*chosen, place], groups)
-    return chosen
+    every = [*dict.fromkeys([*first.values(), *usable])]
+    return every[: max(len(first), math.ceil(wanted))]
 
 
 def has_checks(recipe: Recipe, numbers: range) -> bool:
     """Whether the step of any of the records of a part may be checked, by :func:`checked_places`."""
     every = numbers.start % (CHECKED_PARTS * recipe.storage.records_per_part) == 0
     return every or any(number in numbers for number in first_records(recipe).values())
-
-
-def _with_full_batches(chosen: list[int], groups: Mapping[int, Group]) -> list[int]:
-    """The chosen places, and others of their groups that fill the last batch of each group."""
-    filled = list(chosen)
-    for group, count in Counter(groups[place] for place in chosen).items():
-        others = [place for place, of_place in groups.items() if of_place == group and place not in chosen]
-        filled += others[: -count % LANES]
-    return filled
