@@ -1,8 +1,9 @@
 """The functions of `features.signal` on xarray: ``records.acceleration.raceway.envelope_spectrum()``.
 
-``import features.accessor`` gives every DataArray with the dimension ``elapsed_time`` the accessor ``raceway``. A result
-keeps all other dimensions and coordinates, and has units. A signal in chunks of dask (``chunk({"record": 64})``, whole
-along time) gives a lazy result, computed chunk by chunk. ``records.raceway`` tells what a corpus holds and what can be done with it.
+``import features.accessor`` gives every DataArray with the dimension ``elapsed_time`` the accessor ``raceway``. A
+result keeps all other dimensions and coordinates, and has a name and units of its own. A signal in chunks of dask
+(``chunk({"record": 64})``, whole along time) gives a lazy result, computed chunk by chunk. ``records.raceway`` tells
+what a corpus holds and what can be done with it.
 """
 
 from collections.abc import Callable, Mapping
@@ -82,11 +83,14 @@ class SignalAccessor:
 
     def psd(self, segment: float = 0.25) -> xr.DataArray:
         """Power spectral density as of `features.signal.spectra.psd`, over ``frequency``."""
-        return self._over("frequency", "Hz", "({0})2 Hz-1", lambda x: psd(x, self.fs, segment))
+        return self._over(
+            "power_spectral_density", "frequency", "Hz", "({0})2 Hz-1", lambda x: psd(x, self.fs, segment)
+        )
 
     def envelope_spectrum(self, band: tuple[float, float] = DEFAULT_BAND, *, squared: bool = False) -> xr.DataArray:
         """Amplitude spectrum of the envelope of a band [Hz], or of the squared envelope, over ``frequency``."""
         return self._over(
+            "squared_envelope_spectrum" if squared else "envelope_spectrum",
             "frequency",
             "Hz",
             "({0})2" if squared else "{0}",
@@ -97,6 +101,7 @@ class SignalAccessor:
         """Kurtosis of bands as of `features.signal.kurtogram`, over ``band`` with the coordinates ``low`` and ``high`` [Hz]."""
         tree = kurtogram(self._probe(), self.fs, narrowest=narrowest)
         found = self._over(
+            "kurtosis",
             "band",
             "1",
             "1",
@@ -109,7 +114,9 @@ class SignalAccessor:
 
     def spectral_kurtosis(self, segment: float = 0.005) -> xr.DataArray:
         """Spectral kurtosis as of `features.signal.spectral_kurtosis`, over ``frequency``."""
-        return self._over("frequency", "Hz", "1", lambda x: spectral_kurtosis(x, self.fs, segment=segment)[:2])
+        return self._over(
+            "spectral_kurtosis", "frequency", "Hz", "1", lambda x: spectral_kurtosis(x, self.fs, segment=segment)[:2]
+        )
 
     def enhanced_envelope_spectrum(self, highest: float, band: tuple[float, float] | None = None) -> xr.DataArray:
         """Mean squared spectral coherence over all frequencies, or over a band [Hz], up to ``highest`` [Hz]."""
@@ -118,27 +125,27 @@ class SignalAccessor:
             coherence = spectral_coherence(x, self.fs, highest)
             return coherence.cyclic, enhanced_envelope_spectrum(coherence, band)
 
-        return self._over("cyclic_frequency", "Hz", "1", compute)
+        return self._over("enhanced_envelope_spectrum", "cyclic_frequency", "Hz", "1", compute)
 
     def cepstrum(self) -> xr.DataArray:
         """Real cepstrum over ``quefrency``."""
-        return self._over("quefrency", "s", "1", lambda x: (np.arange(x.shape[1]) / self.fs, cepstrum(x)))
+        return self._over("cepstrum", "quefrency", "s", "1", lambda x: (np.arange(x.shape[1]) / self.fs, cepstrum(x)))
 
     def velocity(self, high_pass: float = HIGH_PASS) -> xr.DataArray:
         """Velocity from accelerations, as of `features.signal.velocity`."""
-        return self._along("{0} s", lambda x: velocity(x, self.fs, high_pass))
+        return self._along("velocity", "{0} s", lambda x: velocity(x, self.fs, high_pass))
 
     def displacement(self, high_pass: float = HIGH_PASS) -> xr.DataArray:
         """Displacement from accelerations, as of `features.signal.displacement`."""
-        return self._along("{0} s2", lambda x: displacement(x, self.fs, high_pass))
+        return self._along("displacement", "{0} s2", lambda x: displacement(x, self.fs, high_pass))
 
     def without_tones(self) -> xr.DataArray:
         """The random part of `features.signal.separate_random`."""
-        return self._along("{0}", lambda x: separate_random(x, self.fs).random)
+        return self._along("random_part", "{0}", lambda x: separate_random(x, self.fs).random)
 
     def prediction_residual(self, order: int = 100) -> xr.DataArray:
         """What the past of a signal does not predict, as of `features.signal.prediction_residual`."""
-        return self._along("{0}", lambda x: prediction_residual(x, order))
+        return self._along("prediction_residual", "{0}", lambda x: prediction_residual(x, order))
 
     def order_spectrum(self, angle: xr.DataArray, per_turn: int = 64) -> xr.DataArray:
         """Amplitude spectrum over ``order`` of the signals at equal angles of the shaft; it is never lazy.
@@ -157,13 +164,13 @@ class SignalAccessor:
         )
         others = signals.isel({TIME: 0}, drop=True)
         made = xr.DataArray(found.reshape(*others.shape, -1), dims=(*others.dims, "order"), coords=others.coords)
-        return self._described(made.assign_coords(order=("order", orders, {"units": "1"})), "{0}")
+        return self._described(made.assign_coords(order=("order", orders, {"units": "1"})), "order_spectrum", "{0}")
 
-    def _along(self, units: str, compute: Callable[[FloatArray], FloatArray]) -> xr.DataArray:
-        made = self._over(TIME, "s", units, lambda x: (self._signals[TIME].values, compute(x)))
+    def _along(self, name: str, units: str, compute: Callable[[FloatArray], FloatArray]) -> xr.DataArray:
+        made = self._over(name, TIME, "s", units, lambda x: (self._signals[TIME].values, compute(x)))
         return made.assign_coords({TIME: self._signals[TIME]}).transpose(*self._signals.dims)
 
-    def _over(self, axis: str, axis_units: str, units: str, compute: Compute) -> xr.DataArray:
+    def _over(self, name: str, axis: str, axis_units: str, units: str, compute: Compute) -> xr.DataArray:
         """Result of a function of arrays (record, time), with a new last dimension."""
         along, probed = compute(self._probe())
 
@@ -180,10 +187,12 @@ class SignalAccessor:
             output_dtypes=[probed.dtype],
             dask_gufunc_kwargs={"output_sizes": {axis: len(along)}},
         )
-        return self._described(made.assign_coords({axis: (axis, along, {"units": axis_units})}), units)
+        return self._described(made.assign_coords({axis: (axis, along, {"units": axis_units})}), name, units)
 
-    def _described(self, made: xr.DataArray, units: str) -> xr.DataArray:
-        return made.assign_attrs(units=units.format(self._signals.attrs.get("units", "1")))
+    def _described(self, made: xr.DataArray, name: str, units: str) -> xr.DataArray:
+        """The result under its own name: name and attributes of the signal do not describe it."""
+        units = units.format(self._signals.attrs.get("units", "1"))
+        return made.rename(name).drop_attrs(deep=False).assign_attrs(long_name=name.replace("_", " "), units=units)
 
     def _probe(self) -> FloatArray:
         """One signal of noise, which tells the axis of a result before any record is read."""

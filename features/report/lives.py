@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from features.lives.prognosis import FIRST
+from features.lives.prognosis import FIRST, check_lives
 from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
@@ -66,7 +66,8 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
 def _draw_spectra(axes: Any, age: FloatArray, signal: FloatArray, fs: float, title: str) -> None:
     frequency, density = psd(signal, fs, min(256 / fs, signal.shape[-1] / fs))
     level = 10 * np.log10(np.maximum(density.T, 1e-30))
-    axes.pcolormesh(age, frequency / 1e3, level, vmin=np.quantile(level, 0.02), cmap="viridis", rasterized=True)
+    mesh = axes.pcolormesh(age, frequency / 1e3, level, vmin=np.quantile(level, 0.02), cmap="viridis", rasterized=True)
+    axes.figure.colorbar(mesh, ax=axes, label="dB re 1 (m/s²)²/Hz", pad=0.01)
     axes.set(ylabel="frequency [kHz]", title=f"{title}: power spectral density over its life")
 
 
@@ -86,8 +87,7 @@ def _draw_courses(axes: Any, own: xr.Dataset, other: xr.Dataset) -> None:
 
 
 def _life(records: xr.Dataset, corpus: Path, bearing: str | None) -> xr.Dataset:
-    if "rul" not in records:
-        raise CorpusError(f"{corpus}: has no lives; make one of a recipe with life, such as run_to_failure.")
+    check_lives(records, str(corpus))
     if bearing is None:
         lives = sorted(_failed(records), key=lambda life: int((life["stage"].values > 0).sum()))
         if not lives:

@@ -119,7 +119,6 @@ def envelope_map(shown: DrawnRecord, top: float) -> tuple[FloatArray, FloatArray
 def _kurtogram(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
     """Kurtosis of the analytic signal of each band, a row for each division of the spectrum."""
     plot(kurtogram(shown.signal, shown.fs), axes)
-    axes.set_title(f"Kurtogram: {axes.get_title()}")
 
 
 def _coherence(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:

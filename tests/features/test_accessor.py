@@ -9,6 +9,7 @@ import features.accessor  # noqa: F401
 from features.signal import kurtogram, order_spectrum, psd, resample_to_angle, velocity
 
 FS = 6000.0
+SIGNAL = {"units": "m s-2", "long_name": "acceleration of the sensor", "role": "signal"}
 METHODS = {
     "psd": {},
     "envelope_spectrum": {"band": (300.0, 2500.0)},
@@ -27,7 +28,7 @@ METHODS = {
 def signals():
     x = np.random.default_rng(0).standard_normal((4, 2, 6000)).astype(np.float32)
     coords = {"channel": ["a", "b"], "fault": ("record", [0, 1, 2, 3]), "elapsed_time": np.arange(6000) / FS}
-    return xr.DataArray(x, dims=("record", "channel", "elapsed_time"), coords=coords, attrs={"units": "m s-2"})
+    return xr.DataArray(x, dims=("record", "channel", "elapsed_time"), coords=coords, attrs=SIGNAL, name="acceleration")
 
 
 def rows(signals):
@@ -45,7 +46,9 @@ def test_a_lazy_signal_gives_the_same_result_computed_when_it_is_needed(signals,
     assert lazy.attrs == direct.attrs
     assert direct.dims[:2] == ("record", "channel")
     assert list(direct.fault.values) == [0, 1, 2, 3]
-    assert "units" in direct.attrs
+    assert direct.attrs.keys() == {"units", "long_name"}
+    assert direct.name != "acceleration"
+    assert direct.attrs["long_name"] == direct.name.replace("_", " ")
     assert np.isfinite(direct).all()
 
 
@@ -58,6 +61,7 @@ def test_values_and_units_are_those_of_the_pure_functions(signals):
     np.testing.assert_array_equal(signals.raceway.velocity().values.reshape(8, -1), velocity(rows(signals), FS))
     tree = kurtogram(rows(signals), FS)
     np.testing.assert_array_equal(signals.raceway.kurtogram().high, tree.edges[:, 1])
+    assert signals.raceway.kurtogram().name == "kurtosis"
 
 
 def test_orders_follow_the_angle_of_each_record(signals):

@@ -1,5 +1,7 @@
 """Views of a record: lines stand where they belong at any speed, and a chosen band is the planted one."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -62,6 +64,11 @@ def test_the_envelope_of_a_run_up_has_its_line_within_half_a_bin_of_its_order(ru
 def test_the_title_of_a_run_up_has_its_range_and_the_waveform_counts_its_revolutions(run_up):
     assert run_up.title == "run-up, 900-1800 rpm"
     assert draw_record(run_up).axes[0].get_title(loc="left").startswith("Waveform: first 0.5")  # 8 turns at 15 to 16 Hz
+
+
+def test_the_heading_of_a_kurtogram_tells_its_result(steady):
+    heading = draw_view("kurtogram", steady).axes[0].get_title(loc="left")
+    assert re.fullmatch(r"Highest kurtosis: [\d.]+, in [\d.]+-[\d.]+ kHz", heading)
 
 
 @pytest.mark.parametrize("seconds", [0.5, 6.0])
