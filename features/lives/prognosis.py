@@ -67,6 +67,18 @@ class Lives(NamedTuple):
 Estimate = Callable[[Lives], FloatArray]
 
 
+def check_lives(records: xr.Dataset, name: str) -> None:
+    """Refuse records, or their table, that are not snapshots of lives, with a ``name`` for the sentence.
+
+    Raises
+    ------
+    CorpusError
+        If a variable of lives is missing.
+    """
+    if not {*_NEEDED} <= {*records.variables}:
+        raise CorpusError(f"{name}: has no lives; make one of a recipe with life, such as run_to_failure.")
+
+
 def lives_of(table: xr.Dataset) -> Lives:
     """Lives of a feature table of a corpus of lives.
 
@@ -75,11 +87,7 @@ def lives_of(table: xr.Dataset) -> Lives:
     CorpusError
         If a variable of lives is missing, or no bearing failed.
     """
-    missing = [name for name in _NEEDED if name not in table.variables]
-    if missing:
-        raise CorpusError(
-            f"the feature table has no {missing[0]}; it needs records of lives, as of a recipe with life."
-        )
+    check_lives(table, "the feature table")
     order = np.lexsort((table["age"].values, table["bearing"].values.astype(str)))
     of = table.isel(record=order)
     _, bearing = np.unique(of["bearing"].values.astype(str), return_inverse=True)

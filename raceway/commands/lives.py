@@ -61,8 +61,12 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
       raceway prognose corpus --test pronostia
       raceway prognose corpus --json
     """
-    from features.lives.prognosis import SHARES, score_lives
+    from features.lives.prognosis import SHARES, check_lives, score_lives
+    from gen.corpus import open_corpus
 
+    for one in (corpus, tested or corpus):
+        with open_corpus(one) as opened:
+            check_lives(opened, str(one))
     tables = [None if one is None else table_of(one, "off", team, USUAL_ANALYSIS) for one in (corpus, tested)]
     assert tables[0] is not None  # noqa: S101
     scores = score_lives(tables[0], tables[1], folds=folds)
@@ -83,9 +87,9 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
         (
             (
                 str(name),
-                *(f"{row[column] / 3600:.4g}" for column in at),
+                *(f"{row[column] / 3600:,.1f}" for column in at),
                 *(f"{row[column]:.3f}" for column in others),
-                f"{row['mae_before'] / 3600:.4g}",
+                f"{row['mae_before'] / 3600:,.1f}",
             )
             for name, row in scores.iterrows()
         ),

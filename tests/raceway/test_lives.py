@@ -1,5 +1,7 @@
 """``raceway life`` and ``raceway prognose`` on a few lives."""
 
+import re
+
 import pytest
 
 from features.report.lives import draw_life
@@ -26,6 +28,7 @@ def test_a_picture_has_the_course_of_one_life(lives):
     assert figure.axes[0].get_title("left").split(":")[0] in longest[longest == longest.max()].index
     spall = figure.axes[2].lines[0].get_ydata()
     assert 0 == spall[0] < spall[-1] <= 6
+    assert figure.axes[3].get_ylabel() == "dB re 1 (m/s²)²/Hz"
 
 
 def test_lives_are_drawn_beside_those_of_another_corpus(lives):
@@ -49,10 +52,22 @@ def test_the_commands_draw_and_score(run, told, lives, tmp_path):
     assert "are among those of the training" in run("prognose", lives, "--test", lives).stderr
 
 
-def test_only_lives_are_scored(run, tiny_corpus):
-    result = run("prognose", tiny_corpus)
+@pytest.mark.parametrize("options", [(), ("--test",)])
+def test_only_lives_are_scored_and_others_are_refused_before_any_feature_is_computed(
+    run, lives, tiny_corpus, monkeypatch, options
+):
+    monkeypatch.setattr("raceway.commands.lives.table_of", lambda *_: pytest.fail("features were computed"))
+    result = run("prognose", *([lives] if options else []), *options, tiny_corpus)
     assert result.exit_code == 2
-    assert "has no age; it needs records of lives" in result.stderr
+    sentence = f"{tiny_corpus}: has no lives; make one of a recipe with life, such as run_to_failure.\n"
+    assert result.stderr == sentence
+    assert run("life", tiny_corpus, "-o", "x.png").stderr == sentence
+
+
+def test_errors_in_hours_have_one_form(run, lives):
+    rows = run("prognose", lives, "--folds", 3).stdout.splitlines()[1:6]
+    hours = [cell for row in rows for cell in (*row.split()[1:4], row.split()[-1])]
+    assert all(re.fullmatch(r"\d{1,3}(,\d{3})*\.\d", cell) for cell in hours), hours
 
 
 def test_generate_says_why_records_are_fewer_than_asked(run, lives, tmp_path):

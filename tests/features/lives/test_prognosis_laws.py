@@ -75,7 +75,7 @@ def test_the_order_of_records_does_not_matter():
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        (table(9).drop_vars("stage"), "has no stage"),
+        (table(9).drop_vars("stage"), "the feature table: has no lives"),
         (table(9).assign(event=0 * table(9)["event"]), "no bearing of the feature table failed"),
         (table(9, bearings=3), "3 bearings are fewer than 5 folds"),
     ],
