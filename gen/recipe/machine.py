@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, StrictInt, field_validator, model_validator
+from pydantic import AliasChoices, BeforeValidator, Field, StrictInt, field_validator, model_validator
 
 from gen.drawing import Distribution, Name, Number, Probability, Section, within
 from gen.physics.bearing import Bearing
@@ -23,11 +23,12 @@ SMALLEST_BALL, LARGEST_BALL = 0.05, 0.45
 
 
 OF_ROLLERS = {"n_rollers": "n_balls", "roller_diameter_mm": "ball_diameter_mm"}
-"""Keys of the dimensions of a roller bearing, by which the keys of balls are read too."""
+"""Keys of the dimensions of a roller bearing, each for the same field as a key of balls."""
+_COUNT, _DIAMETER = (Field(validation_alias=AliasChoices(of_balls, key)) for key, of_balls in OF_ROLLERS.items())
 
 
-def _as_balls(given: Any) -> Any:
-    """Dimensions with the keys of balls, if they have keys of rollers."""
+def _check_rollers(given: Any) -> Any:
+    """Dimensions as they are given; ValueError for keys of rollers without a length, or beside the same of balls."""
     if not isinstance(given, Mapping) or not (keys := given.keys() & OF_ROLLERS.keys()):
         return given
     if "roller_length_mm" not in given:
@@ -36,24 +37,24 @@ def _as_balls(given: Any) -> Any:
         )
     if twice := given.keys() & {OF_ROLLERS[key] for key in keys}:
         raise ValueError(f"{min(keys)}: {min(twice)} says the same; give one of them.")
-    return {OF_ROLLERS.get(key, key): value for key, value in given.items()}
+    return given
 
 
 class OwnBearing(Section):
     """A bearing that is not in the catalogue."""
 
-    n_balls: Annotated[StrictInt, Field(ge=5, le=MAX_BALLS)]
+    n_balls: Annotated[StrictInt, Field(ge=5, le=MAX_BALLS), _COUNT]
     """Number of balls, or of rollers (`n_rollers`); BPFO and BPFI grow with it."""
     pitch_diameter_mm: Annotated[Number, Field(ge=5, le=1000)]
     """Diameter of the circle through the centres of the balls."""
-    ball_diameter_mm: Annotated[Number, Field(gt=0, le=500)]
+    ball_diameter_mm: Annotated[Number, Field(gt=0, le=500), _DIAMETER]
     """Diameter of a ball, or of a roller (`roller_diameter_mm`); all of them must fit on the pitch circle."""
     contact_angle_deg: Annotated[Number, Field(ge=-40, le=40)] = 0.0
     """Contact angle on the drawing; it enters the fault frequencies."""
     roller_length_mm: Annotated[Number, Field(gt=0, le=1000)] | None = None
     """Length of a roller that touches the raceways; if given, the bearing has rollers instead of balls."""
 
-    _keys = model_validator(mode="before")(_as_balls)
+    _keys = model_validator(mode="before")(_check_rollers)
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -130,11 +131,11 @@ class GeometryBearing(Section):
     """Takes a bearing by its dimensions, each of which can vary from rig to rig."""
     designation: Name = "geometry"
     """Name of the bearing in the corpus."""
-    n_balls: Distribution = within(5, MAX_BALLS)
+    n_balls: Annotated[Distribution, _COUNT] = within(5, MAX_BALLS)
     """Number of balls, or of rollers (`n_rollers`), rounded to a whole number; BPFO and BPFI grow with it."""
     pitch_diameter_mm: Distribution = within(5, 1000, open_low=True)
     """Diameter of the circle through the centres of the balls."""
-    ball_diameter_mm: Distribution = within(0, 500, open_low=True)
+    ball_diameter_mm: Annotated[Distribution, _DIAMETER] = within(0, 500, open_low=True)
     """Diameter of a ball, or of a roller (`roller_diameter_mm`): 0.05 to 0.45 of the pitch diameter; of a range, reduced where neighbouring
     balls would touch."""
     contact_angle_deg: Distribution = within(-40, 40, default=0.0)
@@ -142,7 +143,7 @@ class GeometryBearing(Section):
     roller_length_mm: Distribution = within(0, 1000, default=0.0)
     """Length of a roller that touches the raceways; 0 for balls."""
 
-    _keys = model_validator(mode="before")(_as_balls)
+    _keys = model_validator(mode="before")(_check_rollers)
 
     @model_validator(mode="after")
     def _fits(self) -> Self:

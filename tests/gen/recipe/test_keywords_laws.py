@@ -63,8 +63,10 @@ def test_the_dimensions_of_a_record_with_rollers_give_its_orders(keys):
 
 def test_the_keys_that_a_geometry_allows_are_those_of_balls_and_of_rollers():
     allowed = "n_balls, n_rollers, pitch_diameter_mm, roller_diameter_mm, roller_length_mm"
+    wrong = {"teeth": 14, "pitch_diameter_mm": 50}
     with pytest.raises(CorpusError, match=allowed):
-        gen.bearing_orders({"teeth": 14, "pitch_diameter_mm": 50})
+        gen.bearing_orders(wrong)
+    assert allowed in sentences_of(lambda: gen.make_recipe(bearing=wrong))
 
 
 def test_every_name_has_a_section_unless_several_share_it():

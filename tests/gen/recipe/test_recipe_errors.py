@@ -78,9 +78,9 @@ TABLE = [
      "bearing.entries.a b: 'a b' is not allowed here; it must be 1 to 64 letters"),
     ('["6205"]', "[NU205]", "bearing.designations: 'NU205' is neither in the catalogue nor in entries; did you mean NU206"),
     ('["6205"]}', "[mine], entries: {mine: {n_rollers: 20, pitch_diameter_mm: 50, roller_diameter_mm: 7}}}",
-     "bearing.entries.mine: n_rollers: a bearing with rollers needs roller_length_mm;"),
+     "bearing.entries.mine.n_rollers: a bearing with rollers needs roller_length_mm;"),
     ('["6205"]}', "[mine], entries: {mine: {n_rollers: 20, n_balls: 20, pitch_diameter_mm: 50, roller_length_mm: 7}}}",
-     "bearing.entries.mine: n_rollers: n_balls says the same; give one of them."),
+     "bearing.entries.mine.n_rollers: n_balls says the same; give one of them."),
     # traces and roughness
     ("0.5}", "0.5, profile: trace}", "faults[1].profile: trace and trace_um belong together; give both or neither."),
     ("0.5}", "0.5, trace_um: [0, 3, 0]}", "faults[1].profile: trace and trace_um belong together; give both or neither."),
