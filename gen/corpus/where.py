@@ -78,7 +78,7 @@ def _evaluated(line: str, variables: Mapping[str, str], column: Callable[[str], 
     unknown = next((one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and one.id not in variables), None)
     if unknown is not None:
         near = difflib.get_close_matches(unknown, variables, 1)
-        told = f"the nearest is {near[0]}." if near else f"raceway info lists them; {_EXAMPLE}"
+        told = f"the nearest is {near[0]}." if near else f"docs/format.md lists them; {_EXAMPLE}"
         raise CorpusError(f"where: there is no variable {unknown}; {told}")
     _check(tree, table)
     chosen: Any = table.eval(ast.unparse(tree), engine="python", local_dict={}, global_dict={})

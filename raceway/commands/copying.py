@@ -61,7 +61,7 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
     numbered anew, unless all records come from one corpus. Corpora that hold the same samples are refused, because a record in training
     and test set makes every score too good.
 
-    A condition compares variables (raceway info) with numbers, words, or texts in quotes. A comparison with an unknown value (NaN) is
+    A condition compares variables (docs/format.md) with numbers, words, or texts in quotes. A comparison with an unknown value (NaN) is
     false.
 
       raceway copy corpus -o corpus.nc
