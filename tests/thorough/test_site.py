@@ -14,7 +14,7 @@ pytest.importorskip("sphinx")
 pytest.importorskip("myst_nb")
 pytest.importorskip("pydata_sphinx_theme")
 LOADED = re.compile(r"<(?:script|link|img)[^>]*(?:src|href)=\"(?:https?:)?//[^\"]+\.(?:m?js|css|woff2?|png|svg)")
-MOST_SECONDS = 60
+MOST_SECONDS = 120
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def test_each_tutorial_offers_its_notebook(built):
         assert (built / "site" / "docs" / "tutorials" / link).is_file()
 
 
-def test_each_tutorial_takes_less_than_a_minute(built):
+def test_each_tutorial_takes_less_than_two_minutes(built):
     tutorials = pickle.loads((built / "trees" / "environment.pickle").read_bytes()).nb_metadata  # noqa: S301 - our own
     seconds = {
         Path(name).name: facts["exec_data"]["runtime"]

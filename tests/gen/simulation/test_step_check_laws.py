@@ -103,6 +103,15 @@ def test_every_class_and_a_hundredth_of_the_records_are_tried_whatever_the_layou
     assert sum(spans.values()) <= len(held) + 0.01 * recipe.n_records + len(classes)
 
 
+def test_a_part_is_checked_where_its_turn_comes_and_in_usable_records_alone(recipe_with):
+    recipe = recipe_with({"corpus.rigs": 500, "storage.records_per_part": 100})
+    scenarios = draw_scenarios(recipe, 3200, 3300)  # no class has its first record here: all have it on the first rig
+    assert checked_places(scenarios, recipe, range(100)) == [*range(8)]  # 1 % of the 800 records from here on
+    assert checked_places(scenarios, recipe, [3, 4, 90]) == [3, 4, 90]
+    assert checked_places(scenarios, recipe, []) == []
+    assert checked_places(draw_scenarios(recipe, 3100, 3200), recipe, range(100)) == []
+
+
 def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
     recipe = recipe_with({"storage.records_per_part": 24})
     scenarios = draw_scenarios(recipe)

@@ -76,6 +76,12 @@ def test_every_row_that_holds_until_the_next_knot_is_written_before_the_first_st
     assert np.isfinite(trip.accelerations).all()
 
 
+def test_lanes_behind_the_vector_of_the_last_record_are_not_computed(laid_out):
+    first, *_, last = march_batch(*laid_out, N_KNOTS, N_STEPS, KNOT)  # one record, and LANES trips
+    assert (first.states[-1] != first.states[0]).any()
+    assert (last.states == last.states[0]).all()
+
+
 def changed(values, row):
     """Another value of a row."""
     return OTHER.get(row, values * 1.02 + (values == 0) * 0.02)
