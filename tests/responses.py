@@ -24,10 +24,10 @@ def response_of(scenarios, recipe, *, impossible=()):
     """Response of bodies at rest with the truth of every scenario; places in ``impossible`` have no machine."""
     n, axis = len(scenarios), timeline(settings_of(recipe))
     inputs = [None if n in impossible else kernel_input(scenario, axis) for n, scenario in enumerate(scenarios)]
-    motions, none = [draw_motion(scenario) for scenario in scenarios], [None] * n
+    motions = [draw_motion(scenario) for scenario in scenarios]
     truth = [truth_of(motion, axis, given) for motion, given in zip(motions, inputs, strict=True)]
     steps = np.arange(n) + 2, np.linspace(0.1, 0.3, n)
-    return Response(still(recipe, n), *steps, {}, inputs, motions, truth, [], none, none)
+    return Response(still(recipe, n), *steps, {}, inputs, motions, truth, [])
 
 
 def truth(scenario, recipe) -> Truth:

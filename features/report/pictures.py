@@ -10,7 +10,6 @@ colour-blind readers can distinguish. Pictures contain numbers and class names, 
 import io
 from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -83,8 +82,6 @@ class DrawnRecord(NamedTuple):
         Of the signal.
     angle
         Angle of the shaft at each sample [rad], shape (time,), None for a constant speed.
-    of_other
-        Orders of the fundamental lines of the fault of another bearing on the shaft, by label.
     """
 
     title: str
@@ -96,7 +93,6 @@ class DrawnRecord(NamedTuple):
     band: Band = DEFAULT_BAND
     unit: str = "m/s²"
     angle: FloatArray | None = None
-    of_other: Mapping[str, float] = MappingProxyType({})
 
     @property
     def turns(self) -> FloatArray:
@@ -207,12 +203,8 @@ def draw_cursors(axes: Axes, shown: DrawnRecord) -> float:
 
 
 def mark_lines(axes: Axes, shown: DrawnRecord) -> tuple[dict[str, float], dict[str, float]]:
-    """Lines of the fault over orders, shaded, with their sidebands dotted, and those of others dashed; both as `fault_lines`.
-
-    The lines of the fault of another bearing are among the others.
-    """
+    """Lines of the fault over orders, shaded, with their sidebands dotted, and those of others dashed; both as `fault_lines`."""
     own, others = fault_lines(shown.orders, shown.fault)
-    others |= {f"other {label}": order for label, order in shown.of_other.items()}
     look = LOOKS[shown.fault]
     side = 1.0 if look.side == SHAFT.base else float(getattr(shown.orders, look.side))
     for line in own.values():

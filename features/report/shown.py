@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from features.report.pictures import DrawnRecord, fault_lines
+from features.report.pictures import DrawnRecord
 from features.signal.orders import angles_from_speed
 from features.signal.rows import FloatArray
 from features.signal.tracking import track_speed
@@ -14,7 +14,7 @@ from features.table.band import LEAST_WIDTH, Band
 from features.table.channels import channel_number
 from features.table.indicators import Orders
 from gen.corpus import FAULT_NAMES, SIGNAL, corpus_name, open_corpus
-from gen.corpus.fault_classes import FUNDAMENTALS, UNKNOWN
+from gen.corpus.fault_classes import UNKNOWN
 from gen.support.errors import CorpusError
 
 CONSTANT = 1.02  # largest ratio of two speeds that count as one
@@ -73,24 +73,11 @@ def shown_of(record: xr.Dataset, number: int, channel: int, *, named: bool = Fal
         signal=record[SIGNAL].isel(channel=channel).values.astype(float),
         fs=float(record["sample_rate"]),
         shaft_rate=float(record["shaft_rate"]),
-        orders=_orders(record),
+        orders=Orders(*(np.asarray(record[name].values, dtype=float) for name in Orders._fields)),
         fault=fault,
-        of_other=_lines_of_other(record),
     )
     ends = [float(record[name]) for name in ("first_shaft_rate", "last_shaft_rate") if name in record]
     return _turning(shown, *(sorted(ends) if len(ends) == 2 else [shown.shaft_rate] * 2))
-
-
-def _orders(record: xr.Dataset, prefix: str = "") -> Orders:
-    return Orders(*(np.asarray(record[f"{prefix}{name}"].values, dtype=float) for name in Orders._fields))
-
-
-def _lines_of_other(record: xr.Dataset) -> dict[str, float]:
-    """Fundamental lines of the fault of the other bearing on the shaft, if the record has one."""
-    if "other_fault" not in record:
-        return {}
-    lines, _ = fault_lines(_orders(record, "other_"), FAULT_NAMES[int(record["other_fault"])])
-    return {line.label: lines[line.label] for line in FUNDAMENTALS if line.label in lines}
 
 
 def can_be_drawn(shown: DrawnRecord) -> bool:

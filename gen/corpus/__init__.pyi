@@ -116,8 +116,6 @@ from .signals import (
 )
 from .simulated import (
     LIFE as LIFE,
-    OPTIONAL as OPTIONAL,
-    OTHER_BEARING as OTHER_BEARING,
     SIMULATED as SIMULATED,
 )
 from .validation import validate_corpus as validate_corpus

@@ -2,7 +2,7 @@
 
 from gen.corpus.schema import FORMAT, SCHEMA, SIGNAL, Variable, listed_flags
 from gen.corpus.signals import CLIPPED_SHARE
-from gen.corpus.simulated import LIFE, OTHER_BEARING, SIMULATED
+from gen.corpus.simulated import LIFE, SIMULATED
 
 _FORMAT = f"""# The corpus format, version {FORMAT}
 
@@ -89,13 +89,6 @@ text there:
 """
 
 
-_OTHER_BEARING = """
-Records of a recipe with `other_bearing` also have these. `fault` is that of the bearing at the sensor, `other_fault`
-that of the bearing at the other end of the shaft:
-
-"""
-
-
 _LIFE = """
 Records of a recipe with `life` are snapshots of lives, and also have these. `bearing` then names the single bearing, so
 that it groups the snapshots of a life; `specimen` does so too. A bearing is `censored` if its test ended before it
@@ -105,12 +98,12 @@ failed:
 
 
 def format_page(simulated: tuple[Variable, ...]) -> str:
-    """Markdown page about the format, with tables of the variables of all corpora, of simulated ones, of two bearings and of lives.
+    """Markdown page about the format, with tables of the variables of all corpora, of simulated ones and of lives.
 
     ``simulated`` are the labels of mechanisms, beside those of every simulated corpus.
     """
-    tables = _table(SCHEMA), _table(SIMULATED + simulated), _table(OTHER_BEARING), _table(LIFE)
-    texts = _FORMAT, _SIMULATED, _OTHER_BEARING, _LIFE
+    tables = _table(SCHEMA), _table(SIMULATED + simulated), _table(LIFE)
+    texts = _FORMAT, _SIMULATED, _LIFE
     return "".join(text + table for text, table in zip(texts, tables, strict=True))
 
 

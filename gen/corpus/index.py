@@ -38,7 +38,7 @@ from gen.corpus.schema import (
     records_in_memory,
     schema_problems,
 )
-from gen.corpus.simulated import OPTIONAL, SIMULATED
+from gen.corpus.simulated import LIFE, SIMULATED
 from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.support.errors import CorpusError
 
@@ -79,7 +79,7 @@ def open_corpus(path: Path | str | xr.Dataset, check: Check = "sha256") -> xr.Da
     path = Path(path)
     files = corpus_files(path, check)
     opened = open_part(path) if path.is_file() else _open_folder(path, files)
-    for problem in schema_problems(opened, SIMULATED + OPTIONAL):
+    for problem in schema_problems(opened, SIMULATED + LIFE):
         opened.close()
         raise CorpusError(f"{path}: {problem}")
     add_class_names(opened)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gen.corpus.fault_classes import FAULT_NAMES, UNKNOWN
+from gen.corpus.fault_classes import UNKNOWN
 from gen.corpus.schema import DRAWS, Variable, class_names
 
 # 20 log10 of the ratio of two rms; CF has no unit for levels
@@ -53,26 +53,6 @@ SIMULATED = (
 )  # fmt: skip
 
 
-OTHER_BEARING = (
-    Variable("other_bearing", "str", "1", "operating", "designation of the bearing at the other end of the shaft"),
-    Variable("other_ftf", "f8", "1", "operating", "its nominal fundamental train frequency in shaft orders"),
-    Variable("other_bpfo", "f8", "1", "operating", "its nominal ball pass frequency of the outer race in shaft orders"),
-    Variable("other_bpfi", "f8", "1", "operating", "its nominal ball pass frequency of the inner race in shaft orders"),
-    Variable("other_bsf", "f8", "1", "operating", "its nominal ball spin frequency in shaft orders"),
-    Variable("other_fault", "i1", "1", "label", "its fault class", FAULT_NAMES),
-    Variable("other_parts", "str", "1", "label", "its parts that are damaged, joined by +, empty if healthy"),
-    Variable("true_other_ftf", "f8", "1", "latent", "its mean fundamental train frequency in shaft orders, slip included"),
-    Variable("true_other_bpfo", "f8", "1", "latent", "its mean ball pass frequency of the outer race in shaft orders, slip included"),
-    Variable("true_other_bpfi", "f8", "1", "latent", "its mean ball pass frequency of the inner race in shaft orders, slip included"),
-    Variable("true_other_bsf", "f8", "1", "latent", "its mean ball spin frequency in shaft orders"),
-    Variable("other_width", "f8", "m", "label", "width of its widest spall, 0 if healthy"),
-    Variable("other_gain", "f8", "1", "latent", "factor of its vibration on the way to the sensors"),
-    Variable("other_fault_snr", "f8", "1", "latent", "what its fault adds over all else of the record in decibels re 1, NaN as fault_snr"),
-    Variable("other_detectable", "i1", "1", "latent", "whether its fault can be seen in the record", _SEEN),
-)  # fmt: skip
-"""Variables of corpora with a second bearing on the shaft."""
-
-
 LIFE = (
     Variable("age", "f8", "s", "operating", "time since the first turn of the bearing"),
     Variable("rul", "f8", "s", "label", "remaining life: time to the failure of the bearing, NaN if not known"),
@@ -86,7 +66,6 @@ LIFE = (
     Variable("overloaded", "i1", "1", "latent", "whether the load is above the validity of ISO 281", {0: "no", 1: "yes", 2: UNKNOWN}),
 )  # fmt: skip
 """Variables of corpora whose records are snapshots of lives."""
-OPTIONAL = OTHER_BEARING + LIFE
 
 
 def unknown_value(dtype: np.dtype[Any], attributes: Mapping[Any, Any]) -> Any:

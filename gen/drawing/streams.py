@@ -39,7 +39,6 @@ class Purpose(IntEnum):
     EDGES = 40
     AXIS = 41
     SLIP = 42
-    OTHER_BEARING = 50
     LIFE = 60
 
 

@@ -81,7 +81,6 @@ def needed_shapes(recipe: Recipe) -> list[Shape]:
         profiles = (record.speed_profile is None, record.load_profile is None)
         chosen.setdefault((scenario.specimen.number, scenario.specimen.fault, conditions, profiles), scenario)
     scenarios = list(chosen.values())
-    scenarios += [of_other for scenario in scenarios if (of_other := scenario.of_other) is not None]
     if recipe.truth.twins:
         scenarios = [one for scenario in scenarios for one in (scenario, scenario.without_fault())]
     # a record of which no machine is possible is left out when its part is made

@@ -7,15 +7,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import DRAWS, FAULTS, LIFE, OTHER_BEARING, SIMULATED, SPLITS, identity, make_dataset
-from gen.corpus.fault_classes import UNKNOWN_CODE
+from gen.corpus import DRAWS, FAULTS, LIFE, SIMULATED, SPLITS, identity, make_dataset
 from gen.measurement.measure import Measured
 from gen.mechanisms.background.section import labels_of
 from gen.mechanisms.labels import LABELS
-from gen.physics.bearing import FaultOrders, orders
+from gen.physics.bearing import orders
 from gen.scenarios import Scenario, common_settings, scenario_texts, simulation_errors
 from gen.simulation.simulate import Response
-from gen.simulation.truth import Truth
 
 
 @simulation_errors()
@@ -43,11 +41,6 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
         "step_error": np.full(len(rows), np.nan) if step_error is None else step_error,
         DRAWS: scenario_texts(scenarios),
     }
-    two_bearings = any(scenario.other is not None for scenario in scenarios)
-    if two_bearings:
-        others = [_of_other(*of_record) for of_record in zip(scenarios, response.other_truth, strict=True)]
-        columns |= {name: [other[name] for other in others] for name in others[0]}
-        columns |= {"other_fault_snr": measured.other_fault_snr, "other_detectable": measured.other_detectable}
     lives = [scenario.record.life for scenario in scenarios]
     if any(lives):
         columns |= {
@@ -60,7 +53,7 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
         settings.sample_rate,
         settings.channels,
         columns,
-        extra=SIMULATED + LABELS + (OTHER_BEARING if two_bearings else ()) + (LIFE if any(lives) else ()),
+        extra=SIMULATED + LABELS + (LIFE if any(lives) else ()),
         counts_per_unit=measured.counts_per_unit,
         attributes={
             "title": f"Records of recipe {settings.recipe}",
@@ -68,22 +61,6 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
             "source": "simulation: Hertz contact shaft-bearing model, classical Runge-Kutta",
         },
     )
-
-
-def _of_other(scenario: Scenario, truth: Truth | None) -> dict[str, Any]:
-    """Variables of the bearing at the other end of the shaft of one record, without values if there is none."""
-    other, unknown = scenario.other, dict.fromkeys(FaultOrders._fields, np.nan)
-    nominal = unknown if other is None else orders(other.bearing)._asdict()
-    mean = unknown if truth is None else truth.orders._asdict()
-    return {
-        "other_bearing": "" if other is None else other.bearing.designation,
-        **{f"other_{name}": order for name, order in nominal.items()},
-        **{f"true_other_{name}": order for name, order in mean.items()},
-        "other_fault": UNKNOWN_CODE if other is None else FAULTS.index(other.specimen.fault),
-        "other_parts": "" if other is None else "+".join(other.specimen.damaged_parts),
-        "other_width": np.nan if truth is None else truth.width,
-        "other_gain": np.nan if other is None else other.gain,
-    }
 
 
 def _drawn(scenario: Scenario) -> dict[str, Any]:

@@ -251,6 +251,5 @@ def _bytes_of_a_record(recipe: Recipe) -> int:
 def _light(made: MadeRecords) -> MadeRecords:
     """Records without their accelerations and inputs."""
     count = len(made.measured.scenarios)
-    none = [None] * count
-    response = replace(made.response, acceleration=np.empty((count, 0, 0), np.float32), inputs=none, others=none)
+    response = replace(made.response, acceleration=np.empty((count, 0, 0), np.float32), inputs=[None] * count)
     return MadeRecords(response, made.measured)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, first_records, settings_of
 from gen.simulation.batches import Integration, group_of
-from gen.simulation.simulate import Response, Run, motion_of
+from gen.simulation.simulate import Response, Run, acceleration_of
 from gen.simulation.timeline import timeline
 
 FloatArray = NDArray[np.float64]
@@ -22,18 +22,10 @@ def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -
     usable = {place: some for place, some in enumerate(response.inputs) if some and place not in response.failures}
     finer = {}
     for place in checked_places(scenarios, recipe, usable):
-        other, number = response.others[place], scenarios[place].record.number
-        group = group_of(usable[place], int(response.oversampling[place]))
-        own = _halved(Integration(number, usable[place], group))
-        if other is not None and other.own is not None:
-            other = other._replace(own=_halved(other.own), twin=None)
-        finer[place] = Run(response.motions[place], usable[place], "", own, None, other)
+        given, steps = usable[place], 2 * int(response.oversampling[place])
+        own = Integration(scenarios[place].record.number, given, group_of(given, steps))
+        finer[place] = Run(response.motions[place], given, "", own, None)
     return finer
-
-
-def _halved(one: Integration) -> Integration:
-    """The same integration at half the step."""
-    return Integration(one.number, one.given, one.group._replace(steps=2 * one.group.steps))
 
 
 def step_changes(finer: Mapping[int, Run], response: Response, recipe: Recipe) -> FloatArray:
@@ -41,7 +33,7 @@ def step_changes(finer: Mapping[int, Run], response: Response, recipe: Recipe) -
     errors, kept = np.full(len(response.oversampling), np.nan), timeline(settings_of(recipe)).kept
     tried = list(finer)
     if tried:
-        coarse, halved = response.acceleration[tried], np.stack([motion_of(one) for one in finer.values()])
+        coarse, halved = response.acceleration[tried], np.stack([acceleration_of(one.own) for one in finer.values()])
         pair = coarse[..., kept] - halved[..., kept], halved[..., kept]
         change, whole = (np.sum(some**2, axis=(1, 2), dtype=np.float64) for some in pair)
         errors[tried] = np.sqrt(change / whole)

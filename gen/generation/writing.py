@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gen.corpus import (
     DRAWS,
     IDENTITY,
-    OPTIONAL,
+    LIFE,
     RECIPE_TEXT,
     SCHEMA,
     SIGNAL,
@@ -136,9 +136,7 @@ def _stored(
 ) -> xr.Dataset:
     """The records in the layout of the corpus (undecoded)."""
     known = {
-        variable.name: variable
-        for variable in SCHEMA + SIMULATED + LABELS + OPTIONAL
-        if variable.name in rows.variables
+        variable.name: variable for variable in SCHEMA + SIMULATED + LABELS + LIFE if variable.name in rows.variables
     }
     derived = {SIGNAL, "channel", "elapsed_time", *(f"{name}_name" for name in NAMED)}
     further = {}
@@ -166,6 +164,6 @@ def _stored(
         attributes={"title": "Vibration records"}
         | {key: rows.attrs[key] for key in ("title", "history", "source") if key in rows.attrs},
     )
-    for problem in schema_problems(stored, SIMULATED + LABELS + OPTIONAL):
+    for problem in schema_problems(stored, SIMULATED + LABELS + LIFE):
         raise CorpusError(problem)
     return stored

@@ -67,12 +67,6 @@ class Measured:
     """The scenarios as measured: with the level that was taken if several were tried, and with the gains of records in groups."""
     chain_labels: list[dict[str, float]]
     """Of the faults of the measuring chain that are in each record, by name."""
-    gains: list[Gains]
-    """Of each record."""
-    other_fault_snr: FloatArray
-    """As ``fault_snr`` for the fault of the bearing at the other end of the shaft, at the gains of the record."""
-    other_detectable: NDArray[np.int8]
-    """As ``detectable`` for that fault."""
 
 
 def measure(
@@ -92,7 +86,7 @@ def measure(
     scenarios : list of Scenario
         The scenarios that were simulated, in the same order; of each group, the last one has the largest severity.
     twins : sequence of Twin, optional
-        The same records without one of their faults, which tell what the faults add.
+        The same records without their faults, which tell what the faults add.
     motions : sequence of Motion, optional
         Courses of their shafts; by default drawn again.
     other_levels : callable
@@ -109,24 +103,22 @@ def measure(
     )
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
     clipped, taken, labels = np.zeros(shape[0], np.int32), list(scenarios), [dict[str, float]()] * shape[0]
-    snr, fault_snr, fault_share, other_snr = np.full((4, shape[0]), np.nan)
-    detectable, gains = np.empty(shape[0], np.int8), [Gains(1.0, 1.0)] * shape[0]
-    other_detectable = np.array([_unjudged(scenario) for scenario in scenarios], np.int8)
+    snr, fault_snr, fault_share = np.full((3, shape[0]), np.nan)
+    detectable = np.empty(shape[0], np.int8)
     # rms of an error that is uniform within half a count
     rounding = 0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
     several = max(1, _ROWS // shape[1])
-    own, others = ({one.place: one for one in twins if one.of_other == of_other} for of_other in (False, True))
+    twin_of = {twin.place: twin for twin in twins}
     # Backwards: the last record of a group has the largest severity and sets the level of the group. One that diverged sets none.
     levels: dict[int, Levelled] = {}
     for first in reversed(range(0, shape[0], several)):
         some = slice(first, first + several)
         filters = [of_rig[scenario.rig.number] for scenario in scenarios[some]]
         angles = [angles_of(motion, axis) for motion in motions[some]]
-        cases = [(row, own.get(first + row)) for row in range(len(filters))]
-        cases += [(row, others[first + row]) for row, _ in cases if first + row in others]
-        parts = _parts(acceleration[some], scenarios[some], filters, angles, axis, cases)
-        judged = [*zip(parts, _judges(parts), strict=True)]
-        for row, ((part, products), judge) in reversed(list(enumerate(judged[: len(filters)], first))):
+        some_twins = [twin_of.get(row) for row in range(shape[0])[some]]
+        parts = _parts(acceleration[some], scenarios[some], filters, angles, axis, some_twins)
+        judged = zip(parts, _judges(parts), strict=True)
+        for row, ((part, products), judge) in reversed(list(enumerate(judged, first))):
             scenario = scenarios[row]
             pair = scenario.record.pair
             if pair in levels:
@@ -140,33 +132,11 @@ def measure(
             if counts_per_unit is not None:
                 clipped[row] = _to_counts(mixed, counts_per_unit)
             signal[row] = mixed
-            taken[row], detectable[row], gains[row] = level.scenario, level.detectable, level.gains
+            taken[row], detectable[row] = level.scenario, level.detectable
             fault_snr[row], fault_share[row] = level.fault_snr, level.fault_share
             if signal[row].any():
                 snr[row] = bearing_over_background(products, level.gains, rounding)
-        for (_, twin), ((_, products), judge) in zip(cases, judged, strict=True):
-            if twin is not None and twin.of_other:
-                seen = _visibility(products, judge, gains[twin.place], rounding)
-                other_snr[twin.place], _, other_detectable[twin.place] = seen
-    return Measured(
-        signal,
-        counts_per_unit,
-        clipped,
-        snr,
-        fault_snr,
-        fault_share,
-        detectable,
-        taken,
-        labels,
-        gains,
-        other_snr,
-        other_detectable,
-    )
-
-
-def _unjudged(scenario: Scenario) -> int:
-    """Visibility of the fault of the other bearing before it is judged: 0 if it has none."""
-    return 0 if scenario.other is not None and scenario.other.specimen.fault == "healthy" else UNJUDGED
+    return Measured(signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken, labels)
 
 
 def _is_finite(products: Products) -> bool:
@@ -197,14 +167,14 @@ def _parts(
     filters: Sequence[RigFilters],
     angles: Sequence[NDArray[np.float64]],
     axis: Timeline,
-    cases: Sequence[tuple[int, Twin | None]],
+    twins: Sequence[Twin | None],
 ) -> list[_Part]:
-    """The parts of some records; a case is a row and the record without one of its faults, None without a fault or if that is not known."""
-    faulty = [(row, twin) for row, twin in cases if twin is not None]
-    twins = (acceleration[row] if twin is None else twin.acceleration for row, twin in cases)
-    both = np.stack([*twins, *(acceleration[row] - twin.acceleration for row, twin in faulty)])
-    _through_paths(both, [filters[row] for row, _ in (*cases, *faulty)])
-    faults = iter(both[len(cases) :])
+    """The parts of some records and of the same ones without their faults, None without a fault or if that is not known."""
+    healthy = [whole if twin is None else twin.acceleration for whole, twin in zip(acceleration, twins, strict=True)]
+    faulty = [row for row, twin in enumerate(twins) if twin is not None]
+    both = np.stack([*healthy, *(acceleration[row] - healthy[row] for row in faulty)])
+    _through_paths(both, [*filters, *(filters[row] for row in faulty)])
+    faults = iter(both[len(twins) :])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
     background = noise_of(filters, acceleration.shape[1], rngs)
@@ -216,9 +186,8 @@ def _parts(
                 # impulses have the length of the Fourier transform
                 impulses[row] = impulses[row][:, : behind.shape[1]] + behind if impulses[row].size else behind
     parts = []
-    for (row, twin), healthy in zip(cases, both, strict=False):
-        # a copy, since a second fault is judged on the same noise
-        one = NO_SIGNAL if twin is None else next(faults), healthy, background[row].copy()
+    for row, twin in enumerate(twins):
+        one = NO_SIGNAL if twin is None else next(faults), both[row], background[row]
         products = Products(*mix(*one, impulses[row], angles[row], lines[row], axis.kept.start, axis.kept.stop))
         added, bearing, noise = (some[..., axis.kept] if some.size else some for some in one)
         steady, orders = scenarios[row].record.speed_profile is None, () if twin is None else twin.orders

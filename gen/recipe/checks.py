@@ -4,7 +4,7 @@ from gen.mechanisms.mechanism import mechanisms_of
 from gen.recipe.faults import fault_class
 from gen.recipe.lives import life_problem
 from gen.recipe.loads import load_problem
-from gen.recipe.machine import CatalogueBearing, designation_problem
+from gen.recipe.machine import CatalogueBearing
 from gen.recipe.operation import OperationSection, Steps, Table
 from gen.recipe.sections import Sections
 from gen.recipe.shares import operations, share_problem
@@ -20,7 +20,6 @@ def check_recipe(recipe: Sections) -> None:
     problem = (
         _faults_problem(recipe)
         or _corpus_problem(recipe)
-        or _other_bearing_problem(recipe)
         or _sensing_problem(recipe)
         or _sensor_faults_problem(recipe)
         or share_problem(recipe)
@@ -116,18 +115,6 @@ def _sensor_faults_problem(recipe: Sections) -> str | None:
         problem = fault.problem(full_scale, recipe.recording.duration_s)
         if problem is not None:
             return f"sensor_faults.{fault.place}.{problem}"
-    return None
-
-
-def _other_bearing_problem(recipe: Sections) -> str | None:
-    other = recipe.other_bearing
-    if other is None:
-        return None
-    problem = None if other.bearing is None else designation_problem(other.bearing, recipe.own_bearings)
-    if problem is not None:
-        return f"other_bearing.bearing: {problem}"
-    if other.fault_probability > 0 and not any(one.weight > 0 and one.kind != "healthy" for one in recipe.faults):
-        return "other_bearing.fault_probability: faults has no fault with a weight above 0; add one, or leave it out."
     return None
 
 

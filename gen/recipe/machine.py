@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AliasChoices, BeforeValidator, Field, StrictInt, field_validator, model_validator
 
-from gen.drawing import Distribution, Name, Number, Probability, Section, within
+from gen.drawing import Distribution, Name, Number, Section, within
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.physics.extent import MAX_BALLS
@@ -99,29 +99,17 @@ class CatalogueBearing(Section):
         for name in self.entries:
             if name in CATALOGUE:
                 raise ValueError(f"entries: {name} is in the catalogue already; give your own bearing another name.")
-        problem = next(filter(None, (designation_problem(name, self.entries) for name in self.designations)), None)
-        if problem is not None:
-            raise ValueError(f"designations: {problem}")
+        unknown = next((name for name in self.designations if name not in self.entries and name not in _KNOWN), None)
+        if unknown is not None:
+            near = difflib.get_close_matches(unknown, [*self.entries, *_KNOWN], 3)
+            guess = f"did you mean {' or '.join(near)}?" if near else "docs/catalogue.md lists them."
+            raise ValueError(f"designations: {unknown!r} is neither in the catalogue nor in entries; {guess}")
         return self
 
     def bearing(self, designation: str) -> Bearing:
         """Bearing of a designation, from the entries or from the catalogue."""
-        return named_bearing(designation, self.entries)
-
-
-def named_bearing(designation: str, entries: Mapping[str, OwnBearing]) -> Bearing:
-    """Bearing of a designation, from ``entries`` or from the catalogue."""
-    own = entries.get(designation)
-    return CATALOGUE[designation] if own is None else own.bearing(designation)
-
-
-def designation_problem(name: str, entries: Mapping[str, OwnBearing]) -> str | None:
-    """Error sentence if a bearing is neither in the catalogue nor in ``entries``, else None."""
-    if name in entries or name in _KNOWN:
-        return None
-    near = difflib.get_close_matches(name, [*entries, *_KNOWN], 3)
-    guess = f"did you mean {' or '.join(near)}?" if near else "docs/catalogue.md lists them."
-    return f"{name!r} is neither in the catalogue nor in entries; {guess}"
+        own = self.entries.get(designation)
+        return CATALOGUE[designation] if own is None else own.bearing(designation)
 
 
 class GeometryBearing(Section):
@@ -244,27 +232,6 @@ class MachineSection(Section):
     """Half the play of a loose housing: within it the support has no stiffness."""
     resonator: Resonator | None = Resonator()
     """Resonance between housing and sensor; `null` leaves it out."""
-
-
-class OtherBearingSection(Section):
-    """A second bearing on the shaft, at the other end, on a machine like that of the first."""
-
-    bearing: Name | None = None
-    """Designation of the bearing, in `docs/catalogue.md` or in `bearing.entries`; that of the rig if left out."""
-    load_percent: Distribution = within(1, 1000, default=100.0)
-    """Its radial and its axial load, in percent of those of the first bearing."""
-    attenuation_db: Distribution = within(0, 200)
-    """Attenuation of its vibration on the way to the sensors, at all frequencies alike."""
-    fault_probability: Probability = 0.0
-    """Share of the specimens beside which it has a fault: one of `faults` by weight, without its conditions and levels. Beside each class
-    of the first bearing its own classes have the same shares. The class of a record is that of the first bearing; `other_fault` names the
-    fault of this one."""
-
-    @field_validator("bearing", mode="before")
-    @classmethod
-    def _without_suffixes(cls, name: Any) -> Any:
-        name = str(name) if type(name) is int else name
-        return (known_designation(name) or name) if isinstance(name, str) else name
 
 
 class LubricantSection(Section):

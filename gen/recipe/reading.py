@@ -83,9 +83,8 @@ def recipe_hash(recipe: Recipe) -> str:
 def _values(recipe: Recipe, excluded: dict[str, bool]) -> dict[str, Any]:
     """Values of a recipe with the keys of the first corpora, so that hashes stay: younger ones are left out at their defaults."""
     values = recipe.model_dump(mode="json", exclude=excluded)
-    for young in ("other_bearing", "life"):
-        if values[young] is None:
-            del values[young]
+    if values["life"] is None:
+        del values["life"]
     values["contact"]["ball_mass"] = "none"
     for section, first in _FIRST_GUESTS.items():
         values[section] = {key: value for key, value in values[section].items() if value is not None or key in first}

@@ -3,7 +3,6 @@
 Keys end in their unit; most numbers can be distributions. Each section is drawn at one level: per rig, per specimen or per record.
 """
 
-from collections.abc import Mapping
 from itertools import pairwise
 from typing import Annotated, Literal, Self
 
@@ -20,11 +19,8 @@ from gen.recipe.faults import Fault
 from gen.recipe.life import LifeSection
 from gen.recipe.machine import (
     BearingSection,
-    CatalogueBearing,
     ContactSection,
     MachineSection,
-    OtherBearingSection,
-    OwnBearing,
     SpecimenSection,
 )
 from gen.recipe.operation import OperationSection
@@ -127,8 +123,6 @@ class Sections(Section):
     bearing: BearingSection
     """Type of the bearing of each rig: a designation such as "6205", a list of them, or dimensions such as
     `{n_balls: 22, pitch_diameter_mm: 60, ball_diameter_mm: 6}`; the sections below say more."""
-    other_bearing: OtherBearingSection | None = None
-    """A second bearing on the shaft, whose vibration the sensors get too; none if left out."""
     machine: MachineSection = MachineSection()
     """Masses, springs and dampers of each rig, and its faults other than those of the bearing."""
     machine_conditions: MachineConditions | None = None
@@ -162,11 +156,6 @@ class Sections(Section):
     records: Annotated[StrictInt, Field(ge=1)] | None = None
     """Number of records, if the corpus is to have fewer or more than rigs * specimens * records per specimen: the first ones, or those of
     further rigs. No record depends on it, so that a corpus can grow."""
-
-    @property
-    def own_bearings(self) -> Mapping[str, OwnBearing]:
-        """Bearings that have a designation in this recipe alone."""
-        return self.bearing.entries if isinstance(self.bearing, CatalogueBearing) else {}
 
     @property
     def n_samples(self) -> int:

@@ -5,7 +5,7 @@ module        responsibility
 ============= =================================================================
 model         dataclasses of rig, specimen and record; random streams
 points        quasi-random points
-bearings      draw the bearing of a rig, its deviations as built, and the bearing at the other end of the shaft
+bearings      draw the bearing of a rig, and its deviations as built
 classes       choose the fault class of each specimen
 operating     operating conditions: per rig, specimen or record, shares, changes
 lives         lives of the bearings, and records as snapshots of them
@@ -23,7 +23,6 @@ from gen.scenarios.draw import draw_scenarios
 from gen.scenarios.model import (
     Gains,
     Operation,
-    OtherBearing,
     Pickup,
     Purpose,
     Rig,
@@ -40,7 +39,6 @@ from gen.scenarios.stored import read_scenario, read_scenarios, scenario_texts
 __all__ = [
     "Gains",
     "Operation",
-    "OtherBearing",
     "Pickup",
     "Purpose",
     "Rig",

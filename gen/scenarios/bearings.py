@@ -1,21 +1,15 @@
-"""Draw bearings: that of a rig, its deviations as built, and the one at the other end of the shaft.
-
-The other bearing has random streams of its own, so that it moves no other drawn value and does not depend on the class of a record.
-"""
+"""Draw bearings: that of a rig, and its deviations as built."""
 
 import functools
 import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from gen.drawing import Drawn, Draws, Known, known_of, weighted_index
-from gen.mechanisms.faults.bearing_fault import draw_damage
+from gen.drawing import Drawn, Draws, Known, known_of
 from gen.physics.bearing import Bearing, free_contact_angle
-from gen.recipe import FREE_ANGLE, CatalogueBearing, Recipe, fault_class
-from gen.recipe.machine import named_bearing
-from gen.scenarios.model import OTHER_STREAMS, OtherBearing, Purpose, Rig, Specimen, stream
+from gen.recipe import FREE_ANGLE, CatalogueBearing, Recipe
+from gen.scenarios.model import Rig
 from gen.support.errors import RecipeError
-from gen.support.units import decibel_to_ratio
 
 STEEPEST_CONTACT = math.radians(45)
 
@@ -69,38 +63,6 @@ def _free_angle(bearing: Bearing, value: Callable[[str], float]) -> float:
     inner, outer = value("inner_conformity"), value("outer_conformity")
     grooved = replace(bearing, inner_conformity=inner, outer_conformity=outer)
     return free_contact_angle(grooved, value("diametral_clearance_um"))
-
-
-def draw_other_bearing(recipe: Recipe, rig: Rig, specimen: Specimen, fault: str) -> OtherBearing | None:
-    """The bearing at the other end of the shaft, with its fault class, during the records of a specimen; None if the recipe has none.
-
-    Raises
-    ------
-    RecipeError
-        If its contact angle is too large, or a drawn spall does not fit it.
-    """
-    wanted = recipe.other_bearing
-    if wanted is None:
-        return None
-
-    def draws(of: int, purpose: Purpose) -> Draws:
-        rng = stream(recipe.seed, rig.number, of, 0, purpose)
-        return Draws(rng, rig.number, f"other bearing of specimen {specimen.number}")
-
-    own = OTHER_STREAMS + specimen.number
-    mount = draws(0, Purpose.OTHER_BEARING).section(wanted)
-    drawing = rig.bearing if wanted.bearing is None else named_bearing(wanted.bearing, recipe.own_bearings)
-    known = known_of_rig(recipe, replace(rig, bearing=drawing))
-    bearing, properties = draw_as_built(recipe, drawing, known, draws(own, Purpose.SPECIMEN))
-    other = Specimen(specimen.number, bearing, properties, "healthy", (), {}, specimen.split)
-    if fault != "healthy":
-        of_fault = draws(own, Purpose.FAULT)
-        faults = [place for place, entry in enumerate(recipe.faults) if fault_class(entry) == fault]
-        entry = faults[weighted_index(tuple(recipe.faults[place].weight for place in faults), of_fault.u())]
-        known = {**known, **known_of(recipe.specimen, properties)}
-        spalls, damage = draw_damage(recipe.faults[entry].components, of_fault, bearing, known)
-        other = replace(other, fault=fault, entry=entry, spalls=spalls, damage=damage)
-    return OtherBearing(drawing, other, mount["load"], decibel_to_ratio(-mount["attenuation"]))
 
 
 def known_of_rig(recipe: Recipe, rig: Rig) -> dict[str, float]:

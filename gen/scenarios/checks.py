@@ -41,8 +41,6 @@ def check_scenario(scenario: Scenario) -> None:
             f"sensor_faults: {strange[:60]!r} is not as a recipe draws it; keep what was drawn, or leave it out."
         )
     _check_damage(rig.bearing, scenario.specimen)
-    if scenario.other is not None:
-        _check_damage(scenario.other.bearing, scenario.other.specimen)
 
 
 def _check_damage(drawing: Bearing, specimen: Specimen) -> None:

@@ -1,10 +1,9 @@
-"""Choose the fault class of every specimen of a rig, and that of the bearing at the other end of its shaft.
+"""Choose the fault class of every specimen of a rig.
 
 The number of healthy specimens of a rig is its expected number, rounded down or up; which of the two, a sequence of offsets over the rigs
 decides. A second sequence shares the faulty specimens out among the faults. Both are additive sequences (irrational step, random start):
 each offset is uniformly distributed over the seeds, so the expected number of each class is its share, and the offsets of successive rigs
-are evenly spread, so the shares are met within a few specimens from the first rigs on [1]_. In the same way the specimens of each class
-are shared out among the classes of the other bearing, so that the two are independent.
+are evenly spread, so the shares are met within a few specimens from the first rigs on [1]_.
 
 .. [1] L. Kuipers, H. Niederreiter, *Uniform Distribution of Sequences*, Wiley, 1974.
 """
@@ -19,7 +18,7 @@ from gen.recipe import Recipe, fault_class
 from gen.scenarios.model import Purpose, stream
 
 # Irrational steps without a common small multiple, and without one with that of the split (the golden ratio).
-_HEALTHY_STEP, _FAULTY_STEP, _OTHER_STEP = math.sqrt(2), 2 ** (1 / 3), math.sqrt(3)
+_HEALTHY_STEP, _FAULTY_STEP = math.sqrt(2), 2 ** (1 / 3)
 _ROUNDING = 1e-9
 
 
@@ -55,34 +54,6 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     faulty = _share_out(shares, count - n_healthy, offsets[1])
     chosen = [*["healthy"] * n_healthy, *faulty]
     return [chosen[i] for i in stream(recipe.seed, rig, 0, 0, Purpose.CLASSES).permutation(count)]
-
-
-def other_fault_of_each_specimen(recipe: Recipe, rig: int, classes: list[str]) -> list[str]:
-    """Fault class of the other bearing beside each specimen of a rig with the given ``classes``; all healthy without one.
-
-    The specimens of each class have every class of the other bearing in proportion to the product of the two shares, over all rigs
-    within a few specimens.
-    """
-    shares, others = _shares_of_other(recipe), ["healthy"] * len(classes)
-    starts = stream(recipe.seed, 0, 0, 2, Purpose.CLASSES).random(len(FAULTS))
-    rng = stream(recipe.seed, rig, 0, 3, Purpose.CLASSES)
-    for kind, start in zip(FAULTS, starts, strict=True):
-        places = rng.permutation([place for place, own in enumerate(classes) if own == kind]).astype(int)
-        shared = _share_out(shares, len(places), (float(start) + rig * _OTHER_STEP) % 1)
-        for place, other in zip(places, shared, strict=True):
-            others[place] = other
-    return others
-
-
-def _shares_of_other(recipe: Recipe) -> dict[str, float]:
-    """Share of each fault class of the other bearing; all healthy without one."""
-    probability = 0.0 if recipe.other_bearing is None else recipe.other_bearing.fault_probability
-    weights: dict[str, float] = {}
-    for entry in recipe.faults if probability else ():
-        if entry.weight > 0 and fault_class(entry) != "healthy":
-            weights[fault_class(entry)] = weights.get(fault_class(entry), 0.0) + entry.weight
-    faulty = {kind: probability * weight / sum(weights.values()) for kind, weight in weights.items()}
-    return {"healthy": 1 - probability} | faulty
 
 
 def possible_entries(recipe: Recipe, specimen: int, fault: str) -> list[int]:

@@ -18,8 +18,8 @@ from gen.mechanisms.background.section import draw_background, draw_later, draw_
 from gen.mechanisms.chain.measuring_chain import draw_for_rig
 from gen.mechanisms.faults.bearing_fault import draw_damage
 from gen.recipe import Fault, Recipe, operations
-from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_bearing, known_of_rig
-from gen.scenarios.classes import fault_of_each_specimen, other_fault_of_each_specimen, possible_entries
+from gen.scenarios.bearings import draw_as_built, draw_bearing, known_of_rig
+from gen.scenarios.classes import fault_of_each_specimen, possible_entries
 from gen.scenarios.model import Pickup, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Operating, operating_of
 from gen.scenarios.points import points_of
@@ -56,19 +56,17 @@ def draw_scenarios(
     rigs = {number: _draw_rig(recipe, number, draws) for number, draws in rig_draws.items()}
     known = {number: known_of_rig(recipe, rig) for number, rig in rigs.items()}
     classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
-    others = {number: other_fault_of_each_specimen(recipe, number, of_rig) for number, of_rig in classes.items()}
     sources: dict[int, SpecimenSource] = {}
     operating: dict[int, Operating] = {}
     for number, point in points_of(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items():
         rig = recipe.rig_of(number)
         draws = Draws(stream(recipe.seed, rig, number, 0, Purpose.SPECIMEN), number, f"specimen {number}", point)
-        fault_try, other_fault = tries.get(number, 0), others[rig][number % recipe.corpus.specimens_per_rig]
-        specimen = _draw_specimen(recipe, rigs[rig], known[rig], number, draws, classes[rig], fault_try)
+        specimen = _draw_specimen(recipe, rigs[rig], known[rig], number, draws, classes[rig], tries.get(number, 0))
         if specimen.entry not in operating:
             operating[specimen.entry] = operating_of(recipe, specimen.entry)
         sources[number] = source_of(
             recipe, rigs[rig], known[rig], specimen, operating[specimen.entry], rig_draws[rig], draws
-        )._replace(other=draw_other_bearing(recipe, rigs[rig], specimen, other_fault))
+        )
     return list(draw_records(recipe, sources, numbers))
 
 

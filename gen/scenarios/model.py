@@ -20,8 +20,6 @@ from gen.support.shown import Shown
 
 Number = Annotated[int, Field(ge=0, lt=2**31)]
 """Number of a rig, specimen or record."""
-OTHER_STREAMS = 2**31
-"""Added to the number of a specimen in the random streams of the bearing at the other end of its shaft."""
 _SIZES = {label.name for label in LABELS}
 
 
@@ -130,20 +128,6 @@ class Specimen:
 
 
 @dataclass(frozen=True)
-class OtherBearing:
-    """The bearing at the other end of the shaft."""
-
-    bearing: Bearing
-    """As on its drawing."""
-    specimen: Specimen
-    """With the number of the specimen at this end."""
-    load_share: float
-    """Its loads over those of the bearing at this end [1]."""
-    gain: float
-    """Factor of its acceleration on the way to the sensors [1]."""
-
-
-@dataclass(frozen=True)
 class Gains:
     """Factors of bearing and background [1]."""
 
@@ -237,7 +221,6 @@ class Scenario(Shown):
     rig: Rig
     specimen: Specimen
     record: Operation
-    other: OtherBearing | None = None
 
     def _heading(self) -> str:
         numbers = f"rig {self.rig.number}, specimen {self.specimen.number}, record {self.record.number}"
@@ -253,7 +236,6 @@ class Scenario(Shown):
             "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of "
             f"{1e3 * bearing.ball_diameter:.4g} mm on {1e3 * bearing.pitch_diameter:.4g} mm",
             "damage": ", ".join(spalls or self.specimen.damaged_parts) or "none",
-            "other bearing": f"{self.other.bearing.designation}: {self.other.specimen.fault}" if self.other else "",
             "speed": f"{60 * conditions.shaft_rate:,.4g} rpm",
             "load": f"{conditions.load:,.4g} N",
             "record": f"{self.settings.samples / self.settings.sample_rate:g} s at {self.settings.sample_rate:,g} Hz",
@@ -263,17 +245,6 @@ class Scenario(Shown):
     def rng(self, purpose: Purpose) -> np.random.Generator:
         """Random stream of this record for one purpose."""
         return stream(self.settings.seed, self.rig.number, self.specimen.number, self.record.stream_number, purpose)
-
-    @property
-    def of_other(self) -> "Scenario | None":
-        """The same record of the bearing at the other end of the shaft alone, with random streams of its own; None without one."""
-        if self.other is None:
-            return None
-        rig, conditions = replace(self.rig, bearing=self.other.bearing), self.record.conditions
-        specimen = replace(self.other.specimen, number=OTHER_STREAMS + self.specimen.number)
-        share = self.other.load_share
-        loads = replace(conditions, load=share * conditions.load, axial_load=share * conditions.axial_load)
-        return Scenario(self.settings, rig, specimen, replace(self.record, conditions=loads, narrowest_spall=None))
 
     def without_fault(self) -> "Scenario":
         """The same record of the same specimen before it was damaged."""

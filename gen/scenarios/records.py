@@ -16,7 +16,7 @@ from gen.physics.profile import Profile
 from gen.physics.rating import static_rating
 from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, Recipe, fault_class
 from gen.scenarios.lives import SpecimenLife, at_snapshot, draw_life
-from gen.scenarios.model import Operation, OtherBearing, Purpose, Rig, Scenario, Specimen, stream
+from gen.scenarios.model import Operation, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import CommonNumbers, Level, Operating, common_numbers, draw_conditions
 from gen.scenarios.points import points_of
 from gen.scenarios.settings import settings_of
@@ -34,8 +34,6 @@ class SpecimenSource(NamedTuple):
     """Numbers of rig and specimen, for the levels at which some operating quantity is drawn."""
     known: Known
     """Quantities of rig and specimen."""
-    other: OtherBearing | None = None
-    """At the other end of the shaft."""
     life: SpecimenLife | None = None
     """None in recipes without a life."""
 
@@ -145,7 +143,7 @@ def draw_record(
         rung=rung,
         narrowest_spall=None if rung < 0 else narrowest,
     )
-    return Scenario(settings_of(recipe), source.rig, specimen, operation, source.other)
+    return Scenario(settings_of(recipe), source.rig, specimen, operation)
 
 
 def _draw_level(draws: Draws, recipe: Recipe, entry: Fault, rig: int) -> tuple[float | None, float | None]:

@@ -24,12 +24,11 @@ _ADVICE = "read the corpus with the version that wrote it."
 def scenario_texts(scenarios: Sequence[Scenario]) -> list[str]:
     """One JSON object for each scenario, with its settings, rig, specimen and record; :func:`read_scenario` reads it."""
     # many records share settings, rig or specimen, so each of these is encoded once
-    shared = {id(item): item for one in scenarios for item in (one.settings, one.rig, one.specimen, one.other)}
+    shared = {id(item): item for one in scenarios for item in (one.settings, one.rig, one.specimen)}
     texts = {number: json.dumps(item, default=vars) for number, item in shared.items()}
     return [
         f'{{"settings": {texts[id(one.settings)]}, "rig": {texts[id(one.rig)]}, "specimen": {texts[id(one.specimen)]}, '
-        f'"record": {json.dumps(one.record, default=_fields)}'
-        + ("}" if one.other is None else f', "other": {texts[id(one.other)]}}}')
+        f'"record": {json.dumps(one.record, default=_fields)}}}'
         for one in scenarios
     ]
 

@@ -33,7 +33,7 @@ def kernel_inputs(motions: Sequence[Motion], timeline: Timeline) -> tuple[list[K
             inputs[place] = given._replace(
                 spalls=spall_inputs(scenario, heaviest_ball_load(scenario)),
                 waviness=waviness_of(scenario, timeline.fs),
-                schedule=schedule_of(motion.shaft, timeline),
+                schedule=schedule_of(scenario, timeline),
             )
         except ValueError as error:
             inputs[place], failures[place] = None, _name(scenario, error)

@@ -36,8 +36,6 @@ class Motion(NamedTuple):
     """Course of shaft, cage and balls of one record, which tells kernel input, angles of the shaft and mean orders."""
 
     scenario: Scenario
-    shaft: Scenario
-    """Scenario whose speed and load vary over time as those of this record: that of the first bearing on the shaft."""
     turning: Turning
     frequencies: FloatArray
     """Of the cosine terms of all processes, shape (term,) [Hz]."""
@@ -49,18 +47,7 @@ def draw_motion(scenario: Scenario) -> Motion:
     """Draw the motion of a record from its own random stream."""
     rng = scenario.rng(Purpose.MOTION)
     turning = turning_of(scenario, *(2 * np.pi * rng.random(3)).tolist())
-    return Motion(scenario, scenario, turning, *_processes(scenario.specimen.bearing, turning.shaft_rate, rng))
-
-
-def on_shaft(own: Motion, first: Motion) -> Motion:
-    """Motion of the bearing at the other end of the shaft, which turns, and is loaded over time, as the ``first`` one."""
-    rest = slice(SPEED_TERMS, None)
-    return own._replace(
-        shaft=first.scenario,
-        turning=own.turning._replace(shaft_angle=first.turning.shaft_angle),
-        frequencies=np.concatenate([first.frequencies[:SPEED_TERMS], own.frequencies[rest]]),
-        phases=np.concatenate([first.phases[:SPEED_TERMS], own.phases[rest]]),
-    )
+    return Motion(scenario, turning, *_processes(scenario.specimen.bearing, turning.shaft_rate, rng))
 
 
 def turning_of(scenario: Scenario, shaft_angle: float, cage_angle: float, spin_angle: float) -> Turning:

@@ -1,7 +1,7 @@
 """Scenarios integrated: accelerations of the bodies, and what is true of each record."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -14,25 +14,23 @@ from gen.physics.kernel.layout import Batch
 from gen.scenarios import Scenario, common_settings
 from gen.simulation.batches import Group, Integration, batches, group_of, integrate_all
 from gen.simulation.inputs import kernel_inputs, without_fault
-from gen.simulation.motion import Motion, draw_motion, on_shaft
+from gen.simulation.motion import Motion, draw_motion
 from gen.simulation.steps import failure, step_phase, steps_per_sample
-from gen.simulation.timeline import Timeline, timeline
+from gen.simulation.timeline import timeline
 from gen.simulation.truth import Truth, lines_of_faults, truth_of, with_loaded_hits
 
 FloatArray = NDArray[np.float64]
 
 
 class Twin(NamedTuple):
-    """A record without one of its faults."""
+    """A record without its fault."""
 
     place: int
     """Of the record."""
-    of_other: bool
-    """True without the fault of the bearing at the other end of the shaft, False without that of the bearing at this end."""
     acceleration: NDArray[np.float32]
     """Shape (channel, time) [m s-2]."""
     orders: tuple[float, ...]
-    """Orders at which that fault repeats [1]."""
+    """Orders at which the fault repeats [1]."""
 
 
 @dataclass(frozen=True)
@@ -53,11 +51,7 @@ class Response:
     """Course of shaft, cage and balls of each record."""
     truth: list[Truth]
     twins: list[Twin]
-    """Of the records that were made, one for each fault; empty with ``truth.twins: false``."""
-    others: "list[Run | None]"
-    """Bearings at the other ends of the shafts, None for a record without one."""
-    other_truth: list[Truth | None]
-    """Their truth."""
+    """Of the records with a fault that were made; empty with ``truth.twins: false``."""
 
 
 class Run(NamedTuple):
@@ -72,8 +66,6 @@ class Run(NamedTuple):
     """None if no such machine is possible."""
     twin: Integration | None
     """Without the fault; None for a record without a fault, and with ``truth.twins: false``."""
-    other: "Run | None" = None
-    """The bearing at the other end of the shaft, if there is one."""
 
     @property
     def scenario(self) -> Scenario:
@@ -82,9 +74,8 @@ class Run(NamedTuple):
 
     @property
     def integrations(self) -> list[Integration]:
-        """All of them, also those of the other bearing."""
-        own = [one for one in (self.own, self.twin) if one is not None]
-        return own if self.other is None else own + self.other.integrations
+        """Of the record and of its twin, as far as there are any."""
+        return [one for one in (self.own, self.twin) if one is not None]
 
     @property
     def healthy(self) -> Integration | None:
@@ -118,35 +109,15 @@ def simulate(scenarios: list[Scenario]) -> Response:
 def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] | None = None) -> list[Run]:
     """Integrations that scenarios need; ``known`` are integrated runs, by number, of the same records with another fault.
 
-    Records of a group differ in their severity alone, so they share one twin: the record before the damage, if it is among them. They
-    share the bearing at the other end of the shaft too.
+    Records of a group differ in their severity alone, so they share one twin: the record before the damage, if it is among them.
 
     Raises
     ------
     SimulationError
         If a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
     """
-    known, axis = known or {}, timeline(common_settings(scenarios))
-    healthy = {number: run.healthy for number, run in known.items()}
-    runs = _runs_of_bearings([draw_motion(scenario) for scenario in scenarios], axis, healthy)
-    others = {_group_of(run.scenario): run.other for run in known.values()}
-    firsts = {_group_of(run.scenario): run for run in reversed(runs) if run.given is not None}
-    new = {
-        group: on_shaft(draw_motion(of_other), run.motion)
-        for group, run in firsts.items()
-        if group not in others and (of_other := run.scenario.of_other) is not None
-    }
-    others |= dict(zip(new, _runs_of_bearings([*new.values()], axis, {}), strict=True))
-    return [run._replace(other=others.get(_group_of(run.scenario))) for run in runs]
-
-
-def _group_of(scenario: Scenario) -> int:
-    """Number that the records of a group have in common, negative for a record in no group."""
-    return scenario.record.pair if scenario.record.pair >= 0 else -1 - scenario.record.number
-
-
-def _runs_of_bearings(motions: Sequence[Motion], axis: Timeline, known: Mapping[int, Integration | None]) -> list[Run]:
-    """Integrations of one bearing each; ``known`` are records without their faults that were integrated before, by number."""
+    axis, motions = timeline(common_settings(scenarios)), [draw_motion(scenario) for scenario in scenarios]
+    integrated = {number: run.healthy for number, run in (known or {}).items()}
     runs: list[Run] = []
     of_group: dict[tuple[int, int], Integration | None] = {}
     inputs, failures = kernel_inputs(motions, axis)
@@ -157,7 +128,7 @@ def _runs_of_bearings(motions: Sequence[Motion], axis: Timeline, known: Mapping[
             continue
         steps = steps_per_sample(given, scenario.record, scenario.settings)
         own, twin = Integration(number, given, group_of(given, steps)), None
-        before = known.get(number)
+        before = integrated.get(number)
         if before is not None and before.group.steps != steps:
             before = None
         if _has_twin(scenario):
@@ -182,65 +153,53 @@ def open_integrations(runs: Iterable[Run]) -> list[Integration]:
 def response_of(runs: Sequence[Run]) -> Response:
     """Response and truth of scenarios that have been integrated."""
     settings = common_settings([run.scenario for run in runs])
-    axis, full = timeline(settings), settings.twins
+    axis = timeline(settings)
     acceleration = np.empty((len(runs), len(settings.channels), axis.returned), np.float32)
     oversampling, phases, failures = np.zeros(len(runs), np.int64), np.full(len(runs), np.nan), {}
     for place, run in enumerate(runs):
         oversampling[place], phases[place], sentence = _step_of(run, axis.fs)
-        if run.other is not None:
-            sentence = sentence or _step_of(run.other, axis.fs)[2]
         if sentence:
             failures[place] = sentence
-        acceleration[place] = np.nan if sentence else motion_of(run)
-    inputs, others = [run.given for run in runs], [run.other for run in runs]
-    truth = [truth_of(run.motion, axis, run.given) for run in runs]
-    other_truth = [None if run is None else truth_of(run.motion, axis, run.given) for run in others]
-    if full:
+        acceleration[place] = np.nan if sentence else acceleration_of(run.own)
+    motions, inputs = [run.motion for run in runs], [run.given for run in runs]
+    truth = [truth_of(motion, axis, given) for motion, given in zip(motions, inputs, strict=True)]
+    if settings.twins:
         truth = with_loaded_hits(truth, inputs, axis)
-    of_runs = enumerate(zip(runs, truth, other_truth, strict=True))
-    twins = [twin for place, of_run in of_runs if place not in failures for twin in _twins(place, *of_run)]
-    motions = [run.motion for run in runs]
-    return Response(acceleration, oversampling, phases, failures, inputs, motions, truth, twins, others, other_truth)
+    twins = [
+        Twin(place, acceleration_of(run.twin), lines_of_faults(run.scenario, truth[place].orders))
+        for place, run in enumerate(runs)
+        if place not in failures and run.twin is not None
+    ]
+    return Response(acceleration, oversampling, phases, failures, inputs, motions, truth, twins)
 
 
 def _step_of(run: Run, fs: float) -> tuple[int, float, str | None]:
-    """Steps per sample and step phase [rad] of one bearing, and a sentence if it cannot be used."""
+    """Steps per sample and step phase [rad] of a record, and a sentence if it cannot be used."""
     if run.own is None or run.given is None:
         return 0, math.nan, run.impossible
     steps = run.own.group.steps
     phase = step_phase(run.given, run.own.steepest, steps, fs)
     # with its twin: if that diverged, what the fault adds is not known
-    diverged = max(one.diverged for one in (run.own, run.twin) if one is not None) / fs
+    diverged = max(one.diverged for one in run.integrations) / fs
     return steps, phase, failure(run.scenario.record.number, steps, diverged, phase)
 
 
-def _twins(place: int, run: Run, truth: Truth, other_truth: Truth | None) -> Iterator[Twin]:
-    if run.twin is not None:
-        healthy = motion_of(run._replace(own=run.twin))
-        yield Twin(place, False, healthy, lines_of_faults(run.scenario, truth.orders))
-    other = run.other
-    if other is not None and other.twin is not None and other_truth is not None:
-        healthy = motion_of(run._replace(other=other._replace(own=other.twin)))
-        yield Twin(place, True, healthy, lines_of_faults(other.scenario, other_truth.orders))
-
-
-def motion_of(run: Run) -> NDArray[np.float32]:
-    """Response of a record that has been integrated, with that of its other bearing, shape (channel, time) [m s-2]."""
-    assert run.own is not None and run.own.response is not None  # noqa: S101, PT018
-    if run.other is None or run.scenario.other is None:
-        return run.own.response
-    return np.add(run.own.response, np.float32(run.scenario.other.gain) * motion_of(run.other), dtype=np.float32)
+def acceleration_of(integration: Integration | None) -> NDArray[np.float32]:
+    """Result of an integration that has been done, shape (channel, time) [m s-2]."""
+    assert integration is not None and integration.response is not None  # noqa: S101, PT018
+    return integration.response
 
 
 def integrations(scenarios: Sequence[Scenario]) -> int:
-    """Number of integrations that records need: one each, one without the fault of a record or of all in its group, and those of others.
-
-    The bearing at the other end of the shaft needs one, and one without its fault, for each record or group.
-    """
+    """Number of integrations that records need: one each, and one without the fault of a record or of all in its group."""
     damaged = {_group_of(scenario) for scenario in scenarios if _has_twin(scenario)}
     before = {_group_of(scenario) for scenario in scenarios if scenario.specimen.fault == "healthy"}
-    others = [one for one in {_group_of(scenario): scenario.of_other for scenario in scenarios}.values() if one]
-    return len(scenarios) + len(damaged - before) + (integrations(others) if others else 0)
+    return len(scenarios) + len(damaged - before)
+
+
+def _group_of(scenario: Scenario) -> int:
+    """Number that the records of a group have in common, negative for a record in no group."""
+    return scenario.record.pair if scenario.record.pair >= 0 else -1 - scenario.record.number
 
 
 def _has_twin(scenario: Scenario) -> bool:

@@ -2,9 +2,11 @@
 
 import re
 
+import numpy as np
 import pytest
 
 import gen
+from features.signal import band_envelope_spectrum
 from gen.recipe import recipe_hash
 from tests.page_examples import blocks, run_blocks
 from tests.paths import ROOT
@@ -20,6 +22,7 @@ SMALLER = {
     "duration_s=1": "duration_s=0.1",
     "duration_s: 1": "duration_s: 0.1",
     "n=4,": "n=1,",
+    '"6308"': '{"n_balls": 9, "pitch_diameter_mm": 60, "ball_diameter_mm": 9}',
     r"(fresh|loader), 20": r"\1, 2",
     "num_workers=2": "num_workers=1",  # PyTorch warns of more workers than cores
     r"gen\.record\(\n": "gen.record(\n    waviness_nm=20,",
@@ -78,6 +81,19 @@ def test_the_corpora_of_the_page_are_valid_and_replay(results):
         assert gen.validate_corpus(folder / corpus) == []
         assert gen.replay(folder / corpus, 0).identical
     assert names["again"].identical
+
+
+def test_the_fault_of_the_far_bearing_of_the_page_has_its_line_beside_the_near_one(results):
+    near, far, both = (results[1][name] for name in ("near", "far", "both"))
+    assert near.true_shaft_rate == far.true_shaft_rate
+
+    def line(record):
+        frequencies, (spectrum,) = band_envelope_spectrum(record.acceleration.values, 25600.0, (2000, 4000))
+        away = np.abs(frequencies - float(far.true_bpfo * far.true_shaft_rate))
+        return spectrum[away <= 1].max() / np.median(spectrum[away <= 25])
+
+    assert line(near) < 10
+    assert line(both) > 30
 
 
 def test_the_diagnosis_of_the_page_has_an_answer_and_levels(results):

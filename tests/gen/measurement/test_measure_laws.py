@@ -66,7 +66,7 @@ def test_wear_is_seen_if_it_raises_the_rms_by_a_quarter(recipe_with, rise, seen)
     measured = measure(
         np.float32(rise * twin),
         draw_scenarios(recipe, 0, 2),
-        [Twin(place, False, one, ()) for place, one in enumerate(np.float32(twin))],
+        [Twin(place, one, ()) for place, one in enumerate(np.float32(twin))],
     )
     assert measured.detectable.tolist() == [seen, seen]
     np.testing.assert_allclose(measured.fault_snr, 20 * np.log10(rise - 1), atol=1e-3)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_records, first_specimens
-from gen.scenarios.classes import class_shares, other_fault_of_each_specimen
+from gen.scenarios.classes import class_shares
 
 CLASSES = ("healthy", "inner", "outer", "ball")
 seeds = st.integers(0, 2**31)
@@ -61,45 +61,6 @@ def test_over_the_seeds_the_classes_of_a_rig_have_the_shares_of_their_weights(re
     recipes = (recipe.model_copy(update={"seed": seed}) for seed in range(seeds_tried))
     counts = sum(counted(recipe, 1)[0] for recipe in recipes)
     np.testing.assert_allclose(counts / seeds_tried, specimens * np.array(weights) / 4, atol=0.04)  # 4 sigma
-
-
-def pairs_over_rigs(recipe, rigs):
-    """Specimens of each class beside each class of the other bearing, on all rigs up to each, shape (rig, class, other class)."""
-    pairs = np.zeros((rigs, 4, 4))
-    for rig in range(rigs):
-        own = fault_of_each_specimen(recipe, rig)
-        for kinds in zip(own, other_fault_of_each_specimen(recipe, rig, own), strict=True):
-            pairs[rig, CLASSES.index(kinds[0]), CLASSES.index(kinds[1])] += 1
-    return np.cumsum(pairs, axis=0)
-
-
-def shares_of_other(probability, weights):
-    return np.array([1 - probability, *(probability * np.array(weights[1:]) / sum(weights[1:]))])
-
-
-def with_other(probability, weights, **changes):
-    other = {"attenuation_db": 10, "fault_probability": probability}
-    return {"other_bearing": other, "faults": faults(weights), **changes}
-
-
-@given(seeds, st.integers(1, 9), weights_of_all, st.floats(0.01, 0.99))
-def test_the_classes_of_two_bearings_are_independent_whatever_their_weights(
-    recipe_with, seed, specimens, weights, probability
-):
-    changes = with_other(probability, weights, seed=seed) | {"corpus.specimens_per_rig": specimens}
-    pairs = pairs_over_rigs(recipe_with(changes), 100)
-    product = pairs.sum(axis=2, keepdims=True) * shares_of_other(probability, weights)
-    assert np.abs(pairs - product).max() < 20  # of up to 900 specimens
-
-
-@given(seeds, st.integers(1, 3), st.floats(0.01, 0.99))
-def test_pairs_of_classes_have_their_product_within_three_where_all_rigs_have_the_same_classes(
-    recipe_with, seed, of_each, probability
-):
-    equal = with_other(probability, (1, 1, 1, 1), seed=seed) | {"corpus.specimens_per_rig": 4 * of_each}
-    pairs = pairs_over_rigs(recipe_with(equal), 100)
-    product = pairs.sum(axis=2, keepdims=True) * shares_of_other(probability, (1, 1, 1, 1))
-    assert np.abs(pairs - product).max() < 3
 
 
 @pytest.mark.parametrize("specimens", [1, 3])
@@ -158,11 +119,3 @@ def test_the_first_record_of_each_class_is_the_first_one_drawn_with_it(recipe_wi
     drawn = [(one.specimen.fault, one.record.number) for one in draw_scenarios(recipe)]
     assert first_records(recipe) == dict(reversed(drawn))
     assert set(first_specimens(recipe)) >= set(first_records(recipe)) - {"healthy"}
-
-
-def test_over_the_seeds_the_other_bearings_of_a_rig_have_the_shares_of_their_weights(recipe_with):
-    weights, seeds_tried = (2, 1, 0.6, 0.4), 2000
-    recipe = recipe_with(with_other(0.4, weights) | {"corpus.specimens_per_rig": 3})
-    pairs = sum(pairs_over_rigs(recipe.model_copy(update={"seed": seed}), 1)[0] for seed in range(seeds_tried))
-    expected = 3 * np.outer(np.array(weights) / sum(weights), shares_of_other(0.4, weights))
-    np.testing.assert_allclose(pairs / seeds_tried, expected, atol=0.09)  # 4 sigma of the most frequent pair

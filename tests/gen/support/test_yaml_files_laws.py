@@ -207,7 +207,7 @@ def test_the_recipes_that_ship_keep_their_hashes():
         "electric_motor": "f6065aaad076298b",
         "every_fault": "3f79e5484abdfe88",
         "fan": "6d7616fb24720083",
-        "gearbox": "05838826b5af5a32",
+        "gearbox": "435e928709ff191c",
         "main_shaft": "5f96926144abe25c",
         "ophel2025": "911f3394494774b6",
         "pronostia_like": "13a98ff5fc6c694e",
