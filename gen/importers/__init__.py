@@ -10,7 +10,6 @@ generic        recordings of the user, described by a table of labels
 label_tables   tables of labels, and the keys that all rows share
 labels         keys of one file of recordings
 label_values   types of the values of keys
-mapping        mapping files of earlier versions, for one more release
 assumptions    sentences on what labels and units rest on
 resampling     recordings brought to another sample rate
 bearing_text   a bearing given as a text or by its dimensions

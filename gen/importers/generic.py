@@ -19,7 +19,6 @@ from gen.importers.conversion import accelerations, doubts
 from gen.importers.files import FloatArray, UnusableError
 from gen.importers.label_tables import read_table_of_labels
 from gen.importers.labels import Labels, SensorKeys
-from gen.importers.mapping import read_mapping
 from gen.importers.recordings import Candidate, Recording
 from gen.importers.resampling import resample
 from gen.importers.signals import read_values
@@ -47,7 +46,7 @@ def import_generic(
     Parameters
     ----------
     source : Path
-        The table (CSV), one row for each file; or, in this release, a mapping file (YAML) with a plain list of files.
+        The table (CSV), one row for each file.
     output : Path
         New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
     window : float
@@ -68,8 +67,7 @@ def import_generic(
         what = "is a folder" if source.is_dir() else "no such file"
         raise CorpusError(f"{source}: {what}; give the table of labels, such as labels.csv.")
     root = source.parent if folder is None else folder
-    is_mapping = source.suffix.lower() in (".yaml", ".yml")
-    found = read_mapping(source, root, common or {}) if is_mapping else read_table_of_labels(source, common or {})
+    found = read_table_of_labels(source, common or {})
     recordings, skipped = _recordings(found, root)
     every = [labels for _, labels in found]
     fs = every[0].resample_hz or _common_rate(recordings, root)

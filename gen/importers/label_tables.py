@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -31,12 +31,8 @@ _ALIKE = ("title", "origin", "resample_hz", "channel_names")
 _MOST_SENTENCES = 20
 
 
-class Row(NamedTuple):
-    """Keys of one file; messages begin with ``place`` if they are on the file, and with ``place`` and ``joint`` if they are on a key."""
-
-    place: str
-    joint: str
-    keys: Mapping[str, Any]
+_Row = tuple[str, Mapping[str, Any]]
+"""Place of a file in the table, and its keys."""
 
 
 def read_table_of_labels(path: Path, common: Mapping[str, Any]) -> list[tuple[str, Labels]]:
@@ -54,43 +50,40 @@ def read_table_of_labels(path: Path, common: Mapping[str, Any]) -> list[tuple[st
             f"{path}: is no table of labels; save one as CSV, such as labels.csv, with a row for each file."
         )
     (first, names), *lines = _lines(path)
-    texts: list[Row] = []
+    texts: list[_Row] = []
     for number, cells in lines:
         place, named = f"{path}, row {number}", [*names, *[""] * len(cells)]
         lost = next((cell for name, cell in zip(named, cells, strict=False) if cell and not name), None)
         if lost is not None:
             message = f"{place}: {lost!r:.60} is in a column without a key in row {first}; give the key, or quote a text with commas."
             raise CorpusError(message)
-        texts.append(Row(place, ", column ", {name: cell for name, cell in zip(named, cells, strict=False) if cell}))
-    numbers = [f"{text}\n" for row in texts for key, text in row.keys.items() if key in _NUMBERS and is_number(text)]
+        texts.append((place, {name: cell for name, cell in zip(named, cells, strict=False) if cell}))
+    numbers = [f"{text}\n" for _, keys in texts for key, text in keys.items() if key in _NUMBERS and is_number(text)]
     form, *others = readings(numbers) or [None]
+    form = None if others else form
     rows = [
-        Row(
-            place,
-            joint,
-            {key: _value(f"{place}{joint}{key}", key, text, None if others else form) for key, text in keys.items()},
-        )
-        for place, joint, keys in texts
+        (place, {key: _value(f"{place}, column {key}", key, text, form) for key, text in keys.items()})
+        for place, keys in texts
     ]
     beside = path.with_suffix(".yaml")
-    return labels_of(rows, keys_of_yaml(beside) if beside.is_file() else {}, common, beside)
+    return _labels_of(rows, keys_of_yaml(beside) if beside.is_file() else {}, common, beside)
 
 
-def labels_of(
-    rows: Sequence[Row], shared: Mapping[str, Any], common: Mapping[str, Any], beside: Path
+def _labels_of(
+    rows: Sequence[_Row], shared: Mapping[str, Any], common: Mapping[str, Any], beside: Path
 ) -> list[tuple[str, Labels]]:
     """Place and labels of each row; ``shared`` keys are from the file ``beside``. A flaw of several rows is told of the first one."""
     given = {key: _parsed(f"common key {key}", key, value) for key, value in common.items()}
     found: list[tuple[str, Labels]] = []
     problems: dict[str, str] = {}
-    for place, joint, own in rows:
+    for place, own in rows:
         keys = {key: value for key, value in {**shared, **given, **own}.items() if value is not None}
         try:
             found.append((place, Labels.model_validate(keys)))
         except ValidationError as error:
             for sentence in sentences(error, Labels):
                 key = re.split(r"\W", sentence)[0]
-                start = place + (joint if key in {*keys, *Labels.model_fields} else ": ")
+                start = place + (", column " if key in {*keys, *Labels.model_fields} else ": ")
                 if key in keys and key not in own:
                     start = "common key " if key in given else f"{beside}: "
                 told = sentence.replace("; give it.", f"; give it there, or for all files in {beside.name}.")

@@ -5,7 +5,7 @@ into consecutive windows of equal length; the last incomplete one is dropped.
 """
 
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -111,13 +111,6 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
     return [(signal[:, start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
 
 
-def some_files(candidates: Iterable[Path], already: int, what: str) -> list[Path]:
-    """Files found, sorted; CorpusError, which begins with ``what``, if they and the ``already`` found ones exceed the limit."""
-    paths = list(islice(candidates, limit("recording_files") + 1))
-    check_limit("recording_files", already + len(paths), what, CorpusError)
-    return sorted(paths)
-
-
 def name_of(path: Path, folder: Path) -> str:
     r"""Name of a file relative to a folder, as text that can be stored: bytes that are not UTF-8 are escaped.
 
@@ -135,13 +128,14 @@ def files_below(folder: Path, suffix: str) -> list[Path]:
     Raises
     ------
     CorpusError
-        If there is no such folder or no such file.
+        If there is no such folder or no such file, or there are more files than the limit.
     """
     if not folder.is_dir():
         message = f"{folder}: {'is not a folder' if folder.exists() else 'no such folder'}; give the folder that holds the {suffix} files."
         raise CorpusError(message)
     files = (path for path in folder.rglob("*") if path.suffix.lower() == suffix and path.is_file())
-    paths = some_files(files, 0, f"{folder}: holds")
+    paths = sorted(islice(files, limit("recording_files") + 1))
+    check_limit("recording_files", len(paths), f"{folder}: holds", CorpusError)
     if not paths:
         message = f"{folder}: has no {suffix} file in it or below; give the folder that holds the recordings."
         raise CorpusError(message)

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from gen.importers.label_tables import read_table_of_labels
-from gen.importers.mapping import read_mapping
 from gen.physics.bearing import orders
 from gen.support.errors import RacewayError
 from tests.thorough.fuzz import recipes
@@ -19,16 +18,6 @@ SEEDS = {
     "commas.csv": "path,fault,specimen,bearing,shaft_rpm,recording,channels,title,delimiter,angle_deg\n"
     'a.wav,ball,1,"n_balls=8,pitch_diameter_mm=40,ball_diameter_mm=8,contact_angle_deg=15",1800.5,r,'
     '"[{name: de, column: 0, unit: g}, {name: fe, column: ay, unit: mV, sensitivity_mv_per_m_s2: 10.2}]",Pump,"\t",-90\n',
-    "plain.yaml": """\
-title: Pump 7, drive side
-bearing: &b "6205"
-unit: g
-sample_rate_hz: 25600
-shaft_rpm: 1480
-files:
-  - {path: healthy/1.csv, fault: healthy, specimen: new, column: 1}
-  - {path: outer/?.csv, fault: outer, specimen: worn, width_mm: 0.5, angle_deg: -90, n_spalls: 2, delimiter: ";", bearing: *b}
-""",
 }
 VALUES = (
     "40000", "-1", "18446744073709551616", "1e308", "nan", "1.480", "1'000,5", ".", "..", "/etc/passwd", "*/*/*", "[", "\0", "a\tb",
@@ -38,7 +27,7 @@ VALUES = (
 
 
 def seeds(folder: Path) -> list[Path]:
-    """Valid tables and a mapping file, written into a folder."""
+    """Valid tables, written into a folder."""
     for name, text in SEEDS.items():
         (folder / name).write_text(text, encoding="utf-8")
     return [folder / name for name in SEEDS]
@@ -57,7 +46,7 @@ def mutate(content: bytes, rng: np.random.Generator) -> bytes:
 def check(path: Path) -> None:
     """Read the labels and what follows from them; any exception except a RacewayError is a finding."""
     try:
-        found = read_mapping(path, path.parent, {}) if path.suffix == ".yaml" else read_table_of_labels(path, {})
+        found = read_table_of_labels(path, {})
     except RacewayError:
         return
     for _, labels in found:
