@@ -62,52 +62,21 @@ def read_recipe(
         raise RecipeError("\n".join(f"{where}: {sentence}" for sentence in str(error).split("\n"))) from None
 
 
-_FIRST_GUESTS = {
-    "background": {"modes", "modulation", "harmonics", "tones", "impulses", "knocks", "gear_mesh"},
-    "sensor_faults": {
-        "loose_mount", "saturation", "mains_hum", "drift", "dropped_samples", "gain_steps", "emi_bursts",
-    },
-}  # fmt: skip
-"""Mechanisms of the first corpora: their keys count in hashes also where a recipe does not have them."""
-
-
 def recipe_hash(recipe: Recipe) -> str:
     """SHA-256 of the values of a recipe that records depend on; ``publication``, ``records``, layout and comments do not count."""
-    values = _values(recipe, {"publication": True})
-    values["records"] = None
-    if recipe.corpus.fault_choice == "by_weight":
-        del values["corpus"]["fault_choice"]
-    return _hash(values)
-
-
-def _values(recipe: Recipe, excluded: dict[str, bool]) -> dict[str, Any]:
-    """Values of a recipe with the keys of the first corpora, so that hashes stay: younger ones are left out at their defaults."""
-    values = recipe.model_dump(mode="json", exclude=excluded)
-    if values["life"] is None:
-        del values["life"]
-    values["contact"]["ball_mass"] = "none"
-    for section, first in _FIRST_GUESTS.items():
-        values[section] = {key: value for key, value in values[section].items() if value is not None or key in first}
-    for part in (part for fault in values["faults"] for part in fault.get("parts", ())):
-        part |= {"weight": 1.0, "operation": None, "level": None}
-    return values
-
-
-def _hash(values: dict[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
+    return _hash(recipe, {"publication", "records"})
 
 
 @functools.lru_cache(maxsize=16)
 def corpus_identity(recipe: Recipe) -> str:
     """First 12 digits of the SHA-256 of the values that draws depend on: with the same ones, equal numbers are the same machine."""
-    storage = {
-        "storage": True,
-        "publication": True,
-        "records": True,
-        "name": True,
-        "title": True,
-    }
-    return _hash(_values(recipe, storage))[:12]
+    return _hash(recipe, {"storage", "publication", "records", "name", "title"})[:12]
+
+
+def _hash(recipe: Recipe, left_out: set[str]) -> str:
+    """SHA-256 of the values of a recipe; a mechanism that it does not have does not count."""
+    values = recipe.model_dump(mode="json", exclude=left_out, exclude_none=True)
+    return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
 
 def recipe_schema() -> str:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 _SCENARIO = TypeAdapter(Scenario)
 _LONGEST_PLACE = 100
-_EARLIER = '"axis": {'  # in every scenario from before 0.1.0
 _ADVICE = "read the corpus with the version that wrote it."
 
 
@@ -28,15 +27,9 @@ def scenario_texts(scenarios: Sequence[Scenario]) -> list[str]:
     texts = {number: json.dumps(item, default=vars) for number, item in shared.items()}
     return [
         f'{{"settings": {texts[id(one.settings)]}, "rig": {texts[id(one.rig)]}, "specimen": {texts[id(one.specimen)]}, '
-        f'"record": {json.dumps(one.record, default=_fields)}}}'
+        f'"record": {json.dumps(one.record, default=vars)}}}'
         for one in scenarios
     ]
-
-
-def _fields(item: object) -> dict[str, object]:
-    """Fields of a dataclass by name; the narrowest spall of a group is stored in groups alone, a life where there is one."""
-    optional = ("narrowest_spall", "life")
-    return {name: value for name, value in vars(item).items() if name not in optional or value is not None}
 
 
 def read_scenarios(records: "xr.Dataset") -> list[Scenario]:
@@ -75,7 +68,6 @@ def read_scenario(text: str) -> Scenario:
     CorpusError
         If the text is not a scenario.
     """
-    text = _of_today(text) if _EARLIER in text else text
     try:
         scenario = _SCENARIO.validate_json(text, strict=True)
     except ValidationError as error:
@@ -86,39 +78,6 @@ def read_scenario(text: str) -> Scenario:
     if not _holds_exactly(text, scenario):
         raise CorpusError(f"stored scenario: it has keys or numbers that no scenario has; {_ADVICE}")
     return scenario
-
-
-def _of_today(text: str) -> str:
-    """Text of a scenario from before 0.1.0, when each kind of damage and each fault of the measuring chain was a field."""
-    try:
-        values = json.loads(text)
-        rig, record = values["rig"], values["record"]
-        for one in (values, values.get("other") or {"specimen": {}}):
-            _move_damage(one["specimen"])
-        background = rig["background"]
-        background["gear_mesh"], background["machine_conditions"] = background.pop("gear"), background.pop("condition")
-        if "ball_mass" not in rig:  # of the last days before 0.1.0
-            return json.dumps(values)
-        if rig.pop("ball_mass"):
-            return text
-        of_rig, of_record = rig["sensor_faults"] or {}, record["sensor_faults"] or {}
-        mounts = of_rig.pop("loose_mounts", [])
-        of_rig["loose_mount"] = mounts if any(mounts) else None
-        if of_record:
-            of_record["mains_hum"] = {"deviation": of_record.pop("mains_deviation")}
-        for part, faults in ((rig, of_rig), (record, of_record)):
-            part["sensor_faults"] = {fault: drawn for fault, drawn in faults.items() if drawn}
-    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
-        return text  # refused below
-    return json.dumps(values)
-
-
-def _move_damage(specimen: dict[str, Any]) -> None:
-    fields = {"ball": "axis", "cage": "cage", "distributed": "wear"}
-    drawn = {kind: specimen.pop(field, None) for kind, field in fields.items()}
-    if drawn["distributed"]:
-        drawn["distributed"]["wear"] = drawn["distributed"].pop("waviness")
-    specimen["damage"] = {kind: values for kind, values in drawn.items() if values}
 
 
 def _holds_exactly(text: str, scenario: Scenario) -> bool:

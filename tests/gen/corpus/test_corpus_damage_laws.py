@@ -304,11 +304,10 @@ def test_counts_of_useless_records_are_those_of_the_signals(tmp_path, form):
     assert any("1 dead of its records cannot be used, none are listed" in p for p in validate_corpus(tmp_path / form))
 
 
-def test_a_corpus_made_before_manifests_had_a_hash_opens(copied_folder):
-    content = manifest_content(copied_folder)
-    (copied_folder / "manifest.json").write_text(json.dumps(content))
-    with open_corpus(copied_folder) as corpus:
-        assert corpus.sizes["record"] == content["records"]
+def test_a_manifest_without_its_hash_is_refused(copied_folder):
+    (copied_folder / "manifest.json").write_text(json.dumps(manifest_content(copied_folder)))
+    with pytest.raises(CorpusError, match=r"manifest\.json: is altered"):
+        open_corpus(copied_folder)
 
 
 def test_sizes_alone_do_not_see_what_hashes_see(copied_folder, copied_file):

@@ -1,15 +1,11 @@
 """Laws of the stored text of a scenario: it gives the scenario back, names every number, and any other text is refused."""
 
 import json
-from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from gen.measurement.measure import measure
 from gen.recipe import Recipe, read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios, read_scenario, scenario_texts
-from gen.simulation.timeline import timeline
 from gen.support.errors import CorpusError
 from tests.gen.conftest import small_with
 from tests.paths import ROOT
@@ -54,45 +50,6 @@ def test_the_text_of_a_scenario_gives_the_scenario_back(name):
     read = [read_scenario(text) for text in texts]
     assert read == scenarios
     assert scenario_texts(read) == texts
-
-
-def as_before(text, mass="false"):
-    """Text of a scenario as it was when a ball could have a mass and each damage and fault of the measuring chain was a field."""
-    values = json.loads(text)
-    for specimen in (values["specimen"], *([values["other"]["specimen"]] if "other" in values else [])):
-        damage = specimen.pop("damage")
-        worn = damage.get("distributed")
-        specimen |= {"axis": damage.get("ball", {}), "cage": damage.get("cage", {}), "wear": worn}
-        if worn is not None:
-            worn["waviness"] = worn.pop("wear")
-    rig, record = values["rig"], values["record"]
-    of_rig, of_record = rig["sensor_faults"], record["sensor_faults"]
-    if of_rig or of_record:
-        firm = [None] * len(rig["channels"])
-        of_rig = {"loose_mounts": of_rig.get("loose_mount", firm)} | {
-            name: of_rig.get(name) for name in ("saturation", "mains_hum")
-        }
-        deviation = of_record.pop("mains_hum")["deviation"]
-        names = ("drift", "dropped_samples", "gain_steps", "emi_bursts")
-        of_record = {name: of_record.get(name) for name in names} | {"mains_deviation": deviation}
-    rig |= {"sensor_faults": of_rig or None, "ball_mass": json.loads(mass)}
-    background = rig["background"]
-    background |= {"gear": background.pop("gear_mesh"), "condition": background.pop("machine_conditions")}
-    for lines in ("harmonics", "tones"):
-        background[lines] = [{"modulation": 0.0} | line for line in background[lines] or []]
-    record["sensor_faults"] = of_record or None
-    return json.dumps(values)
-
-
-@pytest.mark.parametrize("name", ["everything", "gearbox", "dirty_sensors"])
-def test_a_text_from_before_gives_the_same_scenario_unless_its_balls_have_a_mass(name):
-    scenarios = scenarios_of(name)
-    for text, scenario in zip(scenario_texts(scenarios), scenarios, strict=True):
-        read = read_scenario(as_before(text))
-        assert replace(read, rig=replace(read.rig, background=scenario.rig.background)) == scenario
-        silence = np.zeros((1, len(scenario.rig.channels), timeline(scenario.settings).returned), np.float32)
-        np.testing.assert_array_equal(measure(silence, [read]).signal, measure(silence, [scenario]).signal)
-        assert_refused(as_before(text, "true"))
 
 
 @pytest.mark.parametrize("name", RECIPES)
