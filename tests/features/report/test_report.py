@@ -38,7 +38,7 @@ from tests.corpora import write_records
 FS = 10_000.0
 ORDERS = {"ftf": 0.4, "bpfo": 3.6, "bpfi": 5.4, "bsf": 2.35}
 LINES = {"compound": (5.4, 3.6)}  # of other classes their fundamental line
-FOUR = FAULTS[:4]  # the classes of corpora made before there were six
+FOUR = FAULTS[:4]  # a recipe need not have all classes
 SOME = {name: name for name in ("logistic_regression", "envelope_rule", "majority")}
 HOSTILE = "\u202e\u200f\x9b<script>alert(1)</script>'\"{{ 7 * 7 }}$\\frac"
 
