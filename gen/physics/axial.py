@@ -8,6 +8,7 @@ half of the balls are loaded, and the bearing has no stable axial position [1]_.
 .. [1] T. A. Harris, *Rolling Bearing Analysis*, 4th ed., Wiley, 2001, ch. 7, combined radial and thrust load.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +30,7 @@ def least_axial_load(radial_load: float, contact_angle: float) -> float:
     >>> round(least_axial_load(1000.0, np.radians(15)))
     335
     """
-    return float(HALF_LOADED * radial_load * np.tan(abs(contact_angle)))
+    return HALF_LOADED * radial_load * math.tan(abs(contact_angle))  # that of NumPy has other bits on other processors
 
 
 def check_axial_load(machine: Machine, axial_load: float, largest_load_share: float = 1.0) -> None:
@@ -77,7 +78,7 @@ def axial_approach(machine: Machine, axial_load: FloatArray, angles: FloatArray)
     equal_squeeze = power(axial_load / (np.count_nonzero(~missing, axis=0) * sine * factor), 1 / given.exponent)
     start = np.zeros((3, len(angles)))
     start[2] = (np.maximum(machine.half_clearance, 0.0) + equal_squeeze) / sine
-    # rounded to a picometre: earlier versions solved this with BLAS, whose last bits depend on the processor
+    # rounded to a picometre: the powers of C libraries may differ in the last bit
     return [round(squeeze, 12) for squeeze in (_equilibrium(given, start)[2] * sine).tolist()]
 
 
