@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, hilbert, sosfiltfilt
 
-from gen.generation.scheduling import make_records
+from gen.generation.undetected import make_records
 from gen.measurement.judging import FALSE_ALARM, Parts, judges_of
 from gen.measurement.measure import measure
 from gen.measurement.rig import rig_filters

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.pairs import Line, Row
-from raceway.timing import machine
 
 FOLDER = Path(__file__).parent
 PREFIX = "results-"
@@ -30,6 +29,25 @@ def facts() -> dict[str, Any]:
         except PackageNotFoundError:
             found[name] = None
     return found
+
+
+def machine() -> dict[str, Any]:
+    """Processor, cores and versions, which determine the figures."""
+    names = ("raceway", "numba", "numpy", "scipy")
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "python": platform.python_version(),
+        **{name: version(name) for name in names},
+    }
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), platform.machine())
 
 
 def processor_key() -> str:

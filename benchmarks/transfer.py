@@ -18,6 +18,7 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.realism import UESTC_LABELLED
+from benchmarks.results import machine
 from benchmarks.transfer_pages import RESULTS, write_pages
 from features import feature_table
 from features.baselines import Model, Scores, cross_validate
@@ -26,7 +27,6 @@ from gen.corpus import FAULTS
 from gen.importers import import_cwru, import_generic, import_mfpt
 from gen.recipe import read_recipe
 from raceway.kept_models import LONG, lasting
-from raceway.timing import machine
 
 RECIPE = "domain_randomised"
 ESTIMATORS = ("envelope_rule", "logistic_regression", "random_forest", "extra_trees", "ensemble")

@@ -7,7 +7,6 @@ module      responsibility
 =========== =======================================================================
 console     options, results, progress, errors
 kept_models models trained on a recipe and kept per user; the reference model is one
-timing      speed of this machine, stage by stage
 pages       tables and picture of docs/features.md
 commands    one function per command
 cli         the group of all commands, and the entry point

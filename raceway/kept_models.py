@@ -150,7 +150,7 @@ def make_table(recipe: "Path | str | Recipe", team: Team = USUAL) -> "xr.Dataset
     from features import feature_table
     from gen import generate
     from gen.corpus import temporary_folder
-    from gen.support.workers import cores
+    from gen.support.executor import cores
 
     workers = team.workers or cores()
     with temporary_folder() as folder:

@@ -20,6 +20,7 @@ from features.baselines.records import Records
 from features.baselines.tracks import Split, grouped_splits
 from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY
+from gen.support.executor import Workers
 
 FOLDS = 3  # at most; each costs a training on two thirds of the records
 
@@ -29,7 +30,7 @@ def fit_and_calibrate(
     estimator: str | Maker,
     seed: int,
     *,
-    workers: int = 1,
+    workers: Workers = 1,
     done: Callable[[int], None] = lambda _: None,
 ) -> tuple[Estimator, Calibration]:
     """Fit a classifier to all records, and calibrate it by a cross-validation by rig, or by specimen if there are too few rigs.

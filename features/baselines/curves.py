@@ -49,9 +49,8 @@ def curve_points(
     splits: Sequence[Split],
     seed: int,
     done: Callable[[int], None] = lambda _: None,
-    workers: int = 1,
 ) -> tuple[CurvePoint, ...]:
-    """Points of the learning curve on given splits; ``done`` is called with 1 after each, ``workers`` as for `score_splits`."""
+    """Points of the learning curve on given splits; ``done`` is called with 1 after each."""
     orders = [nested_specimens(records.at(train), seed) for train, _ in splits]
     points: list[CurvePoint] = []
     for size in curve_sizes(records, splits):
@@ -59,7 +58,7 @@ def curve_points(
             (train[np.isin(records.specimen[train], order[:size])], test)
             for order, (train, test) in zip(orders, splits, strict=True)
         ]
-        scores = score_splits(records, records.fault, estimator, smaller, seed, workers)
+        scores = score_splits(records, records.fault, estimator, smaller, seed)
         points.append(CurvePoint(size, float(np.mean([len(train) for train, _ in smaller])), scores))
         done(1)
     return tuple(points)

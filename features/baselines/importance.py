@@ -26,13 +26,12 @@ def permutation_importance(
     estimator: str | Maker,
     splits: Sequence[Split],
     seed: int,
-    workers: int = 1,
 ) -> FloatArray:
     """Mean loss of balanced accuracy over the splits for each part of the columns, shape (part,)."""
     rng = np.random.default_rng(seed)
     columns = records.features.columns
     losses = np.empty((len(splits), len(parts)))
-    fitted = fits(records.features, records.fault, estimator, splits, seed, workers=workers)
+    fitted = fits(records.features, records.fault, estimator, splits, seed)
     for fold, ((_, test), (fitted_one, of_tested)) in enumerate(zip(splits, fitted, strict=True)):
         rows, truth, classes = records.features.take(test).to_numpy(), records.fault[test], fitted_one.classes_
         whole = _balanced_accuracy(truth, classes[of_tested.argmax(axis=1)])

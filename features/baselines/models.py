@@ -46,6 +46,7 @@ from features.table.durations import durations_of, suited
 from features.table.waveforms import Waveforms
 from gen.corpus import UNKNOWN_CODE, check_result, corpus_name
 from gen.support.errors import CorpusError
+from gen.support.executor import Workers, connected
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
 
@@ -149,7 +150,7 @@ class Model(Shown):
         data
             A feature table, a corpus to compute features of, or waveforms for a classifier of the user.
         workers
-            Number of fits at a time, in threads of this process; the model does not depend on it.
+            Number of processes that fit; 1 is this one. The model does not depend on it.
         progress
             Called after each fit with the number of fits done and of all that may be needed: four, and again as many for a second baseline.
 
@@ -170,12 +171,15 @@ class Model(Shown):
         compares = isinstance(self.classifier, str) and self.classifier not in UNTRAINED
         fits = (1 + FOLDS) * (1 + compares)
         done = counter(progress, fits)
-        _fit(self, table, workers, done)
-        paired = paired_table(table, self.features, self.seed) if compares and isinstance(table, xr.Dataset) else None
-        self.relative = None
-        if paired is not None:
-            self.relative = Model(relative_name(self.name), groups=(RELATIVE,), seed=self.seed)
-            _fit(self.relative, paired, workers, done)
+        with connected(workers) as place:
+            _fit(self, table, place, done)
+            paired = (
+                paired_table(table, self.features, self.seed) if compares and isinstance(table, xr.Dataset) else None
+            )
+            self.relative = None
+            if paired is not None:
+                self.relative = Model(relative_name(self.name), groups=(RELATIVE,), seed=self.seed)
+                _fit(self.relative, paired, place, done)
         done(fits)
         return self
 
@@ -285,7 +289,7 @@ class Model(Shown):
         return cls(content["name"], **{**own, **parts, "calibration": Calibration(**content["calibration"])})
 
 
-def _fit(model: Model, data: xr.Dataset | Waveforms, workers: int, done: Callable[[int], None]) -> None:
+def _fit(model: Model, data: xr.Dataset | Waveforms, workers: Workers, done: Callable[[int], None]) -> None:
     records = records_of(data, model.groups)
     if isinstance(data, xr.Dataset):
         model.features, band = features_of(data, model.groups), band_of(data.attrs)

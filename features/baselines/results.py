@@ -7,9 +7,10 @@ at chance; and the scores on other corpora. Results that are kept in a file can 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from hashlib import blake2b
 from importlib.metadata import version
-from typing import Literal
+from typing import Any, Literal, NamedTuple
 
 import xarray as xr
 
@@ -35,9 +36,11 @@ from features.table.definitions import measured_quantity
 from features.table.waveforms import Waveforms
 from gen.corpus import class_counts, unit_counts
 from gen.support.errors import CorpusError
+from gen.support.executor import run
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
 
+_CASES = ("grouped", "leaky", "null", "tests")
 BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)
 """Baselines that are scored on several tracks, because all would take several times as long."""
 
@@ -204,7 +207,7 @@ def benchmark(
     seed
         Of splits, estimators, permutation and bootstrap.
     workers
-        Number of splits that a baseline is trained on at a time, in threads of this process; the scores do not depend on it.
+        Number of processes that score baselines; 1 is this one. The scores do not depend on it.
     progress
         Called after each score with the number of scores done and of all.
 
@@ -244,45 +247,79 @@ def benchmark(
     scored = _kept(known, found)
     new = {name: one for name, one in chosen.items() if not (isinstance(one, str) and name in scored[first])}
     own = records_of(waveforms[0], groups) if waveforms else records
-    done = counter(progress, len(new) * len(cases) + (len(curve_sizes(records, splits)) if curve else 0))
-    for name, estimator in new.items():
-        with_features = isinstance(estimator, str) or not waveforms
-        given = records if with_features else own
-        for track, of_track in cases.items():
-            same = {"leaky": scored[first][name].leaky} if track != first else {}
-            scores = same | {
-                case: score_splits(given, labels, estimator, case_splits, seed, workers)
-                for case, (labels, case_splits) in of_track.items()
-                if case not in same
-            }
-            tested: tuple[Scores, ...] = ()
-            if tests and track == first:
-                training, *unseen = (table, *tests) if with_features else waveforms
-                model = Model(estimator, groups=groups, seed=seed).fit(training, workers=workers)
-                tested = tuple(model.score(one, seed=seed) for one in unseen)
-            scored[track][name] = Baseline(**scores, tests=tested)
+    jobs = [
+        _Job(name, track, case)
+        for name in new
+        for track in cases
+        for case in _CASES
+        if _is_scored(case, track, first, tests)
+    ]
+    done = counter(progress, len(jobs) + (len(curve_sizes(records, splits)) if curve else 0))
+    scores = dict[_Job, Any]()
+    for is_own, given, tables in ((False, records, (table, *tests)), (True, own, waveforms or (table, *tests))):
+        makers = {name: one for name, one in new.items() if isinstance(one, str) != is_own}
+        some = [job for job in jobs if job.name in makers]
+        task = partial(_scores_of, given, tables, cases, makers, groups, seed)
+        for job, made in zip(some, run(task, some, 1 if is_own else max(1, min(workers, len(some)))), strict=True):
+            scores[job] = made
             done(1)
+    for name in new:
+        leaky, tested = (scores.get(_Job(name, first, case), ()) for case in ("leaky", "tests"))
+        for track in cases:
+            grouped, null = (scores[_Job(name, track, case)] for case in ("grouped", "null"))
+            scored[track][name] = Baseline(grouped, leaky, null, tested if track == first else ())
     led = records if isinstance(chosen[leading], str) else own
-    importance = _importance(records, names, chosen[leading], splits, seed, workers) if led is records else {}
+    importance = _importance(records, names, chosen[leading], splits, seed) if led is records else {}
     return replace(
         found,
         baselines=_untrained_first(scored[first]),
         further={
             track: replace(one, baselines=_untrained_first(scored[track])) for track, one in found.further.items()
         },
-        curve=curve_points(led, chosen[leading], splits, seed, done, workers) if curve else (),
+        curve=curve_points(led, chosen[leading], splits, seed, done) if curve else (),
         importance=importance,
     )
 
 
+class _Job(NamedTuple):
+    """One score of a classifier: of a case on a track, or on the other corpora."""
+
+    name: str
+    track: str
+    case: str
+
+
+def _is_scored(case: str, track: str, first: str, tests: Sequence[object]) -> bool:
+    """Whether a case has a score of its own on a track: the leaky split is the same on all of them, and other corpora have none."""
+    return case in ("grouped", "null") or (track == first and (case == "leaky" or bool(tests)))
+
+
+def _scores_of(
+    records: Records,
+    tables: Sequence[xr.Dataset | Waveforms],
+    cases: Mapping[str, Mapping[str, Case]],
+    estimators: Mapping[str, str | Maker],
+    groups: Sequence[str],
+    seed: int,
+    job: _Job,
+) -> Scores | tuple[Scores, ...]:
+    """Scores of one job; the first of the tables is that of the records, the others are tested on."""
+    estimator = estimators[job.name]
+    if job.case != "tests":
+        labels, splits = cases[job.track][job.case]
+        return score_splits(records, labels, estimator, splits, seed)
+    model = Model(estimator, groups=groups, seed=seed).fit(tables[0])
+    return tuple(model.score(one, seed=seed) for one in tables[1:])
+
+
 def _importance(
-    records: Records, names: Sequence[str], estimator: str | Maker, splits: Sequence[Split], seed: int, workers: int
+    records: Records, names: Sequence[str], estimator: str | Maker, splits: Sequence[Split], seed: int
 ) -> dict[str, float]:
     """Permutation importance of each quantity, the highest first; its features of all views and channels are exchanged at once."""
     columns: dict[str, list[int]] = {}
     for column in range(records.features.shape[1]):
         columns.setdefault(measured_quantity(names[column % len(names)]), []).append(column)
-    losses = permutation_importance(records, list(columns.values()), estimator, splits, seed, workers)
+    losses = permutation_importance(records, list(columns.values()), estimator, splits, seed)
     return dict(sorted(zip(columns, losses.tolist(), strict=True), key=lambda item: -item[1]))
 
 

@@ -118,16 +118,13 @@ def permuted_labels(records: Records, seed: int) -> IntArray:
 
 
 def score_splits(
-    records: Records, labels: IntArray, estimator: str | Maker, splits: Sequence[Split], seed: int, workers: int = 1
+    records: Records, labels: IntArray, estimator: str | Maker, splits: Sequence[Split], seed: int
 ) -> Scores:
-    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once.
-
-    ``workers`` is the number of splits that are trained on at a time, as in `features.baselines.fitting.fits`.
-    """
+    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once."""
     classes = np.unique(labels)
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []
-    fitted = fits(records.features, labels, estimator, splits, seed, workers=workers)
+    fitted = fits(records.features, labels, estimator, splits, seed)
     for (_, test), (fold, of_tested) in zip(splits, fitted, strict=True):
         probabilities[np.ix_(test, fold.classes_)] = of_tested
         classes = np.union1d(classes, fold.classes_)

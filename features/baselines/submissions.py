@@ -35,7 +35,6 @@ def write_submission(
     track: Track = "rig",
     folds: int = 3,
     seed: int = 0,
-    workers: int = 1,
 ) -> None:
     """Write the classes that classifiers predict for the records outside their training, a column for each classifier.
 
@@ -49,7 +48,7 @@ def write_submission(
         The file, .csv.
     waveforms
         Of the same corpus, for the classifiers of the user in place of the features.
-    track, folds, seed, workers
+    track, folds, seed
         As for `features.baselines.benchmark`.
 
     Raises
@@ -64,7 +63,7 @@ def write_submission(
     for name, estimator in estimators.items():
         given = table if waveforms is None or isinstance(estimator, str) else waveforms
         features = records_of(given, DEFAULT_GROUPS).features
-        frame[name] = _predicted(features, records, estimator, splits, seed, workers)[frame.index]
+        frame[name] = _predicted(features, records, estimator, splits, seed)[frame.index]
     write_text_durably(frame.to_csv(index=False), path)
 
 
@@ -106,10 +105,10 @@ def _tested(table: xr.Dataset, splits: Sequence[Split]) -> pd.DataFrame:
 
 
 def _predicted(
-    features: pd.DataFrame, records: Records, estimator: str | Maker, splits: Sequence[Split], seed: int, workers: int
+    features: pd.DataFrame, records: Records, estimator: str | Maker, splits: Sequence[Split], seed: int
 ) -> np.ndarray:
     names = np.full(len(records.fault), "", object)
-    fitted = fits(features, records.fault, estimator, splits, seed, workers=workers)
+    fitted = fits(features, records.fault, estimator, splits, seed)
     for (_, test), (one, probabilities) in zip(splits, fitted, strict=True):
         names[test] = np.array(FAULTS)[one.classes_[probabilities.argmax(axis=1)]]
     return names

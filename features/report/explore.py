@@ -54,10 +54,10 @@ from gen.corpus import (
 from gen.corpus.facts import extent
 from gen.corpus.fault_classes import COMBS, FUNDAMENTALS, LOOKS, SHAFT
 from gen.support.errors import CorpusError
+from gen.support.executor import run
 from gen.support.progress import Progress, counter
 from gen.support.shown import visible
 from gen.support.units import READABLE, range_text, shown_unit
-from gen.support.workers import run
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -146,12 +146,12 @@ def write_explorer(
         known = [*_labels(opened, places), *_features(table, opened, places, str(opened["channel"].values[number]))]
         kept = opened[[SIGNAL, *(name for name in READ if name in opened)]].isel(record=places, channel=[number])
         kept = kept.assign({name: kept[name].load() for name in kept.data_vars if name != SIGNAL})
-        blocks = ((k, kept.isel(record=slice(k * BLOCK, (k + 1) * BLOCK))) for k in range(-(-len(places) // BLOCK)))
-        reduced, report = dict[int, list[str]](), counter(progress, len(places))
+        blocks = (kept.isel(record=slice(first, first + BLOCK)) for first in range(0, len(places), BLOCK))
+        reduced, report = list[list[str]](), counter(progress, len(places))
         task = partial(_reduced_block, band=band, sound=sound)
-        with closing(run(task, blocks, workers=workers, scheduler=scheduler)) as made:
-            for block, size, texts in made:
-                reduced[block] = texts
+        with closing(run(task, blocks, workers if scheduler is None else scheduler)) as made:
+            for size, texts in made:
+                reduced.append(texts)
                 report(size)
         sensor = str(opened["channel"].values[number]) if opened.sizes["channel"] > 1 else ""
         title = _text(opened.attrs.get("title", "untitled corpus"))
@@ -166,7 +166,7 @@ def write_explorer(
         sound=sound,
         script=script,
         digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
-        parts=_parts(facts, known, [reduced[block] for block in sorted(reduced)]),
+        parts=_parts(facts, known, reduced),
     )
     write_text_durably(page, output)
     return len(places), count
@@ -221,16 +221,15 @@ def _steps(level_db: FloatArray) -> np.ndarray:
     return np.clip(np.round(level_db / STEP_DB), 0, 255).astype(np.uint8)
 
 
-def _reduced_block(block: tuple[int, xr.Dataset], band: Band, sound: bool) -> Iterator[tuple[int, int, list[str]]]:
-    """Number of the block, its number of records, its arrays as a text, and its sound as another one."""
-    number, records = block
-    records = records.load()
+def _reduced_block(block: xr.Dataset, band: Band, sound: bool) -> tuple[int, list[str]]:
+    """Number of records of a block, their arrays as a text, and their sound as another one."""
+    records = block.load()
     shown = [shown_of(records.isel(record=k), k, 0)._replace(band=band) for k in range(records.sizes["record"])]
     arrays = [reduce_record(one) for one in shown]
     contents = [b"".join(one[name].tobytes() for name in FIELDS for one in arrays)]
     if sound:
         contents.append(b"".join(_sound(one).tobytes() for one in shown))
-    yield number, len(shown), [_packed(content) for content in contents]
+    return len(shown), [_packed(content) for content in contents]
 
 
 def _sound(shown: DrawnRecord) -> np.ndarray:

@@ -9,11 +9,11 @@ task is one block of records, so the features do not depend on the number of wor
 all blocks before that of the features estimates them, since the records of a recording may lie in several blocks.
 """
 
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -34,8 +34,8 @@ from features.table.recording_speeds import (
     with_speeds,
 )
 from gen.corpus import DRAWS, RecordBlock, corpus_name, open_corpus, read_channel, record_blocks
+from gen.support.executor import Workers, connected, run
 from gen.support.progress import Progress, counter
-from gen.support.workers import run
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -71,7 +71,7 @@ def feature_table(
     band
         Band that lines and shape are computed from [Hz], such as ``(300, 9000)``.
     workers
-        Number of blocks at work at a time: 1 in this thread, a few in threads of this process, more in processes on this machine.
+        Number of processes that compute features; 1 is this one.
     scheduler
         A dask client, or the address of a dask scheduler whose workers see ``corpus`` under the same path; replaces ``workers``.
     progress
@@ -109,22 +109,21 @@ def feature_table(
         table[DURATION] = "record", opened.sizes["elapsed_time"] / table["sample_rate"].values, lasts
     treatment = checked_speed(speed, table)
     starts = np.cumsum([0, *(block.stop - block.first for block in blocks)])
-    work = partial(_run, workers=min(workers, len(blocks)), scheduler=scheduler)
     report = counter(progress, len(blocks) * (1 if treatment == "off" else 2))
-    if treatment != "off":
-        recording = recording_numbers(table)
-        tasks = list(zip(blocks, np.split(recording, starts[1:-1]), strict=True))
-        with closing(work(partial(block_sums, channel=number), tasks, report)) as sums:
-            estimates = recording_speeds(recording, table["shaft_rate"].values, sums)
-        table = with_speeds(table, recording, estimates, treatment)
-    rates = rates_to_use(table)
     values, missing = np.empty((table.sizes["record"], len(coordinates["feature"][1]))), 0
-    compute = partial(_features_of_block, groups=tuple(groups), channel=number, band=band)
-    tasks = list(zip(blocks, np.split(rates, starts[1:-1]), strict=True))
-    with closing(work(compute, tasks, report)) as made:
-        for number, rows in made:
-            values[starts[number] : starts[number + 1]] = rows
-            missing += int(np.isnan(rows).any(axis=1).sum())
+    with connected(min(workers, len(blocks)) if scheduler is None else scheduler) as place:
+        if treatment != "off":
+            recording = recording_numbers(table)
+            tasks = list(zip(blocks, np.split(recording, starts[1:-1]), strict=True))
+            with closing(_counted(partial(block_sums, channel=number), tasks, place, report)) as sums:
+                estimates = recording_speeds(recording, table["shaft_rate"].values, enumerate(sums))
+            table = with_speeds(table, recording, estimates, treatment)
+        compute = partial(_features_of_block, groups=tuple(groups), channel=number, band=band)
+        tasks = list(zip(blocks, np.split(rates_to_use(table), starts[1:-1]), strict=True))
+        with closing(_counted(compute, tasks, place, report)) as made:
+            for first, rows in zip(starts, made, strict=False):
+                values[first : first + len(rows)] = rows
+                missing += int(np.isnan(rows).any(axis=1).sum())
     features = ("record", "feature"), values, {"long_name": "features of the signal"}
     read |= {"records_with_missing_features": missing}
     return table.assign(features=features).assign_coords(coordinates).assign_attrs(read)
@@ -164,16 +163,11 @@ def _features_of_block(
     return block_features(block, groups, channel, shaft_rate, band)
 
 
-def _run(
-    compute: Callable[[Item], Result], items: Sequence[Item], report: Callable[[int], None], **workers: Any
-) -> Generator[tuple[int, Result]]:
-    """Yield the number of each item and its result as they are completed; ``workers`` are options of `gen.support.workers.run`."""
-    with closing(run(partial(_numbered, compute), enumerate(items), **workers)) as results:
+def _counted(
+    compute: Callable[[Item], Result], items: Sequence[Item], workers: Workers, report: Callable[[int], None]
+) -> Generator[Result]:
+    """Results of all items in their order; ``report`` is called with 1 for each."""
+    with closing(run(compute, items, workers)) as results:
         for result in results:
             yield result
             report(1)
-
-
-def _numbered(compute: Callable[[Item], Result], task: tuple[int, Item]) -> Iterator[tuple[int, Result]]:
-    number, item = task
-    yield number, compute(item)

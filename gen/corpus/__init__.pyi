@@ -90,7 +90,7 @@ from .outputs import (
     result_folder as result_folder,
     write_numbers as write_numbers,
 )
-from .part import PartRow as PartRow, part_name as part_name, write_part as write_part
+from .part import PartRow as PartRow, part_name as part_name, part_number as part_number, write_part as write_part
 from .publication import Creator as Creator, Publication as Publication, read_publication as read_publication
 from .reading import open_part as open_part
 from .schema import (

@@ -6,7 +6,6 @@ A folder has it as ``manifest.json``; a single file has the same facts as global
 
 import hashlib
 import json
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -27,13 +26,13 @@ from gen.corpus.files import (
     write_text_durably,
 )
 from gen.corpus.open_files import file_facts
-from gen.corpus.part import PartRow
+from gen.corpus.part import PartRow, part_number
 from gen.corpus.publication import Publication
 from gen.corpus.schema import FORMAT, RECIPE_TEXT
 from gen.corpus.signals import Count, SignalCounts, sum_counts
 from gen.support.errors import CorpusError
+from gen.support.executor import cores
 from gen.support.limits import check_limit
-from gen.support.workers import cores
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,7 +41,6 @@ Check = Literal["sha256", "size"]
 
 _HASH = "sha256"
 """Key of ``manifest.json`` with the hash of all else in it."""
-_PART_NAME = re.compile(r"part-\d{5,9}\.nc")
 _TEXTS = ("title", "recipe", "recipe_sha256", "sources_sha256", "parts_sha256", "importer")
 """Facts that are text; the others are stored as JSON in global attributes."""
 
@@ -245,9 +243,9 @@ def facts_as_attributes(content: Mapping[str, Any]) -> dict[str, str]:
 
 def _with_present_parts(manifest: Manifest, directory: Path) -> Manifest:
     """Manifest of an unfinished corpus with the whole parts in its folder, in the order of their records."""
-    parts = (path for path in (directory / "parts").glob("part-*.nc") if _PART_NAME.fullmatch(path.name))
-    paths = sorted(parts, key=lambda path: (len(path.name), path.name))  # part-100000 comes after part-99999
-    rows = [row for row in map(row_of, paths) if row is not None]
+    paths = {path: part_number(path.name) for path in (directory / "parts").glob("part-*.nc")}
+    parts = sorted((number, path) for path, number in paths.items() if number is not None)
+    rows = [row for _, path in parts if (row := row_of(path)) is not None]
     content = manifest.model_dump(mode="json") | facts_of_parts(rows, {}, complete=False)
     return manifest_of(content, directory / MANIFEST_NAME)
 

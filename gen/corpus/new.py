@@ -30,9 +30,9 @@ class NewCorpus:
         self._parts = folder / "parts"
         self._codec: Codec = codec
 
-    def write(self, records: xr.Dataset) -> None:
-        """Write records in the layout of the corpus (undecoded) as the next part."""
-        self.rows.append(write_part(records, self._parts / part_name(len(self.rows)), self._codec))
+    def write(self, records: xr.Dataset, name: str | None = None) -> None:
+        """Write records in the layout of the corpus (undecoded) as the next part, with the next file name or another one."""
+        self.rows.append(write_part(records, self._parts / (name or part_name(len(self.rows))), self._codec))
 
 
 def is_single_file(target: Path) -> bool:

@@ -1,6 +1,7 @@
 """One file of records: a complete netCDF-4 file, written atomically, that ends with its checksum. The parts of a corpus are such files."""
 
 import json
+import re
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
@@ -23,12 +24,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _INCOMPRESSIBLE = 7.8  # bits per byte
+_NAME = re.compile(r"part-([0-9]{5,9})(-[0-9]{1,6})?\.nc")
 
 
 class PartRow(NamedTuple):
     """Entry of a part in the manifest."""
 
-    name: Annotated[str, Field(pattern=r"^part-[0-9]{5,9}\.nc$")]
+    name: Annotated[str, Field(pattern=f"^{_NAME.pattern}$")]
     records: Count
     bytes: Count
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
@@ -36,13 +38,23 @@ class PartRow(NamedTuple):
     """Counts of the records that cannot be used."""
 
 
-def part_name(number: int) -> str:
-    """File name of a part.
+def part_name(number: int, records: int | None = None) -> str:
+    """File name of a part. One that is not full has its number of records in its name, so that a larger corpus does not write over it.
 
-    >>> part_name(3)
-    'part-00003.nc'
+    >>> part_name(3), part_name(4, 40)
+    ('part-00003.nc', 'part-00004-40.nc')
     """
-    return f"part-{number:05d}.nc"
+    return f"part-{number:05d}.nc" if records is None else f"part-{number:05d}-{records}.nc"
+
+
+def part_number(name: str) -> int | None:
+    """Number of a part from its file name; None for another name.
+
+    >>> part_number("part-00004-40.nc"), part_number("index.nc")
+    (4, None)
+    """
+    match = _NAME.fullmatch(name)
+    return None if match is None else int(match[1])
 
 
 Chunks = Mapping[tuple[int, ...], bytes]
@@ -63,7 +75,7 @@ def write_part(dataset: "xr.Dataset", path: Path, codec: Codec = "zlib") -> Part
     chunks = {at: deflate(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
     with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
-            attributes = {str(name): value for name, value in dataset.attrs.items()}
+            attributes = {name: dataset.attrs[name] for name in sorted(map(str, dataset.attrs))}
             texts = set_attributes(file, attributes | {"signals": json.dumps(signals._asdict())})
             for dimension, size in dataset.sizes.items():
                 file.createDimension(str(dimension), size)

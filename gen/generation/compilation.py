@@ -1,17 +1,12 @@
 """Kernels of a recipe compiled before its first record, several at once where cores are free.
 
-A kernel takes 10 to 20 s to compile, once per machine. Numba compiles one at a time in a process, so several take as many processes. A
-kernel that no record of the sample needs is compiled when the first record needs it.
+A kernel takes 10 to 20 s to compile, once per machine. A kernel that no record of the sample needs is compiled when the first record
+needs it.
 """
 
-import json
-import os
-import subprocess
-import sys
-import time
 from bisect import bisect
 from collections.abc import Callable, Iterator
-from pathlib import Path
+from contextlib import closing
 from typing import Any
 
 import numpy as np
@@ -25,50 +20,33 @@ from gen.recipe import Recipe
 from gen.scenarios import Scenario, draw_scenarios, first_specimens
 from gen.simulation.damage import is_wavy, untabulated_spalls
 from gen.simulation.inputs import bare_inputs
-from gen.simulation.kernels import is_compiled, load_kernel
+from gen.simulation.kernels import cache_folder, is_compiled, load_kernel
 from gen.simulation.motion import draw_motion, is_scheduled
+from gen.support.executor import cores, run
 from gen.support.garbage import keep_garbage
-from gen.support.workers import cores
 
 SAMPLE = 48
 """Number of records from the first on, and of others spread over the corpus, whose kernels are compiled."""
 MOST_AT_ONCE = 8  # processes; each takes 0.4 GB
-POLL_S = 0.02
 _WAVY = Waviness(np.zeros((2, 1), complex), ROUND.balls)
 _VARYING = np.ones((1, 2))
 
-# the thread ends this process with the one that started it, even if that was killed: then its end of the pipe closes
-_COMPILE_ONE = """
-import json, os, sys, threading
-threading.Thread(target=lambda: os._exit(bool(os.read(0, 1)) + 1), daemon=True).start()
-from gen.physics.kernel.layout import Shape
-from gen.simulation.kernels import load_kernel
-load_kernel(Shape(*((None,) * count for count in json.loads(sys.argv[1]))))
-"""
 
-
-def missing_kernels(recipe: Recipe) -> list[Shape]:
-    """Shapes of the kernels of a recipe that are not compiled on this machine."""
-    return [shape for shape in needed_shapes(recipe) if not is_compiled(shape)]
-
-
-def compile_kernels(recipe: Recipe, missing: list[Shape], report: Callable[[str], None] = lambda _: None) -> None:
-    """Compile the missing kernels into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
+def compile_kernels(recipe: Recipe, notice: Callable[[str], None] = lambda _: None) -> None:
+    """Compile the kernels of a recipe that this machine does not have yet; ``notice`` is called with a sentence for each."""
     with keep_garbage():
         compile_measuring(draw_scenarios(recipe, 0, 1)[0])
         for guest in (*mechanisms_of(recipe.background), *mechanisms_of(recipe.sensor_faults)):
             guest.compile()
-    at_once = min(cores(), MOST_AT_ONCE)
-    sentences = (
-        f"compiling kernel {number} of {len(missing)} ({shape_in_words(shape)}) for this machine"
-        for number, shape in enumerate(missing, 1)
-    )
-    if len(missing) > 1 and at_once > 1:
-        _compile_in_processes(missing, at_once, lambda: report(next(sentences)))
+    missing = [shape for shape in needed_shapes(recipe) if not is_compiled(shape)]
+    if not missing:
         return
-    for shape in missing:
-        report(next(sentences))
-        load_kernel(shape)
+    count = "one kernel" if len(missing) == 1 else f"{len(missing)} kernels"
+    notice(f"compiling {count} for this machine, 10 to 20 s each; they are kept for the next time.")
+    at_once = 1 if cache_folder() is None else min(cores(), MOST_AT_ONCE, len(missing))
+    with closing(run(load_kernel, missing, at_once)) as compiled:
+        for number, (shape, _) in enumerate(zip(missing, compiled, strict=True), 1):
+            notice(f"kernel {number} of {len(missing)} is compiled: {shape_in_words(shape)}.")
 
 
 def needed_shapes(recipe: Recipe) -> list[Shape]:
@@ -118,27 +96,3 @@ def shape_in_words(shape: Shape) -> str:
     channels = f"{len(shape.channels)} channel{'s' if len(shape.channels) > 1 else ''}"
     parts = [field for field in Shape._fields[2:] if getattr(shape, field)]
     return ", ".join([f"{len(shape.balls)} balls", channels, *parts])
-
-
-def _compile_in_processes(shapes: list[Shape], at_once: int, starting: Callable[[], None]) -> None:
-    """Compile the kernels of shapes, ``at_once`` at a time; one that fails is compiled when a record needs it."""
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)}
-    running: list[subprocess.Popen[bytes]] = []
-    try:
-        for shape in shapes:
-            while sum(process.poll() is None for process in running) >= at_once:
-                time.sleep(POLL_S)
-            starting()
-            command = [sys.executable, "-c", _COMPILE_ONE, json.dumps([len(field) for field in shape])]
-            silent = subprocess.DEVNULL
-            running.append(
-                subprocess.Popen(  # noqa: S603 - this Python
-                    command, stdin=subprocess.PIPE, stdout=silent, stderr=silent, env=environment
-                )
-            )
-        for process in running:
-            process.wait()
-    finally:
-        for process in running:
-            process.kill()
-            process.communicate()

@@ -1,32 +1,36 @@
 """Generate a corpus from a recipe, part by part, on one machine or many.
 
-One task draws, simulates, measures and writes some parts and returns their rows of the manifest. The same call completes an interrupted
-corpus: a part that is in the folder is kept if it is whole and was made from the same recipe by the same sources and libraries. The parts
-of a single file ``NAME.nc`` lie in the folder ``NAME.nc.parts`` until all are there.
+One task makes and writes one part, and returns its row of the manifest. The same call completes an interrupted corpus: a part that is in
+the folder is kept if it is whole and was made from the same recipe by the same sources and libraries. A finished corpus that grows stays
+what it is until all further parts are there: then its manifest is replaced. The parts of a single file ``NAME.nc`` lie in the folder
+``NAME.nc.parts`` until all are there.
 """
 
+import json
 import platform
-import time
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, closing, contextmanager, nullcontext, suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gen.corpus import (
     MANIFEST_NAME,
     RECIPE_NAME,
+    Manifest,
+    PartRow,
     SignalCounts,
     check_place,
     corpus_files,
+    facts_as_attributes,
     facts_of_parts,
     file_facts,
     finish_corpus,
     finish_file,
     is_single_file,
     lock,
-    part_name,
+    part_number,
     read_manifest,
     remove_left_behind_of,
     remove_parts,
@@ -35,24 +39,20 @@ from gen.corpus import (
     stored_columns,
     write_durably,
     write_manifest,
+    write_part,
     writing,
 )
-from gen.generation.compilation import compile_kernels, missing_kernels
-from gen.generation.forecast import expected_work, forecast_in_words, leave_rate, seconds_of
-from gen.generation.parts import Outcome, made_by, make_parts, units
+from gen.generation.compilation import compile_kernels
+from gen.generation.parts import failures_of, made_by, make_part, part_file
 from gen.generation.sources import sources_sha256
-from gen.generation.step_checks import CHECKED_PARTS
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.errors import ClusterError, CorpusError, RecipeError
-from gen.support.processes import as_they_come
+from gen.support.executor import Workers, connected, run, too_many
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
-from gen.support.workers import cores, run, too_many
 
 if TYPE_CHECKING:
     from distributed import Client
-
-    from gen.corpus import Manifest
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,7 +87,7 @@ def generate(
     target: Path | str,
     *,
     workers: int = 1,
-    scheduler: str | None = None,
+    scheduler: "Client | str | None" = None,
     seed: int | None = None,
     records: int | None = None,
     parts: range | None = None,
@@ -104,19 +104,18 @@ def generate(
         Single file of the corpus if the name ends in ``.nc``, else its folder; created if it does not exist. It may hold the same corpus,
         unfinished or finished; a folder may also hold fewer of its records, and then the rest is made.
     workers : int
-        Number of processes that make parts, this one among them. A script that starts several needs ``if __name__ == "__main__":``.
-    scheduler : str, optional
-        Address of a dask scheduler whose workers see the folder under the same path; replaces ``workers``.
+        Number of processes that make parts; 1 is this one.
+    scheduler : Client or str, optional
+        A dask client, or the address of a dask scheduler, whose workers see the folder under the same path; replaces ``workers``.
     seed, records : int, optional
         Replace the seed and the number of records of the recipe.
     parts : range, optional
         Parts that are made, of a folder; the corpus then has their records, and those of parts that are in the folder. Corpora of other
         parts, such as those of other machines, are joined by :func:`gen.copy`.
     progress : callable, optional
-        Called with the number of records that are on disk and of all records; from a cluster in another thread.
+        Called with the number of records that are on disk and of all records.
     notice : callable, optional
-        Called with a sentence that says how long it takes, one when a kernel is about to be compiled, and one about more workers than
-        cores.
+        Called with a sentence when kernels are compiled, and one about more workers than cores.
 
     Raises
     ------
@@ -128,6 +127,8 @@ def generate(
         If the scheduler does not answer or has no workers, before anything is written; or if the cluster is lost.
     """
     checked = read_recipe(recipe, seed=seed, records=records)
+    if type(workers) is not int or workers < 1:
+        raise RecipeError(f"workers: {workers!r} is not allowed; use 1 or more.")
     target = Path(target)
     check_place(target)
     folder = target.with_name(f"{target.name}.parts") if is_single_file(target) else target
@@ -136,18 +137,44 @@ def generate(
         _check_parts(checked, parts, target)
     elif is_single_file(target) and target.exists():
         return _finished_before(target, folder, checked, facts)
-    with client_of(scheduler, workers) as client, _claim(folder):
+    with nullcontext(workers) if scheduler is None else connected(scheduler) as place, _claim(folder):
         if folder is not target:
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
         text = find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode()
-        _prepare(folder, text, facts, checked, range(checked.n_parts) if parts is None else parts)
-        wanted = range(checked.n_parts) if parts is None else _with_those_there(checked, parts, folder)
-        outcomes = _all_parts(checked, wanted, folder, workers, client, progress, notice)
-        corpus = _finish(target, folder, outcomes, facts)
+        _prepare(folder, text, facts, checked)
+        every = range(checked.n_parts)
+        wanted = every if parts is None else sorted({*parts, *_there(folder)})
+        outcomes = _all_parts(checked, wanted, folder, place, progress, notice)
+        corpus = _finish(target, folder, text, outcomes, facts)
         if folder is not target:
-            remove_parts(folder, map(part_name, range(checked.n_parts)))
+            remove_parts(folder, [part_file(checked, part) for part in every])
+        else:
+            _remove_others(folder, checked)
         return corpus
+
+
+class Outcome(NamedTuple):
+    """A part on disk."""
+
+    row: PartRow | None
+    """None if all its records are left out."""
+    failures: tuple[str, ...]
+    kept: bool = False
+    """Whether an earlier call made it."""
+
+
+def _there(folder: Path) -> set[int]:
+    """Numbers of the parts that have a file, whole or not, full or not."""
+    numbers = {part_number(path.name) for path in (folder / "parts").glob("part-*.nc")}
+    return {number for number in numbers if number is not None}
+
+
+def _remove_others(folder: Path, recipe: Recipe) -> None:
+    """Remove a last part that was not full, of a corpus with fewer records."""
+    for path in (folder / "parts").glob("part-*-*.nc"):
+        if path.name != part_file(recipe, recipe.n_parts - 1):
+            path.unlink(missing_ok=True)
 
 
 def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
@@ -169,16 +196,6 @@ def _check_parts(recipe: Recipe, parts: range, target: Path) -> None:
         raise RecipeError(f"parts: {asked} is not allowed; {recipe.name} has the parts 0-{last}, give a range of them.")
 
 
-def _with_those_there(recipe: Recipe, parts: range, folder: Path) -> list[int]:
-    """Numbers of the parts, and of those that are in the folder already."""
-    return sorted({*parts, *_there(folder, range(recipe.n_parts))})
-
-
-def _there(folder: Path, parts: Sequence[int]) -> list[int]:
-    """Those of the parts that have a file, whole or not."""
-    return [part for part in parts if (folder / "parts" / part_name(part)).exists()]
-
-
 def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, Any]) -> Generated:
     """Result of a corpus in a single file that an earlier call has finished."""
     corpus_files(file)
@@ -196,7 +213,7 @@ def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, 
         left = read_manifest(folder)
         if not left.complete and left.recipe_sha256 == manifest.recipe_sha256:
             with lock(folder):
-                remove_parts(folder, map(part_name, range(recipe.n_parts)))
+                remove_parts(folder, [part_file(recipe, part) for part in range(recipe.n_parts)])
     return Generated(file, manifest.records, recipe.n_parts, recipe.n_parts, manifest.failures, manifest.signals)
 
 
@@ -204,39 +221,81 @@ def _all_parts(
     recipe: Recipe,
     parts: Sequence[int],
     folder: Path,
-    workers: int,
-    client: "Client | None",
+    workers: Workers,
     progress: Progress | None,
     notice: Callable[[str], None],
 ) -> list[Outcome]:
     """Make those of the parts that are missing; outcomes of all of them in their order."""
-    work, workers = 0.0, min(workers, len(parts))
-    at_once = min(workers, cores())
-    if client is None and (sentence := too_many(workers)) is not None:
-        notice(sentence)
-    if client is None and len(_there(folder, parts)) < len(parts):
-        missing, work = missing_kernels(recipe), expected_work(recipe)
-        notice(forecast_in_words(len(missing), recipe.n_records * at_once / seconds_of(work)))
-        compile_kernels(recipe, missing, notice)
-    outcomes: dict[int, Outcome] = {}
-    start, done = time.monotonic(), _tally(recipe, parts, progress)
-    with closing(_made(recipe, parts, folder, workers, client, done)) as made:
-        for part, outcome in made:
-            outcomes[part] = outcome
-            done(part)
-    if work and len(parts) == recipe.n_parts and not any(outcome.kept for outcome in outcomes.values()):
-        leave_rate(work, at_once * (time.monotonic() - start))
-    return [outcomes[number] for number in sorted(outcomes)]
+    report = counter(progress, sum(len(recipe.records_of_part(part)) for part in parts))
+    outcomes = dict[int, Outcome]()
+
+    def done(part: int, outcome: Outcome) -> None:
+        outcomes[part] = outcome
+        report(len(recipe.records_of_part(part)))
+
+    for part in parts:
+        if (kept := _kept(recipe, folder, part)) is not None:
+            done(part, kept)
+    missing = [part for part in parts if part not in outcomes]
+    if isinstance(workers, int):
+        workers = min(workers, max(len(missing), 1))
+        if (sentence := too_many(workers)) is not None:
+            notice(sentence)
+        if missing:
+            compile_kernels(recipe, notice)
+    task = partial(_write, recipe, folder.resolve(), sources_sha256())
+    with closing(run(task, missing, workers)) as made:
+        for part, outcome in zip(missing, made, strict=True):
+            done(part, outcome)
+    return [outcomes[part] for part in parts]
 
 
-def _finish(target: Path, folder: Path, outcomes: list[Outcome], facts: dict[str, Any]) -> Generated:
-    """Write index, manifest and data card of the finished parts, or a single file of them."""
-    rows = [outcome.row for outcome in outcomes if outcome.row.records]
+def _write(recipe: Recipe, folder: Path, sources: str, part: int) -> Outcome:
+    """Make and write one part, unless it is there: dask may repeat a task.
+
+    Raises
+    ------
+    ClusterError
+        If this process has other sources than the one that asks for the part.
+    """
+    if sources_sha256() != sources:
+        raise ClusterError(
+            f"worker {platform.node()}: has other sources of raceway ({sources_sha256()[:12]}) than this process ({sources[:12]}); install "
+            f"the same version on every worker."
+        )
+    if (kept := _kept(recipe, folder, part)) is not None:
+        return kept
+    made = make_part(recipe, recipe.records_of_part(part))
+    path = folder / "parts" / part_file(recipe, part)
+    row = write_part(made, path, recipe.storage.codec) if made.sizes["record"] else None
+    return Outcome(row, failures_of(made))
+
+
+def _kept(recipe: Recipe, folder: Path, part: int) -> Outcome | None:
+    """A part that is whole and was made from the same recipe with the same sources and libraries; None otherwise."""
+    path = folder / "parts" / part_file(recipe, part)
+    row = row_of(path)
+    if row is None:
+        return None
+    attributes, _ = file_facts(path)
+    numbers = stored_columns(path)["recording"]
+    expected = recipe.records_of_part(part)
+    same = all(attributes.get(name) == text for name, text in facts_as_attributes(made_by(recipe)).items())
+    if not same or not (expected.start <= numbers.min() and numbers.max() < expected.stop):
+        return None
+    return Outcome(row, tuple(json.loads(attributes["failures"])), kept=True)
+
+
+def _finish(target: Path, folder: Path, text: bytes, outcomes: list[Outcome], facts: dict[str, Any]) -> Generated:
+    """Write recipe, index, manifest and data card of the finished parts, or a single file of them."""
+    rows = [outcome.row for outcome in outcomes if outcome.row is not None]
     if not rows:
         raise CorpusError(f"{target}: no record could be simulated; {outcomes[0].failures[0]}")
     failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
     facts = facts | {"publication": facts["publication"].dated(), "failures": failures}
     whole = target == folder
+    with writing(folder):
+        write_durably(text, folder / RECIPE_NAME)
     signals = finish_corpus(folder, rows, **facts) if whole else finish_file(folder, rows, target, **facts)
     kept = sum(outcome.kept for outcome in outcomes)
     return Generated(target, sum(row.records for row in rows), len(rows), kept, failures, signals)
@@ -253,36 +312,34 @@ def _claim(folder: Path) -> Iterator[None]:
         yield
 
 
-def _prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe, parts: range) -> None:
-    """Check what the folder holds, and write the manifest of an unfinished corpus, unless it has all parts.
+def _prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe) -> None:
+    """Check what the folder holds, and write the manifest of an unfinished corpus, unless it holds a finished one, which may grow.
 
     The manifest is written first: it tells a corpus without any part from a folder that holds something else.
     """
-    again, finished = set[int](), False
+    finished = False
     with writing(folder):
         remove_temporary_files(folder)
         if (folder / MANIFEST_NAME).exists():
             manifest = read_manifest(folder)
             _check_same(folder, manifest, facts)
             _check_generated(folder, manifest)
-            again = _parts_again(folder, manifest, recipe)
+            _check_growth(folder, manifest, recipe)
             if not facts["publication"].stored:
                 facts["publication"] = manifest.publication  # given after the corpus was made
-            finished = (
-                manifest.complete and not again and {*map(part_name, parts)} <= {row.name for row in manifest.parts}
-            )
+            finished = manifest.complete
         elif any(folder.iterdir()):
             raise CorpusError(f"{folder}: is not empty and holds no corpus; choose another folder.")
         if not finished:
             write_manifest(folder, facts_of_parts([], facts, complete=False))
-        write_durably(text, folder / RECIPE_NAME)
+            write_durably(text, folder / RECIPE_NAME)
         (folder / "parts").mkdir(exist_ok=True)
-        for part in again:
-            (folder / "parts" / part_name(part)).unlink(missing_ok=True)
+        if not finished:
+            _remove_others(folder, recipe)
 
 
-def _parts_again(folder: Path, manifest: "Manifest", recipe: Recipe) -> set[int]:
-    """Parts that a larger corpus makes again: a last part that is not full, and one in which too few steps were checked."""
+def _check_growth(folder: Path, manifest: Manifest, recipe: Recipe) -> None:
+    """Refuse a corpus with fewer records than the one in the folder."""
     overrides = {} if manifest.overrides is None else dict(manifest.overrides)
     begun = folder / RECIPE_NAME  # not there if a call was killed before its first part
     before = read_recipe(begun, **overrides).n_records if begun.exists() else recipe.n_records
@@ -291,13 +348,9 @@ def _parts_again(folder: Path, manifest: "Manifest", recipe: Recipe) -> set[int]
             f"{folder}: holds a corpus of {before} records and not {recipe.n_records}; a corpus grows and does not shrink: choose another "
             "name."
         )
-    if recipe.n_records == before:
-        return set()
-    last, rest = divmod(before, recipe.storage.records_per_part)
-    return {(last - (rest == 0)) // CHECKED_PARTS * CHECKED_PARTS, *([last] if rest else [])}
 
 
-def _check_same(place: Path, manifest: "Manifest", facts: dict[str, Any]) -> None:
+def _check_same(place: Path, manifest: Manifest, facts: dict[str, Any]) -> None:
     """Refuse to complete a corpus of another recipe, or one that other sources or libraries began: its records would not go together."""
     if manifest.recipe_sha256 is None:
         raise CorpusError(
@@ -318,70 +371,8 @@ def _check_same(place: Path, manifest: "Manifest", facts: dict[str, Any]) -> Non
         )
 
 
-def _check_generated(folder: Path, manifest: "Manifest") -> None:
+def _check_generated(folder: Path, manifest: Manifest) -> None:
     """Refuse a copy: its parts have other records than those that are generated, and would be made again."""
     whole = next(filter(row_of, (folder / "parts" / row.name for row in manifest.parts)), None)
     if whole is not None and "recipe_sha256" not in file_facts(whole)[0]:
         raise CorpusError(f"{folder}: holds a copy of a corpus, which is not generated again; choose another name.")
-
-
-def _tally(recipe: Recipe, parts: Sequence[int], progress: Progress | None) -> Callable[[int], None]:
-    """What takes the number of a part that is on disk, and tells ``progress`` the number of records on disk; of repeated parts once."""
-    sizes = {part: len(recipe.records_of_part(part)) for part in parts}
-    count = counter(progress, sum(sizes.values()))
-    return lambda part: count(sizes.pop(part, 0))
-
-
-def client_of(scheduler: str | None, workers: int) -> "AbstractContextManager[Client | None]":
-    """Client of the scheduler at an address; None if no address is given, but a number of workers that must be 1 or more."""
-    if workers < 1:
-        raise RecipeError(f"workers: {workers} is not allowed; use 1 or more.")
-    if scheduler is None:
-        return nullcontext()
-    from gen.support import cluster  # distributed takes 0.3 s to load, and work in this process does not need it
-
-    return cluster.client_of(scheduler)
-
-
-def _made(
-    recipe: Recipe,
-    parts: Sequence[int],
-    folder: Path,
-    workers: int,
-    client: "Client | None",
-    report: Callable[[int], None],
-) -> Generator[tuple[int, Outcome]]:
-    """Number and outcome of every part in the order in which they finish: from this process, from several, or from a cluster.
-
-    ``report`` is called with a part that a worker of the cluster has written; its outcome comes with that of other parts.
-    """
-    if client is not None:
-        threads: list[int] = list(cast("Any", client).nthreads().values())
-        task = partial(_unit, recipe, folder.resolve(), sources_sha256())
-        return run(task, units(recipe, parts, max(sum(threads), 1)), scheduler=client, report=report)
-    if workers == 1:
-        return make_parts(recipe, parts, folder)
-    there = _there(folder, parts)
-    return as_they_come(partial(_share, recipe, folder.resolve(), there, sorted({*parts} - {*there})), workers)
-
-
-def _share(
-    recipe: Recipe, folder: Path, there: list[int], missing: list[int], share: int, shares: int
-) -> Iterator[tuple[int, Outcome]]:
-    """Make the parts of one process: missing ones that follow each other, and of those that seem to be there as many as the others."""
-    first, stop = (len(missing) * edge // shares for edge in (share, share + 1))
-    return make_parts(recipe, sorted(there[share::shares] + missing[first:stop]), folder)
-
-
-def _unit(
-    recipe: Recipe, folder: Path, sources: str, report: Callable[[int], None], parts: Sequence[int]
-) -> Iterator[tuple[int, Outcome]]:
-    """Make some parts on a worker of a cluster, if it has the sources of the process that asks for them."""
-    if sources_sha256() != sources:
-        raise ClusterError(
-            f"worker {platform.node()}: has other sources of raceway ({sources_sha256()[:12]}) than this process ({sources[:12]}); install "
-            f"the same version on every worker."
-        )
-    for part, outcome in make_parts(recipe, parts, folder):
-        report(part)
-        yield part, outcome

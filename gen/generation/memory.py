@@ -7,18 +7,19 @@ as :func:`gen.generate` does it, so the same recipe gives the same records eithe
 import json
 import warnings
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import xarray as xr
 
 from gen.corpus import RECIPE_TEXT
-from gen.corpus.schema import add_class_names
-from gen.generation.parts import dataset_of, library_versions, part_attributes, parts_in_order
+from gen.generation.parts import decoded, failures_of, labelled, library_versions, make_part, part_attributes
 from gen.generation.undetected import made_from
 from gen.recipe import Recipe, make_recipe, recipe_text
 from gen.recipe.keywords import FaultLike
 from gen.scenarios import Rig, Scenario, check_scenario, read_scenario, scenario_texts
 from gen.support.errors import CorpusError, RecipeError, SimulationError
+from gen.support.executor import run
 
 
 def record(fault: FaultLike | None = None, **keys: Any) -> xr.Dataset:
@@ -73,7 +74,7 @@ def records(
         Number of records of each fault. Each record has a bearing (``specimen``) of its own in one machine (``rig``), unless ``keys``
         give ``rigs``, ``specimens_per_rig``, ``records_per_specimen`` or ``rungs``. The faults take turns.
     workers : int
-        Number of processes that make parts; 1 is this one. A script that starts several needs ``if __name__ == "__main__":``.
+        Number of processes that make parts; 1 is this one.
     **keys
         Keys of a recipe, as for :func:`gen.record`.
 
@@ -117,8 +118,8 @@ def simulate(scenarios: Sequence[Scenario]) -> xr.Dataset:
     SimulationError
         If scenarios have different settings, or no record can be simulated.
     """
-    made, failures = dataset_of(made_from(_checked(scenarios)))
-    return _decoded([made], failures, {"versions": json.dumps(library_versions())})
+    part = labelled(made_from(_checked(scenarios)))
+    return _joined([part], failures_of(part), {"versions": json.dumps(library_versions())})
 
 
 def _checked(scenarios: Sequence[Scenario]) -> list[Scenario]:
@@ -157,22 +158,20 @@ def _checked(scenarios: Sequence[Scenario]) -> list[Scenario]:
 
 def _made(recipe: Recipe, workers: int) -> xr.Dataset:
     """Records of a recipe, made in parts as those of a corpus."""
-    parts = list(parts_in_order(recipe, range(recipe.n_parts), workers))
-    failures = [text for _, texts in parts for text in texts]
-    count = sum(part.sizes["record"] for part, _ in parts)
+    numbers = list(map(recipe.records_of_part, range(recipe.n_parts)))
+    parts = list(run(partial(make_part, recipe), numbers, min(workers, len(numbers))))
+    failures = [sentence for part in parts for sentence in failures_of(part)]
+    count = sum(part.sizes["record"] for part in parts)
     attributes = part_attributes(recipe, failures) | {RECIPE_TEXT: recipe_text(recipe), "records": str(count)}
-    return _decoded([part for part, _ in parts], failures, attributes)
+    return _joined(parts, failures, attributes)
 
 
-def _decoded(parts: list[xr.Dataset], failures: Sequence[str], attributes: dict[str, str]) -> xr.Dataset:
-    """Records of all parts in m s-2."""
-    dataset = parts[0] if len(parts) == 1 else xr.concat(parts, "record", data_vars="minimal", coords="minimal")
-    if not dataset.sizes["record"]:
+def _joined(parts: list[xr.Dataset], failures: Sequence[str], attributes: dict[str, str]) -> xr.Dataset:
+    """Records of all parts in m s-2; SimulationError if there is none."""
+    records = decoded(parts)
+    if not records.sizes["record"]:
         raise SimulationError(failures[0])
-    decoded = xr.decode_cf(dataset, decode_times=False).load()
-    add_class_names(decoded)
-    decoded.attrs |= attributes
     if failures:
-        left_out = f"{len(failures)} of {len(failures) + dataset.sizes['record']} records are left out"
+        left_out = f"{len(failures)} of {len(failures) + records.sizes['record']} records are left out"
         warnings.warn(f"{left_out}; the first: {failures[0]}", stacklevel=4)
-    return decoded
+    return records.assign_attrs(attributes)

@@ -1,26 +1,30 @@
-"""Plan of a corpus: counts, bytes, steps and time, without generating it.
+"""Plan of a corpus: counts, size, steps and kernels, without generating it.
 
-Records are drawn as :func:`gen.generate` draws them, and some of them checked as it checks them. The time is a forecast
-(:mod:`gen.generation.forecast`).
+Records are drawn as :func:`gen.generate` draws them, and some of them checked as it checks them.
 """
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from gen.corpus import CODECS, FAULTS, SPLITS
 from gen.generation.compilation import needed_shapes
-from gen.generation.forecast import START_S, groups_of, seconds_of, some_of, work_of
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import draw_scenarios
-from gen.simulation.batches import Group
+from gen.scenarios import Scenario, draw_scenarios, settings_of
+from gen.simulation.inputs import kernel_inputs
 from gen.simulation.kernels import is_compiled
+from gen.simulation.motion import draw_motion
+from gen.simulation.steps import steps_per_sample
+from gen.simulation.timeline import timeline
 from gen.support.errors import SimulationError
 
-MOST_DRAWN = 5000  # records, about 2 s; from a larger corpus whole parts are drawn, spread evenly over it
-MOST_CHECKED = 240  # of the drawn records; one of some seconds with a changing speed takes 10 ms
+MOST_DRAWN = 2000  # records, about 0.6 s; from a larger corpus whole parts are drawn, spread evenly over it
+MOST_CHECKED = 64  # of the drawn records; one of some seconds with a changing speed takes 10 ms
+AT_ONCE = 8  # records: a schedule of a minute takes 10 MB
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
 BYTES_PER_RECORD = 700  # labels and drawn values
@@ -29,11 +33,11 @@ BYTES_PER_FILE = 80_000  # overhead of a part or of the index
 
 @dataclass(frozen=True)
 class Plan:
-    """Counts, size and time of a corpus.
+    """Counts and size of a corpus.
 
     ``classes``, ``splits`` and ``steps_per_sample`` count records; the last does not count the ``left_out`` records, which cannot be
     simulated. If fewer records were ``drawn`` than the corpus has, classes and splits are scaled up; if fewer were ``checked``, steps and
-    records left out are. ``estimated_seconds`` is for one process, from its start to the finished corpus, with compiled kernels.
+    records left out are. A record whose fault cannot be seen is left out too, which only :func:`gen.generate` finds.
     """
 
     recipe: str
@@ -53,7 +57,6 @@ class Plan:
     uncompiled: int
     """Kernels that are not compiled on this machine."""
     bytes: int
-    estimated_seconds: float
     drawn: int
     checked: int
     left_out: int
@@ -81,15 +84,15 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     drawn = [scenario for first, stop in ranges for scenario in draw_scenarios(whole, first, stop)]
     present = len(drawn) / sum(stop - first for first, stop in ranges)  # lives that have ended have no more records
     count = round(whole.n_records * present)
-    checked = [drawn[place] for place in some_of(len(drawn), MOST_CHECKED)]
-    groups, failures = list[Group](), list[str]()
-    for found in groups_of(checked, whole):
-        failures.append(found) if isinstance(found, str) else groups.append(found)
-    if not groups:
+    # by chance, since evenly spaced records might meet the same cell of every grid
+    places = sorted(np.random.default_rng(0).permutation(len(drawn))[:MOST_CHECKED].tolist())
+    found = list(steps_of([drawn[place] for place in places], whole))
+    steps = [one for one in found if isinstance(one, int)]
+    failures = [one for one in found if isinstance(one, str)]
+    if not steps:
         raise SimulationError(failures[0])
     recording, needed = whole.recording, needed_shapes(whole)
-    of_drawn, of_checked = count / len(drawn), count / len(checked)
-    steps = [group.steps for group in groups]
+    of_drawn, of_checked = count / len(drawn), count / len(places)
     return Plan(
         recipe=whole.name,
         title=whole.title,
@@ -104,15 +107,30 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         kernels=len(needed),
         uncompiled=sum(not is_compiled(shape) for shape in needed),
         bytes=_bytes(whole, count),
-        estimated_seconds=START_S + seconds_of(present * work_of(whole, groups)),
         drawn=len(drawn),
-        checked=len(checked),
+        checked=len(places),
         left_out=round(len(failures) * of_checked),
         first_left_out=failures[0] if failures else None,
         classes=_scaled((one.specimen.fault for one in drawn), FAULTS, of_drawn),
         splits=_scaled((one.specimen.split for one in drawn), SPLITS, of_drawn),
         steps_per_sample=_scaled(steps, sorted(set(steps)), of_checked),
     )
+
+
+def steps_of(scenarios: Sequence[Scenario], recipe: Recipe) -> Iterator[int | str]:
+    """Steps per sample of each record, or a sentence where no machine is possible.
+
+    Raises
+    ------
+    SimulationError
+        If a record needs more steps than the recipe has.
+    """
+    axis = timeline(settings_of(recipe))
+    for first in range(0, len(scenarios), AT_ONCE):
+        some = scenarios[first : first + AT_ONCE]
+        inputs, failures = kernel_inputs([draw_motion(scenario) for scenario in some], axis)
+        for place, (given, scenario) in enumerate(zip(inputs, some, strict=True)):
+            yield failures[place] if given is None else steps_per_sample(given, scenario.record, scenario.settings)
 
 
 def _scaled(values: Iterable[Any], order: Iterable[Any], scale: float) -> dict[Any, int]:

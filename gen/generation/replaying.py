@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gen.corpus import SIGNAL, open_corpus
 from gen.corpus.joining import NUMBERS
-from gen.generation.labels import part_dataset
+from gen.generation.parts import decoded, labelled
 from gen.generation.undetected import made_from
 from gen.scenarios import Scenario, read_scenarios
 from gen.support.errors import CorpusError
@@ -50,9 +50,8 @@ def replay(path: Path | str, record: int) -> Replayed:
         stored = row[SIGNAL].values[0]
         names = [str(name) for name in corpus["channel"].values]
         numbers = {name: row[name].values for name in NUMBERS if name in corpus}
-    made = made_from([scenario])
-    again = part_dataset(made.measured, made.response)
-    (signal,) = xr.decode_cf(again, decode_times=False)[SIGNAL].values
+    again = labelled(made_from([scenario]))
+    (signal,) = decoded([again])[SIGNAL].values
     places = [_place(channel, name, signal, scenario) for channel, name in zip(stored, names, strict=True)]
     dataset = again.isel(channel=places).assign_coords(channel=again["channel"][places].copy(data=names))
     dataset = dataset.assign({name: again[name].copy(data=values) for name, values in numbers.items()})

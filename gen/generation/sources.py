@@ -13,7 +13,6 @@ _MAKES_RECORDS = (
     "gen/generation/step_checks.py",
     "gen/generation/undetected.py",
     "gen/generation/labels.py",
-    "gen/generation/scheduling.py",
     "gen/support/units.py",
 )
 """Folders and files by which a recipe becomes records."""

@@ -1,65 +1,55 @@
 """Check of the step: some records of a corpus are integrated again at half the step, and the relative change is stored with them."""
 
-import math
-from collections.abc import Collection, Mapping
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.generation.undetected import MadeRecords
+from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe
-from gen.scenarios import Scenario, first_records, settings_of
-from gen.simulation.batches import Integration, group_of
-from gen.simulation.simulate import Response, Run, acceleration_of
+from gen.scenarios import first_records, settings_of
+from gen.simulation.batches import Group, Integration, group_of, integrate_all
+from gen.simulation.simulate import acceleration_of
 from gen.simulation.timeline import timeline
 
-FloatArray = NDArray[np.float64]
-
-CHECKED_PARTS, CHECKED_SHARE = 32, 0.01  # every 32nd part repeats 1 % of the records of 32 parts at half the step
+CHECKED_PARTS = 8  # every 8th part integrates a batch of its records again: 1 to 2 % of the time of a part
 
 
-def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -> dict[int, Run]:
-    """Some records of a part at half their step, by place."""
-    usable = {place: some for place, some in enumerate(response.inputs) if some and place not in response.failures}
-    finer = {}
-    for place in checked_places(scenarios, recipe, usable):
-        given, steps = usable[place], 2 * int(response.oversampling[place])
-        own = Integration(scenarios[place].record.number, given, group_of(given, steps))
-        finer[place] = Run(response.motions[place], given, "", own, None)
-    return finer
-
-
-def step_changes(finer: Mapping[int, Run], response: Response, recipe: Recipe) -> FloatArray:
-    """Relative rms change between records and the same at half the step, NaN for the other records, shape (record,)."""
-    errors, kept = np.full(len(response.oversampling), np.nan), timeline(settings_of(recipe)).kept
-    tried = list(finer)
-    if tried:
-        coarse, halved = response.acceleration[tried], np.stack([acceleration_of(one.own) for one in finer.values()])
-        pair = coarse[..., kept] - halved[..., kept], halved[..., kept]
-        change, whole = (np.sum(some**2, axis=(1, 2), dtype=np.float64) for some in pair)
-        errors[tried] = np.sqrt(change / whole)
+def step_errors(recipe: Recipe, numbers: range, made: MadeRecords) -> NDArray[np.float64]:
+    """Relative rms change between some records of a part and the same at half the step, NaN for the other records, shape (record,)."""
+    response, axis = made.response, timeline(settings_of(recipe))
+    usable = {place: one for place, one in enumerate(response.inputs) if one and place not in response.failures}
+    groups = {place: group_of(given, int(response.oversampling[place])) for place, given in usable.items()}
+    faults = [scenario.specimen.fault for scenario in made.measured.scenarios]
+    halved = {
+        place: Integration(usable[place], Group(groups[place].shape, 2 * groups[place].steps))
+        for place in checked_places(recipe, numbers, faults, groups)
+    }
+    integrate_all([*halved.values()], axis)
+    errors = np.full(len(faults), np.nan)
+    for place, integration in halved.items():
+        fine = acceleration_of(integration)[:, axis.kept]
+        change = response.acceleration[place][:, axis.kept] - fine
+        errors[place] = np.sqrt(np.sum(change**2, dtype=np.float64) / np.sum(fine**2, dtype=np.float64))
     return errors
 
 
-def checked_places(scenarios: list[Scenario], recipe: Recipe, usable: Collection[int]) -> list[int]:
-    """Places in a part of the records whose step is to be checked, of those that are ``usable``.
+def checked_places(
+    recipe: Recipe, numbers: range, faults: Sequence[str], groups: Mapping[int, Hashable]
+) -> Iterable[int]:
+    """Places of the records of a part whose step is checked, given the groups of those that were made, by place.
 
     These are the first record of each class, in the part where the first specimen of the class begins; and in every ``CHECKED_PARTS``-th
-    part ``CHECKED_SHARE`` of the records of so many parts.
+    part the first records that share their kernel and step, as many as a batch has lanes. They do not depend on the number of records of
+    the corpus.
     """
-    begun = {scenario.record.number for scenario in scenarios}
-    new = {fault for fault, number in first_records(recipe).items() if number in begun}
+    begun = {fault for fault, number in first_records(recipe).items() if number in numbers}
     first: dict[str, int] = {}
-    for place in usable:
-        if scenarios[place].specimen.fault in new:
-            first.setdefault(scenarios[place].specimen.fault, place)
-    span = CHECKED_PARTS * recipe.storage.records_per_part
-    done = scenarios[0].record.number
-    wanted = CHECKED_SHARE * min(span, recipe.n_records - done) if done % span == 0 else 0
-    every = [*dict.fromkeys([*first.values(), *usable])]
-    return every[: max(len(first), math.ceil(wanted))]
-
-
-def has_checks(recipe: Recipe, numbers: range) -> bool:
-    """Whether the step of any of the records of a part may be checked, by :func:`checked_places`."""
-    every = numbers.start % (CHECKED_PARTS * recipe.storage.records_per_part) == 0
-    return every or any(number in numbers for number in first_records(recipe).values())
+    for place in groups:
+        first.setdefault(faults[place], place)
+    chosen = [place for fault, place in first.items() if fault in begun]
+    if groups and numbers.start % (CHECKED_PARTS * recipe.storage.records_per_part) == 0:
+        leading = next(iter(groups.values()))
+        chosen += [place for place, group in groups.items() if group == leading][:LANES]
+    return dict.fromkeys(chosen)

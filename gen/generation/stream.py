@@ -5,20 +5,20 @@ They are made in the parts of its corpus, in this process or in several, and com
 """
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import xarray as xr
 
-from gen.corpus.schema import add_class_names
 from gen.drawing import Grid, Section, quantities
-from gen.generation.compilation import compile_kernels, missing_kernels
-from gen.generation.parts import parts_in_order
+from gen.generation.compilation import compile_kernels
+from gen.generation.parts import decoded, failures_of, make_part
 from gen.recipe import Recipe, corpus_identity, read_recipe
 from gen.support.errors import RecipeError, SimulationError
-from gen.support.workers import too_many
+from gen.support.executor import run, too_many
 
 if TYPE_CHECKING:
     from gen.generation.torch_items import TorchStream
@@ -44,7 +44,7 @@ def stream(
     batch : int
         Number of records of a batch.
     workers : int
-        Number of processes that make records; 1 is this one. A script that starts several needs ``if __name__ == "__main__":``.
+        Number of processes that make records; 1 is this one.
     seed : int, optional
         Replaces that of the recipe.
     start : int
@@ -72,12 +72,12 @@ def stream(
     >>> for batch in stream("domain_randomised", workers=4):  # doctest: +SKIP
     ...     train(batch["acceleration"].values, batch["fault"].values)
     """
+    fresh = endless(read_recipe(recipe, seed=seed))
     for name, value, least in (("batch", batch, 1), ("workers", workers, 1), ("start", start, 0)):
-        if type(value) is not int or value < least:
-            raise RecipeError(f"{name}: {value!r} is not allowed; give a whole number, {least} or more.")
+        _check_number(name, value, least, fresh.n_records - 1)
     if (sentence := too_many(workers)) is not None:
         warnings.warn(sentence, stacklevel=2)
-    return Stream(endless(read_recipe(recipe, seed=seed)), batch, workers, start, notice)
+    return Stream(fresh, batch, workers, start, notice)
 
 
 def torch_stream(
@@ -121,7 +121,7 @@ def torch_stream(
             "torch_stream: needs PyTorch, which is not installed; install torch, or use gen.stream."
         ) from None
     fresh = endless(read_recipe(recipe, seed=seed))
-    compile_kernels(fresh, missing_kernels(fresh), notice)  # once, ahead of the workers of the loader
+    compile_kernels(fresh, notice)  # once, ahead of the workers of the loader
     return TorchStream(partial(records_from, fresh, start), label, operating, transform)
 
 
@@ -131,7 +131,7 @@ class Stream(Iterator[xr.Dataset]):
     def __init__(self, recipe: Recipe, batch: int, workers: int, start: int, notice: Callable[[str], None]) -> None:
         self.recipe, self.batch, self.workers, self.notice = recipe, batch, workers, notice
         self._next = start
-        self._made: Iterator[xr.Dataset] | None = None
+        self._made: Generator[xr.Dataset] | None = None
         self._ready: list[xr.Dataset] = []
 
     def __repr__(self) -> str:
@@ -141,10 +141,14 @@ class Stream(Iterator[xr.Dataset]):
     def __next__(self) -> xr.Dataset:
         """Return the next batch."""
         if self._made is None:
-            compile_kernels(self.recipe, missing_kernels(self.recipe), self.notice)
+            compile_kernels(self.recipe, self.notice)
             self._made = records_from(self.recipe, self._next, workers=self.workers)
-        while sum(some.sizes["record"] for some in self._ready) < self.batch:
-            self._ready.append(next(self._made))
+        try:
+            while sum(some.sizes["record"] for some in self._ready) < self.batch:
+                self._ready.append(next(self._made))
+        except BaseException:
+            self.close()  # the next batch, if one is asked for, begins with the same record
+            raise
         whole = xr.concat(self._ready, "record", data_vars="minimal", coords="minimal", combine_attrs="override")
         self._ready = [whole.isel(record=slice(self.batch, None))]
         batch = whole.isel(record=slice(self.batch))
@@ -163,18 +167,20 @@ class Stream(Iterator[xr.Dataset]):
         RecipeError
             If it is not the state of a stream of this recipe and seed.
         """
-        if state.keys() != self.state_dict().keys() or state["identity"] != corpus_identity(self.recipe):
+        identity, following = (state.get(key) for key in ("identity", "next"))
+        if identity != corpus_identity(self.recipe) or type(following) is not int:
             raise RecipeError(
                 f"{self.recipe.name}: not a state of a stream of this recipe and seed; give what its state_dict gave."
             )
+        _check_number("next", following, 0, self.recipe.n_records - 1)
         self.close()
-        self._next, self._ready = state["next"], []
+        self._next = following
 
     def close(self) -> None:
         """End the workers; the next batch would start others."""
         if self._made is not None:
-            self._made.close()  # pyright: ignore[reportAttributeAccessIssue] - a generator
-            self._made = None
+            self._made.close()
+        self._made, self._ready = None, []
 
     def __enter__(self) -> Self:
         """Return the stream."""
@@ -183,6 +189,11 @@ class Stream(Iterator[xr.Dataset]):
     def __exit__(self, *_: object) -> None:
         """End the workers."""
         self.close()
+
+
+def _check_number(name: str, value: object, least: int, most: int) -> None:
+    if type(value) is not int or not least <= value <= most:
+        raise RecipeError(f"{name}: {value!r} is not allowed; give a whole number from {least} to {most:,}.")
 
 
 def endless(recipe: Recipe) -> Recipe:
@@ -211,16 +222,16 @@ def _grid_in(section: Section, place: str) -> str | None:
 
 def records_from(
     recipe: Recipe, first: int, *, workers: int = 1, shard: int = 0, shards: int = 1
-) -> Iterator[xr.Dataset]:
+) -> Generator[xr.Dataset]:
     """Records from the number ``first`` on, in rising order, a part at a time: every ``shards``-th part, beginning with ``shard``."""
-    parts = range(first // recipe.storage.records_per_part, recipe.n_parts)[shard::shards]
-    warned = False
-    for made, failures in parts_in_order(recipe, parts, workers):
-        if not made.sizes["record"]:
-            raise SimulationError(failures[0])
-        if failures and not warned:
-            warnings.warn(f"records that cannot be simulated are left out; the first: {failures[0]}", stacklevel=3)
-            warned = True
-        records = xr.decode_cf(made, decode_times=False).load()
-        add_class_names(records)
-        yield records.isel(record=records["recording"].values >= first)
+    parts, warned = range(first // recipe.storage.records_per_part, recipe.n_parts)[shard::shards], False
+    with closing(run(partial(make_part, recipe), map(recipe.records_of_part, parts), workers)) as made:
+        for part in made:
+            failures = failures_of(part)
+            if not part.sizes["record"]:
+                raise SimulationError(failures[0])
+            if failures and not warned:
+                warnings.warn(f"records that cannot be simulated are left out; the first: {failures[0]}", stacklevel=3)
+                warned = True
+            records = decoded([part])
+            yield records.isel(record=records["recording"].values >= first)

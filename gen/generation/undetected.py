@@ -6,7 +6,7 @@ operating conditions of a class do not depend on what can be seen in them. All r
 another part, so that every part finds the same fault.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from gen.measurement.lives import with_ends
 from gen.measurement.measure import Measured, measure
 from gen.recipe import Recipe
-from gen.scenarios import Scenario, common_settings, draw_scenarios, simulation_errors, with_level
+from gen.scenarios import Scenario, common_settings, draw_scenarios, settings_of, simulation_errors, with_level
 from gen.simulation.batches import integrate_all
 from gen.simulation.hits import felt_places
 from gen.simulation.simulate import Response, Run, open_integrations, response_of, runs_of
 from gen.simulation.timeline import timeline
+from gen.support.errors import SimulationError
 
 LEVEL_TRIES = 8  # draws of the level of a record whose fault cannot be seen
 FAULT_TRIES = 12  # faults drawn for a specimen until one can be seen in all of its records
@@ -34,35 +35,70 @@ class MadeRecords:
     measured: Measured
 
 
-Family = list[Run]
-"""Records that are judged together."""
+def make_records(recipe: Recipe, numbers: range) -> MadeRecords:
+    """Make the records with the given numbers, in their order.
+
+    Raises
+    ------
+    SimulationError
+        If there are none, since every life has ended before them.
+    """
+    drawing, axis = Drawing(recipe), timeline(settings_of(recipe))
+    final: dict[int, tuple[MadeRecords, int]] = {}
+    runs = drawing.first(numbers)
+    while runs:
+        integrate_all(open_integrations(runs), axis)
+        made, runs = drawing.judge(runs)
+        redrawn = {run.scenario.record.number for run in runs}
+        for place, scenario in enumerate(made.measured.scenarios):
+            if scenario.record.number in numbers and scenario.record.number not in redrawn:
+                final[scenario.record.number] = made, place
+    if not final:
+        raise SimulationError(f"records {numbers.start}-{numbers.stop - 1}: every life has ended before them.")
+    return _picked([final[number] for number in numbers if number in final])
 
 
-class Families:
-    """The families of a recipe: drawn, and judged once they are integrated."""
+def _picked(rows: list[tuple[MadeRecords, int]]) -> MadeRecords:
+    """Records from some places of others."""
+    response, measured = rows[0][0].response, rows[0][0].measured
+    failures = {
+        new: made.response.failures[place] for new, (made, place) in enumerate(rows) if place in made.response.failures
+    }
+    columns = [
+        {name: _column([getattr(getattr(made, of), name)[place] for made, place in rows]) for name in _columns(one)}
+        for of, one in (("response", response), ("measured", measured))
+    ]
+    return MadeRecords(replace(response, failures=failures, **columns[0]), replace(measured, **columns[1]))
+
+
+def _column(rows: list[Any]) -> NDArray[Any] | list[Any]:
+    return np.stack(rows) if isinstance(rows[0], np.ndarray | np.generic) else rows
+
+
+def _columns(of: Response | Measured) -> list[str]:
+    """Fields that have one row for each record."""
+    return [field.name for field in fields(of) if field.name not in ("failures", "twins", "counts_per_unit")]
+
+
+class Drawing:
+    """Records of whole specimens or groups: drawn, and judged once they are integrated."""
 
     def __init__(self, recipe: Recipe) -> None:
         self.recipe = recipe
         self._redraws = recipe.truth.undetected == "redraw" and recipe.truth.twins
-        self._whole = self._redraws or recipe.life is not None
-        # all records of a specimen are judged together, and those of a group have one level
-        self.size = recipe.corpus.records_of_a_specimen if self._whole else recipe.corpus.n_rungs
         self._tries: dict[int, int] = {}
 
-    def numbers(self, of: range) -> range:
-        """Numbers of the records of all families that some records belong to."""
-        size = self.size
-        return range(of.start // size * size, min(-(-of.stop // size) * size, self.recipe.n_records))
+    def first(self, numbers: range) -> list[Run]:
+        """Records with the given numbers, and all that are judged together with them, with their first fault."""
+        corpus, whole = self.recipe.corpus, self._redraws or self.recipe.life is not None
+        size = corpus.records_of_a_specimen if whole else corpus.n_rungs
+        stop = min(-(-numbers.stop // size) * size, self.recipe.n_records)
+        scenarios = draw_scenarios(self.recipe, numbers.start // size * size, stop)
+        return runs_of(self._with_hits(scenarios)) if scenarios else []
 
-    def draw(self, numbers: range) -> list[Family]:
-        """Families with the given numbers of records, which are those of whole families."""
-        scenarios = draw_scenarios(self.recipe, numbers.start, numbers.stop)
-        return self._cut(self._with_hits(scenarios) if self._redraws else scenarios, {})
-
-    def judge(self, families: list[Family]) -> tuple[MadeRecords, list[Family]]:
-        """Records of integrated families, and the families again whose fault is drawn again."""
-        every = [run for family in families for run in family]
-        made = made_of(every, self._other_levels)
+    def judge(self, runs: list[Run]) -> tuple[MadeRecords, list[Run]]:
+        """Records of integrated runs, and the runs of specimens whose fault is drawn again."""
+        made = made_of(runs, self._other_levels)
         if self.recipe.life is not None:
             measured, behind = with_ends(made.measured, self.recipe.life.end)
             made = replace(made, measured=measured)
@@ -72,9 +108,6 @@ class Families:
         unseen = _unseen_places(made)
         specimens = dict.fromkeys(made.measured.scenarios[place].specimen.number for place in unseen)
         again = sorted(number for number in specimens if self._tries.get(number, 0) < FAULT_TRIES - 1)
-        known = {
-            run.scenario.record.number: run for place, run in enumerate(every) if place not in made.response.failures
-        }
         advice = "raise level.faulty_db" if self.recipe.level.kind == "snr" else "lower level.background_m_s2"
         for place in unseen:
             scenario = made.measured.scenarios[place]
@@ -83,20 +116,17 @@ class Families:
                     f"record {scenario.record.number}: none of {FAULT_TRIES} drawn faults of class {scenario.specimen.fault} can be seen "
                     f"in it; {advice}, or choose truth.undetected: keep."
                 )
-        return made, self._cut(self._with_hits(self._redrawn(again)), known)
+        if not again:
+            return made, []
+        known = {
+            run.scenario.record.number: run for place, run in enumerate(runs) if place not in made.response.failures
+        }
+        return made, runs_of(self._with_hits(self._redrawn(again)), known)
 
     def _other_levels(self, scenario: Scenario) -> Iterator[Scenario]:
         """The same record with its further levels, one after the other."""
         tries = LEVEL_TRIES if self._redraws and self.recipe.level.kind == "snr" else 1
         return (with_level(scenario, self.recipe, level_try) for level_try in range(1, tries))
-
-    def _cut(self, scenarios: list[Scenario], known: Mapping[int, Run]) -> list[Family]:
-        """Families of scenarios; ``known`` as for `runs_of`."""
-        families: dict[tuple[int, int], Family] = {}
-        for scenario, run in zip(scenarios, runs_of(scenarios, known) if scenarios else [], strict=True):
-            group = 0 if self._whole else scenario.record.number // self.size
-            families.setdefault((scenario.specimen.number, group), []).append(run)
-        return list(families.values())
 
     def _redrawn(self, specimens: Iterable[int]) -> list[Scenario]:
         """Scenarios of all records of some specimens with their next fault."""
@@ -113,7 +143,7 @@ class Families:
         Of a group, the largest severity alone counts, as in :func:`_unseen_places`.
         """
         by_number = {scenario.record.number: scenario for scenario in scenarios}
-        tried = scenarios
+        tried = scenarios if self._redraws else []
         while tried:
             largest = [tried[place] for place in _largest_places(tried)]
             missed = {
@@ -136,29 +166,8 @@ def made_of(runs: list[Run], other_levels: Callable[[Scenario], Iterable[Scenari
     """Records of scenarios that have been integrated; ``other_levels`` as for :func:`gen.measurement.measure.measure`."""
     response, scenarios = response_of(runs), [run.scenario for run in runs]
     options = {"motions": response.motions, "other_levels": other_levels}
-    return MadeRecords(response, measure(response.acceleration, scenarios, response.twins, **options))
-
-
-def pick(rows: list[tuple[MadeRecords, int]]) -> MadeRecords:
-    """Records from some places of others, without their twins."""
-    response, measured = rows[0][0].response, rows[0][0].measured
-    failures = {
-        new: made.response.failures[place] for new, (made, place) in enumerate(rows) if place in made.response.failures
-    }
-    columns = [
-        {name: _column([getattr(getattr(made, of), name)[place] for made, place in rows]) for name in _columns(one)}
-        for of, one in (("response", response), ("measured", measured))
-    ]
-    return MadeRecords(replace(response, failures=failures, twins=[], **columns[0]), replace(measured, **columns[1]))
-
-
-def _column(rows: list[Any]) -> NDArray[Any] | list[Any]:
-    return np.stack(rows) if isinstance(rows[0], np.ndarray | np.generic) else rows
-
-
-def _columns(of: Response | Measured) -> list[str]:
-    """Fields that have one row for each record."""
-    return [field.name for field in fields(of) if field.name not in ("failures", "twins", "counts_per_unit")]
+    measured = measure(response.acceleration, scenarios, response.twins, **options)
+    return MadeRecords(replace(response, twins=[]), measured)
 
 
 def _unseen_places(made: MadeRecords) -> list[int]:

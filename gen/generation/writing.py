@@ -27,7 +27,7 @@ from gen.corpus import (
 from gen.corpus.joining import new_numbers
 from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
 from gen.generation.corpus import facts_of
-from gen.generation.parts import part_attributes
+from gen.generation.parts import part_attributes, part_file
 from gen.measurement.measure import LARGEST_COUNT
 from gen.mechanisms.labels import LABELS
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
@@ -86,7 +86,7 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
         facts |= {"publication": recipe.publication.dated(), "failures": failures}
     with new_corpus(target, codec=codec, recipe_text=text, **facts) as corpus:
         for part in np.unique(parts):
-            corpus.write(stored.isel(record=parts == part))
+            corpus.write(stored.isel(record=parts == part), None if recipe is None else part_file(recipe, int(part)))
     return target
 
 

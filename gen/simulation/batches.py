@@ -5,10 +5,9 @@ A record does not depend on the others in its batch.
 
 import functools
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from heapq import heappop, heappush
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +20,6 @@ from gen.physics.kernel.integrate import Integral, integrate
 from gen.physics.kernel.layout import Batch, Shape
 from gen.simulation.kernels import load_kernel
 from gen.simulation.timeline import Timeline
-
-Owner = TypeVar("Owner")
-_Members = list[tuple[int, int, "Integration", Owner]]
 
 
 class Group(NamedTuple):
@@ -38,8 +34,6 @@ class Group(NamedTuple):
 class Integration:
     """One record that is integrated, with or without its fault, and the result."""
 
-    number: int
-    """Of the record."""
     given: KernelInput
     group: Group
     response: NDArray[np.float32] | None = None
@@ -75,45 +69,10 @@ def integrate_batch(group: Group, batch: Batch, timeline: Timeline) -> Integral:
     return integrate(group.shape, batch, step, group.steps, _filters(group.steps), timeline.dropped, timeline.returned)
 
 
-class Waiting(Generic[Owner]):
-    """Integrations that wait until their batch is full, each with its owner."""
-
-    def __init__(self) -> None:
-        self._groups: dict[Group, _Members[Owner]] = defaultdict(list)
-        self._added = 0
-
-    def __bool__(self) -> bool:
-        return any(self._groups.values())
-
-    def add(self, integrations: Iterable[Integration], owner: Owner) -> None:
-        """Let integrations wait. In their group, those of a record with a lower number come first."""
-        for one in integrations:
-            self._added += 1
-            heappush(self._groups[one.group], (one.number, self._added, one, owner))
-
-    def has_full_batch(self) -> bool:
-        """Whether a group has a record for every lane."""
-        return any(len(members) >= LANES for members in self._groups.values())
-
-    def fullest(self) -> list[tuple[Integration, Owner]]:
-        """Take the batch with the most records, of several full ones that of the lowest record number."""
-        return self._take(lambda members: (-min(len(members), LANES), members[0][:2]))
-
-    def oldest(self) -> list[tuple[Integration, Owner]]:
-        """Take the batch of the lowest record number."""
-        return self._take(lambda members: members[0][:2])
-
-    def _take(self, order: Callable[[_Members[Owner]], Any]) -> list[tuple[Integration, Owner]]:
-        members = min((members for members in self._groups.values() if members), key=order)
-        return [heappop(members)[2:] for _ in range(min(LANES, len(members)))]
-
-
-def integrate_all(integrations: Iterable[Integration], timeline: Timeline) -> None:
+def integrate_all(integrations: Sequence[Integration], timeline: Timeline) -> None:
     """Integrate records, batch by batch."""
-    waiting: Waiting[None] = Waiting()
-    waiting.add(integrations, None)
-    while waiting:
-        integrate_together([one for one, _ in waiting.fullest()], timeline)
+    for _, places in batches({place: one.group for place, one in enumerate(integrations)}):
+        integrate_together([integrations[place] for place in places], timeline)
 
 
 def integrate_together(integrations: Sequence[Integration], timeline: Timeline) -> None:

@@ -127,7 +127,7 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] | None = None) -
             runs.append(Run(motion, None, failures[place], None, None))
             continue
         steps = steps_per_sample(given, scenario.record, scenario.settings)
-        own, twin = Integration(number, given, group_of(given, steps)), None
+        own, twin = Integration(given, group_of(given, steps)), None
         before = integrated.get(number)
         if before is not None and before.group.steps != steps:
             before = None
@@ -136,7 +136,7 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] | None = None) -
             if twin is None:
                 healthy = without_fault(given, scenario, axis)
                 # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
-                twin = Integration(number, healthy, group_of(healthy, steps))
+                twin = Integration(healthy, group_of(healthy, steps))
         elif before is not None:
             own = before
         runs.append(Run(motion, given, "", own, twin))
@@ -188,18 +188,6 @@ def acceleration_of(integration: Integration | None) -> NDArray[np.float32]:
     """Result of an integration that has been done, shape (channel, time) [m s-2]."""
     assert integration is not None and integration.response is not None  # noqa: S101, PT018
     return integration.response
-
-
-def integrations(scenarios: Sequence[Scenario]) -> int:
-    """Number of integrations that records need: one each, and one without the fault of a record or of all in its group."""
-    damaged = {_group_of(scenario) for scenario in scenarios if _has_twin(scenario)}
-    before = {_group_of(scenario) for scenario in scenarios if scenario.specimen.fault == "healthy"}
-    return len(scenarios) + len(damaged - before)
-
-
-def _group_of(scenario: Scenario) -> int:
-    """Number that the records of a group have in common, negative for a record in no group."""
-    return scenario.record.pair if scenario.record.pair >= 0 else -1 - scenario.record.number
 
 
 def _has_twin(scenario: Scenario) -> bool:

@@ -1,44 +1,86 @@
-"""Independent tasks on a dask cluster, and a sentence when the cluster is lost.
+"""Clients of dask: of processes on this machine, or of a scheduler anywhere; and a sentence when a cluster is lost.
 
-A task may run twice: dask repeats the tasks of a lost worker.
+Processes of this machine are started as programs of their own, not as copies of the calling one: a script that starts some needs no
+``if __name__ == "__main__":``, and what it defines is sent to them.
 """
 
 import asyncio
+import json
+import logging
 import math
+import os
+import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
-from contextlib import contextmanager, nullcontext
-from functools import lru_cache, partial
+from contextlib import contextmanager
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from typing import Any
-from uuid import uuid4
 
-from distributed import Client, KilledWorker, get_worker
+from distributed import Client, Future, KilledWorker, Scheduler
 from distributed.comm.core import connect
-from distributed.protocol.pickle import dumps, loads
+from distributed.deploy.spec import SpecCluster
+from distributed.deploy.subprocess import Subprocess
 from distributed.security import Security
 
+from gen.support import with_parent
 from gen.support.errors import ClusterError
 
 CONNECT_S = 3.0  # a scheduler that is near answers within milliseconds
 COUNT_AGAIN_S = 10.0  # the workers of a batch system start one by one
 PATIENCE_S = 60.0
 """How long a cluster may be without workers before the call ends with an error [s]."""
+logging.getLogger("distributed.batched").setLevel(
+    logging.WARNING
+)  # at the end of a cluster it logs tracebacks as information
+_HERE = {"host": "127.0.0.1", "dashboard": False, "dashboard_address": "127.0.0.1:0"}
 
 
 @contextmanager
-def client_of(scheduler: str) -> Iterator[Client]:
-    """Client of the dask scheduler at an address; certificates for ``tls://`` come from the configuration of dask.
+def client_of(place: "Client | str | int") -> Iterator[Client]:
+    """Client of a number of processes that end with the block, or of the scheduler at an address; a client is yielded as it is.
 
     Raises
     ------
     ClusterError
         If no scheduler answers there, it has no worker within ten seconds, or a worker lacks Raceway.
     """
+    if isinstance(place, Client):
+        yield place
+    elif isinstance(place, str):
+        with _client_at(place) as client:
+            yield client
+    else:
+        workers = {number: {"cls": _Process, "options": {}} for number in range(place)}
+        scheduler = {"cls": Scheduler, "options": {**_HERE, "port": 0}}
+        silent = {"asynchronous": False, "silence_logs": logging.CRITICAL}
+        with SpecCluster(workers, scheduler, **silent) as cluster, Client(cluster, set_as_default=False) as client:
+            yield client
+
+
+class _Process(Subprocess):
+    """A worker of one thread in a process of its own, which ends with this one."""
+
+    def __init__(self, scheduler: str, name: object) -> None:
+        super().__init__()
+        self.scheduler, self.name = scheduler, name
+
+    async def _start(self) -> None:
+        options = {**_HERE, "nthreads": 1, "name": self.name, "memory_limit": 0, "preload": [with_parent.__name__]}
+        spec = json.dumps({"cls": "distributed.Worker", "opts": options})
+        environment = {"OMP_NUM_THREADS": "1", "DASK_LOGGING__DISTRIBUTED": "critical"} | os.environ
+        environment["PYTHONPATH"] = os.pathsep.join(path or os.getcwd() for path in sys.path)  # noqa: PTH109 - as text
+        command = [sys.executable, "-m", "dask", "spec", self.scheduler, "--spec", spec]
+        pipe, silent = asyncio.subprocess.PIPE, asyncio.subprocess.DEVNULL
+        self.process = await asyncio.create_subprocess_exec(*command, stdin=pipe, stdout=silent, env=environment)
+
+
+@contextmanager
+def _client_at(scheduler: str) -> Iterator[Client]:
+    """Client of the dask scheduler at an address; certificates for ``tls://`` come from the configuration of dask."""
     _check_scheduler(scheduler)
-    with Client(scheduler, timeout=f"{CONNECT_S}s") as client:
+    with Client(scheduler, timeout=f"{CONNECT_S}s", set_as_default=False) as client:
         try:
             client.wait_for_workers(1, timeout=10)
         except TimeoutError:
@@ -82,65 +124,58 @@ def _check_workers(client: Client) -> None:
             )
 
 
-@contextmanager
-def dask_pool(
-    task: Callable[..., Iterable[Any]], cluster: Client | str, report: Callable[..., None] | None
-) -> Iterator[tuple[Callable[[Any], Any], Callable[[], int]]]:
-    """What begins a task with an item and returns a future of its results, and the number of tasks that run at a time.
-
-    ``cluster`` is a client, or the address of a scheduler.
-
-    Raises
-    ------
-    ClusterError
-        If the scheduler cannot be used or is gone, no worker is left, or several workers died on the same task.
-    """
-    with client_of(cluster) if isinstance(cluster, str) else nullcontext(cluster) as client:
-        topic = None if report is None else f"raceway-{uuid4().hex}"
-        if topic is not None:
-            client.subscribe_topic(topic, lambda event: report(*event[1]))  # pyright: ignore[reportOptionalCall]
-        try:
-            yield partial(client.submit, _call, dumps(task), topic, pure=False), partial(next, _sizes(client))
-        except CancelledError:
-            raise _lost(client) from None
-        except KilledWorker:
-            raise ClusterError(
-                "several workers of the cluster died on the same task; use fewer workers, or fewer records per part."
-            ) from None
+def sent_once(client: Client, function: Callable[..., Any]) -> Future:
+    """A function as the result of a task: each worker gets it once, and dask makes it again if a worker that has it is lost."""
+    return client.submit(_itself, function, pure=False)
 
 
-def _call(packed: bytes, topic: str | None, item: Any) -> list[Any]:
-    """Results of a task on a worker; what it reports is sent to the clients that listen to the topic."""
-    task = _unpack(packed)
-    if topic is None:
-        return list(task(item))
-    worker = get_worker()
-    return list(task(lambda *numbers: worker.log_event(topic, numbers), item))
+def _itself(function: Callable[..., Any]) -> Callable[..., Any]:
+    return function
 
 
-@lru_cache(maxsize=4)
-def _unpack(packed: bytes) -> Callable[..., Iterable[Any]]:
-    """Task from its pickled form: to pickle and unpickle a recipe for every item takes 0.6 ms."""
-    return loads(packed)
-
-
-def _sizes(client: Client) -> Iterator[int]:
+def threads(client: Client) -> Iterator[int]:
     """Number of threads of the workers, counted again now and then; ClusterError if the cluster is lost."""
-    threads, counted_at, had_workers_at = 0, -math.inf, time.monotonic()
+    count, counted_at, had_workers_at = 0, -math.inf, time.monotonic()
     while True:
         if client.status != "running":
             raise _lost(client)
         now = time.monotonic()
-        if now - counted_at > COUNT_AGAIN_S:
-            threads, counted_at = sum(_threads(client).values()), now
-            if threads:
+        workers = getattr(client.cluster, "workers", {}).values()
+        processes = [worker.process for worker in workers if isinstance(worker, _Process)]
+        if processes and all(process is not None and process.returncode is not None for process in processes):
+            codes = ", ".join({f"{process.returncode}" for process in processes if process})
+            raise ClusterError(
+                f"all worker processes have ended, with code {codes}; use fewer workers if memory is short."
+            )
+        if now - counted_at > COUNT_AGAIN_S or not count:
+            count, counted_at = sum(_threads(client).values()), now
+            if count or processes:
                 had_workers_at = now
             elif now - had_workers_at > PATIENCE_S:
                 raise ClusterError(
                     f"{_name(client)}: has had no worker for {PATIENCE_S:g} s; start workers and run the same command again; "
                     "finished parts are kept."
                 )
-        yield max(threads, 1)
+        yield max(count, len(processes), 1)
+
+
+def result_within(client: Client, future: Future, patience: float) -> tuple[Any] | None:
+    """Result of a task, or None if it is not here within some seconds; the error of the task, or ClusterError if it never will be here.
+
+    A result that is done can be lost with its worker while it is fetched. Then dask makes it again, and waits for workers without end.
+    """
+    try:
+        return (future.result(patience),)
+    except KilledWorker:
+        raise ClusterError(
+            "several workers died on the same task; use fewer workers, or fewer records per part."
+        ) from None
+    except CancelledError:
+        raise _lost(client) from None
+    except TimeoutError:
+        if future.status == "error":
+            raise
+        return None
 
 
 def _threads(client: Client) -> dict[str, int]:

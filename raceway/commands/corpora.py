@@ -95,10 +95,10 @@ def _show_keys(prefix: str, as_json: bool) -> None:
 @records_option
 @json_option
 def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> None:
-    """Show counts, size and time of a corpus; write nothing.
+    """Show counts, size, steps and kernels of a corpus; write nothing.
 
-    Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. The time follows from the steps of
-    some records and the rate of the last longer run on this machine, or a typical one; it is right within a factor of two.
+    Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. generate shows the time that is
+    left as soon as some parts are done.
 
       raceway plan quickstart
       raceway plan my_recipe.yaml --records 100 --json
@@ -118,16 +118,13 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
 
 
 def _show_plan(planned: "Plan") -> None:
-    from gen.generation.forecast import KERNEL_S, START_S, forecast_in_words
-
     steps = list(planned.steps_per_sample)
     about, about_checked = (
         "" if count == planned.records else f" (scaled up from {count:,} {done} records)"
         for count, done in ((planned.drawn, "drawn"), (planned.checked, "checked"))
     )
     without = f", without {planned.left_out:,} that cannot be simulated{about_checked}" if planned.left_out else ""
-    seconds = planned.estimated_seconds
-    time = forecast_in_words(planned.uncompiled, planned.records / (seconds - START_S))
+    uncompiled = f", of which {planned.uncompiled} will be compiled for this machine" if planned.uncompiled else ""
     show.text(planned.title, "")
     show.facts(
         {
@@ -141,8 +138,7 @@ def _show_plan(planned: "Plan") -> None:
             "parts": f"{planned.parts:,}",
             "size": f"about {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",
-            "kernels": f"{planned.kernels}; each is compiled once per machine",
-            "time": f"{time} with one worker: about {show.duration(KERNEL_S * planned.uncompiled + seconds)}",
+            "kernels": f"{planned.kernels}{uncompiled}",
         }
     )
     if planned.first_left_out is not None:
@@ -185,13 +181,10 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     """
     from gen.corpus import complaint
     from gen.recipe import read_recipe
-    from gen.support.processes import load_ahead
 
     wanted = read_recipe(recipe, seed=options["seed"], records=options["records"])
     start = time.monotonic()
     workers = team.workers or _default_workers(wanted)
-    if team.scheduler is None:
-        load_ahead("gen.generation.corpus", min(workers, wanted.n_parts) - 1)
     with if_interrupted(partial(_kept, output, wanted)):
         made = _generate(recipe, output, workers=workers, scheduler=team.scheduler, **options)
     for failure in made.failures:
@@ -229,7 +222,7 @@ def _show_generated(made: "Generated", wanted: "Recipe") -> None:
 
     kept = f", {made.kept} of them kept from before" if made.kept else ""
     unusable = f"; {counts_in_words(made.signals)} cannot be used" if any(made.signals) else ""
-    failed = f"; {len(made.failures):,} could not be simulated and are left out" if made.failures else ""
+    failed = f"; {show.count_text(len(made.failures), 'record')} left out" if made.failures else ""
     size = f"{show.count_text(made.records, 'record')} in {show.count_text(made.parts, 'part')}"
     show.text(f"{made.path}: {size}{kept}{failed}{unusable}.")
     missing = wanted.n_records - made.records - len(made.failures)
@@ -250,21 +243,17 @@ def _coarse_steps(corpus: Path) -> str | None:
 
 def _kept(corpus: Path, recipe: "Recipe") -> str:
     """Remove the unfinished files of the workers, and return a sentence about the parts that are kept."""
-    from gen.corpus import is_single_file, read_manifest, remove_left_behind
-    from gen.support.errors import RacewayError
+    from gen.corpus import is_single_file, part_number, remove_left_behind
 
     corpus = corpus.with_name(f"{corpus.name}.parts") if is_single_file(corpus) else corpus
     remove_left_behind(corpus / "parts", "part-*.nc")
-    try:
-        parts = len(read_manifest(corpus).parts)
-    except RacewayError:  # before the first part
-        parts = 0
-    of_all = f"{parts} of {show.count_text(recipe.n_parts, 'part')}"
+    parts = {part_number(path.name) for path in (corpus / "parts").glob("part-*.nc")} - {None}
+    of_all = f"{len(parts)} of {show.count_text(recipe.n_parts, 'part')}"
     return f"interrupted; {of_all} kept in {corpus}; the same command completes the corpus."
 
 
 def _default_workers(recipe: "Recipe") -> int:
-    from gen.support.workers import cores
+    from gen.support.executor import cores
 
     return min(cores(), recipe.n_parts) if recipe.n_records > WORTH_WORKERS else 1
 

@@ -10,7 +10,7 @@ from click.shell_completion import CompletionItem
 
 Decorator = Callable[[Any], Any]
 
-FEW_RECORDS = 2000  # their features take about as long as processes take to start; threads start at once
+FEW_RECORDS = 2000  # their features take about as long as processes take to start
 A_PATH = click.Path(path_type=Path)
 REFERENCE_MODEL = "reference"
 
@@ -70,7 +70,7 @@ _workers: Decorator = click.option(
     "--workers",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Number of parts worked on at a time on this machine; by default one per core.",
+    help="Number of processes on this machine; by default one per core, and one alone for little work.",
 )
 _scheduler: Decorator = click.option(
     "--scheduler", metavar="ADDR", help="Address of a dask scheduler, in place of --workers."
@@ -102,9 +102,9 @@ class Team(NamedTuple):
 
     def options(self, records: int = FEW_RECORDS) -> dict[str, Any]:
         """Arguments ``workers`` and ``scheduler`` of a function that works on parts of so many records in all."""
-        from gen.support.workers import MOST_THREADS, cores  # not at the top: help needs nothing of gen
+        from gen.support.executor import cores  # not at the top: help needs nothing of gen
 
-        usual = cores() if records > FEW_RECORDS else min(cores(), MOST_THREADS)
+        usual = cores() if records > FEW_RECORDS else 1
         return {"workers": self.workers or usual, "scheduler": self.scheduler}
 
 

@@ -6,14 +6,12 @@ prints its sentence and ends the process at once. The main thread is not interru
 compiled code, and it has nothing to clean up, since a file gets its name only when it is complete.
 """
 
-import multiprocessing
 import os
 import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from multiprocessing import resource_tracker
+from contextlib import contextmanager, suppress
 
 INTERRUPTED = 130
 
@@ -36,11 +34,6 @@ def if_interrupted(sentence: Callable[[], str]) -> Iterator[None]:
 
 def listen_for_signals() -> None:
     """Start to wait for signals."""
-    os.environ["PYTHONWARNINGS"] = (
-        "ignore:resource_tracker"  # the tracker warns when it removes files of killed workers
-    )
-    resource_tracker.ensure_running()  # first: it unblocks SIGINT in the thread that starts it
-    del os.environ["PYTHONWARNINGS"]
     awaited = {signal.SIGTERM}
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # a script ignores it for commands in the background
         awaited.add(signal.SIGINT)
@@ -62,9 +55,7 @@ def _end(awaited: set[signal.Signals]) -> None:
     ]  # before the main thread meets the end of the workers, and leaves what the sentence is about
     terminal = os.dup(2)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-    for worker in multiprocessing.active_children():
-        worker.kill()
-        worker.join(_PATIENCE_S)
+    _kill_workers()
     sentence = sentence_of()
     files = sys.modules.get("gen.corpus.files")  # loaded only if a file was written
     remove = (lambda: None) if files is None else files.remove_unfinished
@@ -73,3 +64,16 @@ def _end(awaited: set[signal.Signals]) -> None:
     os.write(terminal, f"{below_the_bar}{sentence}\n".encode())
     remove()  # the main thread may have started another file meanwhile
     os._exit(INTERRUPTED)
+
+
+def _kill_workers() -> None:
+    """Kill the processes that this one has started, and wait until they are gone."""
+    if "distributed" not in sys.modules:  # nothing else starts any
+        return
+    import psutil
+
+    workers = psutil.Process().children(recursive=True)
+    for worker in workers:
+        with suppress(psutil.NoSuchProcess):
+            worker.kill()
+    psutil.wait_procs(workers, _PATIENCE_S)

@@ -11,7 +11,7 @@ from features.report.views import VIEWS
 from features.table.band import DEFAULT_BAND
 from features.table.recording_speeds import SPEEDS
 from gen.support.errors import CorpusError
-from gen.support.workers import cores
+from gen.support.executor import cores
 from raceway.commands import plotting
 from raceway.commands.recordings import _speeds
 from raceway.console.options import names, speed_option

@@ -6,9 +6,9 @@ import time
 import pytest
 from distributed import Client
 
-from gen.support import cluster, workers
+from gen.support import cluster, executor
 from gen.support.errors import ClusterError
-from gen.support.workers import run
+from gen.support.executor import run
 from tests.gen.support.test_cluster_laws import threaded
 
 __all__ = ["threaded"]
@@ -16,7 +16,7 @@ __all__ = ["threaded"]
 
 def _slow(number):
     time.sleep(0.2)
-    yield number
+    return number
 
 
 @pytest.mark.parametrize(
@@ -28,11 +28,11 @@ def _slow(number):
     ids=["all workers", "the scheduler"],
 )
 def test_a_lost_cluster_ends_the_work_with_a_sentence(threaded, monkeypatch, lose, sentence):
-    monkeypatch.setattr(workers, "POLL_S", 0.2)
+    monkeypatch.setattr(executor, "PATIENCE_S", 0.2)
     monkeypatch.setattr(cluster, "COUNT_AGAIN_S", 0.2)
     monkeypatch.setattr(cluster, "PATIENCE_S", 1.0)
     with Client(threaded, set_as_default=False) as client:
-        tasks = run(_slow, range(10_000), scheduler=client)
+        tasks = run(_slow, range(10_000), client)
         assert next(tasks) < 10_000
         loser = threading.Timer(0.5, lose, [threaded])
         loser.start()
@@ -42,9 +42,9 @@ def test_a_lost_cluster_ends_the_work_with_a_sentence(threaded, monkeypatch, los
 
 
 def test_a_cluster_that_gets_workers_again_completes_the_work(threaded, monkeypatch):
-    monkeypatch.setattr(workers, "POLL_S", 0.1)
+    monkeypatch.setattr(executor, "PATIENCE_S", 0.1)
     with Client(threaded, set_as_default=False) as client:
-        tasks = run(_slow, range(40), scheduler=client)
+        tasks = run(_slow, range(40), client)
         found = [next(tasks)]
         threaded.scale(0)
         while client.nthreads():

@@ -8,7 +8,7 @@ import numba
 import pytest
 
 from gen.generation import compilation
-from gen.generation.compilation import compile_kernels, missing_kernels, needed_shapes
+from gen.generation.compilation import compile_kernels, needed_shapes
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.decimate import decimation
 from gen.recipe import read_recipe
@@ -64,14 +64,15 @@ def test_each_kernel_is_announced_with_how_many_there_are(recipe_with, monkeypat
     monkeypatch.setattr(compilation, "is_compiled", lambda _: False)
     monkeypatch.setattr(compilation, "load_kernel", loaded.append)
     monkeypatch.setattr("os.sched_getaffinity", lambda _: {0})
-    compile_kernels(recipe, missing_kernels(recipe), said.append)
+    compile_kernels(recipe, said.append)
     assert loaded == needed_shapes(recipe)
     assert said == [
-        "compiling kernel 1 of 2 (9 balls, 1 channel, resonator, wavy, spalled) for this machine",
-        "compiling kernel 2 of 2 (9 balls, 1 channel, resonator, wavy, spalled, jittered) for this machine",
+        "compiling 2 kernels for this machine, 10 to 20 s each; they are kept for the next time.",
+        "kernel 1 of 2 is compiled: 9 balls, 1 channel, resonator, wavy, spalled.",
+        "kernel 2 of 2 is compiled: 9 balls, 1 channel, resonator, wavy, spalled, jittered.",
     ]
 
 
-def test_kernels_that_are_compiled_are_not_missing(recipe_with, monkeypatch):
+def test_nothing_is_said_of_kernels_that_are_compiled(recipe_with, monkeypatch):
     monkeypatch.setattr(compilation, "is_compiled", lambda _: True)
-    assert missing_kernels(recipe_with({})) == []
+    compile_kernels(recipe_with({}), lambda _: pytest.fail("there is nothing to compile"))

@@ -180,11 +180,11 @@ def test_edited_sources_neither_complete_a_corpus_nor_keep_its_parts(recipe_file
 
 
 def test_a_worker_with_other_sources_is_refused_by_name_and_writes_nothing(recipe_file, tmp_path):
-    given = read_recipe(recipe_file), tmp_path, "c" * 64, lambda *_: None, range(1)
+    given = read_recipe(recipe_file), tmp_path, "c" * 64, 0
     with pytest.raises(
         ClusterError, match=r"^worker .*: has other sources of raceway \([0-9a-f]{12}\) than this process"
     ):
-        list(GENERATE._unit(*given))
+        GENERATE._write(*given)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from gen import copy
-from gen.corpus import open_corpus
+from gen.corpus import open_corpus, validate_corpus
 from gen.generation.corpus import generate
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
@@ -25,13 +25,14 @@ def test_a_grown_corpus_is_the_one_made_at_once(write_recipe, tmp_path, name, be
     assert read_recipe(recipe).n_records < 32
     generate(recipe, tmp_path / "grown", records=before)
     grown = generate(recipe, tmp_path / "grown", records=32)
-    assert grown.kept < before / 8
+    assert grown.kept == before // 8
     at_once = generate(recipe, tmp_path / "at_once", records=32)
     assert_the_same_corpus(tmp_path / "grown", at_once)
 
 
-def test_a_growth_that_was_interrupted_is_completed(write_recipe, tmp_path):
+def test_a_corpus_stays_whole_until_the_larger_one_is(write_recipe, tmp_path):
     recipe = write_recipe(tmp_path / "r.yaml", {"storage.records_per_part": 4})
+    generate(recipe, tmp_path / "before", records=10)
 
     def interrupted(done, _whole):
         if done > 14:
@@ -40,8 +41,12 @@ def test_a_growth_that_was_interrupted_is_completed(write_recipe, tmp_path):
     generate(recipe, tmp_path / "c", records=10)
     with pytest.raises(KeyboardInterrupt):
         generate(recipe, tmp_path / "c", records=24, progress=interrupted)
-    with pytest.raises(CorpusError, match="unfinished"):
-        open_corpus(tmp_path / "c")
+    parts = {path.name for path in (tmp_path / "c" / "parts").iterdir()}
+    assert {"part-00002-2.nc", "part-00002.nc", "part-00003.nc"} <= parts
+    assert validate_corpus(tmp_path / "c") == []
+    with open_corpus(tmp_path / "c") as same, open_corpus(tmp_path / "before") as before:
+        assert same.identical(before)
+    assert generate(recipe, tmp_path / "c", records=10).records == 10
     generate(recipe, tmp_path / "c", records=24)
     assert_the_same_corpus(tmp_path / "c", generate(recipe, tmp_path / "at_once", records=24))
 

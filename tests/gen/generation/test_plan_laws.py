@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.generation.corpus import generate
-from gen.generation.forecast import START_S
 from gen.generation.plan import BYTES_PER_FILE, MOST_CHECKED, MOST_DRAWN, plan, some_ranges
 from gen.generation.plan import _bytes as plan_bytes
 from gen.recipe import read_recipe
@@ -27,18 +26,17 @@ def test_the_parts_a_plan_looks_at_are_in_the_corpus_and_do_not_overlap(recipe_w
 def test_a_large_corpus_is_counted_from_a_part_of_it(write_recipe, tmp_path):
     path = write_recipe(tmp_path / "large.yaml", {"corpus.rigs": 2500, "storage.records_per_part": 250})
     planned = plan(path)
-    assert (planned.records, planned.rigs, planned.specimens, planned.drawn) == (20_000, 2500, 10_000, 5000)
+    assert (planned.records, planned.rigs, planned.specimens, planned.drawn) == (20_000, 2500, 10_000, MOST_DRAWN)
     assert sum(planned.splits.values()) == pytest.approx(20_000, abs=3)
-    assert planned.classes == pytest.approx(dict.fromkeys(("healthy", "inner", "outer", "ball"), 5000), rel=0.02)
+    assert planned.classes == pytest.approx(dict.fromkeys(("healthy", "inner", "outer", "ball"), 5000), rel=0.05)
 
 
 @pytest.mark.parametrize(("key", "factor"), [("corpus.rigs", 3), ("recording.duration_s", 1)])
-def test_more_records_take_more_time_and_room(write_recipe, tmp_path, key, factor):
+def test_more_records_take_more_room(write_recipe, tmp_path, key, factor):
     small = plan(write_recipe(tmp_path / "small.yaml"))
     large = plan(write_recipe(tmp_path / "large.yaml", {key: 9 if factor == 3 else 1.0}))
     assert large.records == factor * small.records
     assert large.bytes > 1.3 * small.bytes
-    assert large.estimated_seconds - START_S > 1.3 * (small.estimated_seconds - START_S)
 
 
 def test_what_a_plan_refuses_generate_refuses_with_the_same_sentence(write_recipe, tmp_path):
@@ -59,7 +57,7 @@ def test_a_plan_follows_seed_and_number_of_records(write_recipe, tmp_path):
 
 def test_a_plan_checks_some_of_its_records_and_says_so(write_recipe, tmp_path):
     planned = plan(write_recipe(tmp_path / "r.yaml", {"corpus.rigs": 300, "operation.load_n": "grid(20000, 500)"}))
-    assert (planned.records, planned.drawn) == (2400, 2400)
+    assert (planned.records, planned.drawn) == (2400, 2000)
     assert planned.checked <= MOST_CHECKED
     assert planned.left_out + sum(planned.steps_per_sample.values()) == pytest.approx(2400, abs=2)
     assert planned.left_out > 0

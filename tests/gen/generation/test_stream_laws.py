@@ -58,7 +58,7 @@ def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
 
 
 def test_several_processes_give_the_same_batches(recipe, monkeypatch):
-    monkeypatch.setattr("gen.support.workers.cores", lambda: 2)
+    monkeypatch.setattr("gen.support.executor.cores", lambda: 2)
     with gen.stream(recipe, batch=20, workers=2) as by_two, gen.stream(recipe, batch=20) as by_one:
         for one, two in itertools.islice(zip(by_one, by_two, strict=True), 2):
             np.testing.assert_array_equal(one["acceleration"].values, two["acceleration"].values)
@@ -100,7 +100,7 @@ def test_a_wrong_number_is_refused(recipe, wrong):
 
 
 def test_more_workers_than_cores_are_told(recipe, monkeypatch):
-    monkeypatch.setattr("gen.support.workers.cores", lambda: 1)
+    monkeypatch.setattr("gen.support.executor.cores", lambda: 1)
     with pytest.warns(UserWarning, match="workers: 2 is above the number of cores, 1; more processes"):
         gen.stream(recipe, workers=2)
 

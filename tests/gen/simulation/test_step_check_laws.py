@@ -1,19 +1,17 @@
 """Laws of the step check: some records are integrated again with half the step, and all are checked against their stiffest contacts."""
 
-from collections import Counter
-
 import numpy as np
 import pytest
 
 from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
 from gen.generation.corpus import generate
-from gen.generation.step_checks import CHECKED_PARTS, checked_places, step_changes, step_checks
+from gen.generation.step_checks import CHECKED_PARTS, checked_places, step_errors
+from gen.generation.undetected import made_from
+from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import highest_angular_frequency
-from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens, settings_of
-from gen.simulation.batches import integrate_all
-from gen.simulation.simulate import open_integrations, simulate
+from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens
+from gen.simulation.simulate import simulate
 from gen.simulation.steps import COARSEST_STEP, FINE_STEP
-from gen.simulation.timeline import timeline
 from gen.support.errors import RecipeError, SimulationError
 from tests.lanes import march_lanes
 from tests.reference import contact_stiffness, contacts, slow_motion
@@ -30,11 +28,8 @@ ROUGH = {
 }
 
 
-def step_errors(scenarios, recipe, response):
-    """Relative rms change of some records of a part when their step is halved, NaN for the others, shape (record,)."""
-    finer = step_checks(scenarios, recipe, response)
-    integrate_all(open_integrations(finer.values()), timeline(settings_of(recipe)))
-    return step_changes(finer, response, recipe)
+def step_errors_of(recipe, numbers):
+    return step_errors(recipe, numbers, made_from(draw_scenarios(recipe, numbers.start, numbers.stop)))
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +38,7 @@ def checked(recipe_with):
     recipe = recipe_with()
     scenarios = draw_scenarios(recipe)
     response = simulate(scenarios)
-    return recipe, scenarios, response, step_errors(scenarios, recipe, response)
+    return recipe, scenarios, response, step_errors_of(recipe, range(recipe.n_records))
 
 
 def test_the_first_record_of_every_class_is_tried_at_half_the_step(checked):
@@ -64,17 +59,20 @@ def test_at_half_the_step_ordinary_records_change_by_less_than_a_hundredth(check
 @pytest.mark.parametrize("rpm", [15_000, 60_000])
 def test_at_half_the_step_fast_records_change_little(recipe_with, rpm):
     recipe = recipe_with({"operation.shaft_rpm": rpm, "recording.sample_rate_hz": 12_000})
-    scenarios = draw_scenarios(recipe, 0, 8)
-    errors = step_errors(scenarios, recipe, simulate(scenarios))
+    errors = step_errors_of(recipe, range(8))
     assert np.isfinite(errors).any()
     assert np.nanmax(errors) < 0.03
 
 
 def checked_records(recipe):
-    """Scenarios whose step is checked, part by part."""
-    size = recipe.storage.records_per_part
-    parts = [draw_scenarios(recipe, first, first + size) for first in range(0, recipe.n_records, size)]
-    return [[part[place] for place in checked_places(part, recipe, range(len(part)))] for part in parts]
+    """Numbers of the records whose step is checked, if all share their kernel, by the number of their part."""
+    checked = {}
+    for part in range(recipe.n_parts):
+        numbers = recipe.records_of_part(part)
+        faults = [one.specimen.fault for one in draw_scenarios(recipe, numbers.start, numbers.stop)]
+        places = checked_places(recipe, numbers, faults, dict.fromkeys(range(len(numbers)), "one"))
+        checked[part] = [numbers[place] for place in places]
+    return checked
 
 
 LAYOUTS = {
@@ -87,29 +85,34 @@ LAYOUTS = {
 
 
 @pytest.mark.parametrize("layout", LAYOUTS.values(), ids=LAYOUTS)
-def test_every_class_and_a_hundredth_of_the_records_are_tried_whatever_the_layout(recipe_with, layout):
+def test_every_class_and_a_batch_of_every_eighth_part_are_tried_whatever_the_layout(recipe_with, layout):
     recipe = recipe_with({"corpus.rigs": 60, "records": 397} | layout)
     checked = checked_records(recipe)
-    classes = {scenario.specimen.fault for scenario in draw_scenarios(recipe)}
-    assert len(classes) == len(recipe.faults)
-    assert {scenario.specimen.fault for part in checked for scenario in part} == classes
-    spans = Counter(
-        scenario.record.number // (CHECKED_PARTS * recipe.storage.records_per_part)
-        for part in checked
-        for scenario in part
-    )
-    held = Counter(number // (CHECKED_PARTS * recipe.storage.records_per_part) for number in range(recipe.n_records))
-    assert all(0.01 * held[span] <= spans[span] <= 1 + 0.01 * held[span] + len(classes) for span in held)
-    assert sum(spans.values()) <= len(held) + 0.01 * recipe.n_records + len(classes)
+    faults = [one.specimen.fault for one in draw_scenarios(recipe)]
+    assert len(set(faults)) == len(recipe.faults)
+    assert {faults[number] for numbers in checked.values() for number in numbers} == set(faults)
+    for part, numbers in checked.items():
+        full = min(LANES, len(recipe.records_of_part(part)))
+        batch = 0 if part % CHECKED_PARTS else full
+        assert batch <= len(numbers) <= batch + len(set(faults))
+    some = recipe_with({"corpus.rigs": 60, "records": 200} | layout)
+    whole = recipe.n_parts * 200 // 397
+    assert {part: checked_records(some)[part] for part in range(whole)} == {
+        part: checked[part] for part in range(whole)
+    }
 
 
-def test_a_part_is_checked_where_its_turn_comes_and_in_usable_records_alone(recipe_with):
+def test_a_batch_is_checked_where_its_turn_comes_and_of_records_that_share_a_kernel_alone(recipe_with):
     recipe = recipe_with({"corpus.rigs": 500, "storage.records_per_part": 100})
-    scenarios = draw_scenarios(recipe, 3200, 3300)  # no class has its first record here: all have it on the first rig
-    assert checked_places(scenarios, recipe, range(100)) == [*range(8)]  # 1 % of the 800 records from here on
-    assert checked_places(scenarios, recipe, [3, 4, 90]) == [3, 4, 90]
-    assert checked_places(scenarios, recipe, []) == []
-    assert checked_places(draw_scenarios(recipe, 3100, 3200), recipe, range(100)) == []
+
+    def places(numbers, groups):
+        return [*checked_places(recipe, numbers, ["inner"] * 100, groups)]
+
+    # no class has its first record from here on: all have it on the first rig
+    assert places(range(800, 900), dict.fromkeys(range(100), "one")) == [*range(LANES)]
+    assert places(range(800, 900), {3: "one", 4: "other", 90: "one"}) == [3, 90]
+    assert places(range(800, 900), {}) == []
+    assert places(range(700, 800), dict.fromkeys(range(100), "one")) == []
 
 
 def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
@@ -117,7 +120,8 @@ def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
     scenarios = draw_scenarios(recipe)
     faults = [scenario.specimen.fault for scenario in scenarios]
     failed = faults.index("inner")
-    tried = checked_places(scenarios, recipe, [place for place in range(len(scenarios)) if place != failed])
+    made = {place: place for place in range(len(scenarios)) if place != failed}
+    tried = checked_places(recipe, range(24), faults, made)
     assert failed not in tried
     assert faults.index("inner", failed + 1) in tried
 
@@ -144,9 +148,7 @@ def test_rigs_beyond_the_first_specimens_of_all_classes_are_not_looked_at(recipe
 
 def test_a_part_of_which_nothing_is_to_be_checked_is_not_run_again(recipe_with):
     recipe = recipe_with({"storage.records_per_part": 2})
-    scenarios = draw_scenarios(recipe, 10, 12)
-    response = simulate(scenarios)
-    assert np.isnan(step_errors(scenarios, recipe, response)).all()
+    assert np.isnan(step_errors_of(recipe, range(10, 12))).all()
 
 
 def test_chosen_steps_follow_the_stiffest_contacts_and_no_finer_than_they_need(checked):
@@ -203,11 +205,9 @@ def test_as_many_steps_as_the_sentence_asks_for_are_enough(recipe_with):
 
 
 def test_records_left_out_are_not_tried(recipe_with):
-    recipe = recipe_with(ROUGH)
-    scenarios = draw_scenarios(recipe, 4, 12)
-    errors = step_errors(scenarios, recipe, simulate(scenarios))
-    assert np.isfinite(errors[:4]).any()
-    assert np.isnan(errors[4:]).all()
+    errors = step_errors_of(recipe_with(ROUGH), range(12))
+    assert np.isfinite(errors[:8]).any()
+    assert np.isnan(errors[8:]).all()
 
 
 def test_a_shaft_that_turns_too_far_between_two_samples_is_refused(recipe_with):

@@ -9,7 +9,7 @@ from distributed import Client, LocalCluster
 from gen import generate
 from gen.corpus import read_manifest, validate_corpus
 from gen.support import cluster
-from gen.support.workers import run
+from gen.support.executor import run
 
 
 @pytest.fixture
@@ -31,18 +31,13 @@ def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, t
 
 
 def negated(item):
-    yield -item
-
-
-def told(report, item):
-    report(item)
-    return ()
+    return -item
 
 
 def test_every_item_is_worked_on_once(threaded):
     with Client(threaded, set_as_default=False) as client:
-        assert sorted(run(negated, range(-50, 0), scheduler=client)) == list(range(1, 51))
-        assert list(run(negated, [], scheduler=client)) == []
+        assert list(run(negated, range(-50, 0), client)) == list(range(50, 0, -1))
+        assert list(run(negated, [], client)) == []
 
 
 def test_few_tasks_are_submitted_ahead_of_their_results(threaded):
@@ -56,7 +51,7 @@ def test_few_tasks_are_submitted_ahead_of_their_results(threaded):
             yield item
 
     with Client(threaded, set_as_default=False) as client:
-        for done, _ in enumerate(run(negated, items(), scheduler=client)):
+        for done, _ in enumerate(run(negated, items(), client)):
             assert taken - done <= 2 * 8 + 1
 
 
@@ -74,28 +69,9 @@ def test_workers_that_come_later_are_given_tasks(threaded, monkeypatch):
     with Client(threaded, set_as_default=False) as client:
         while len(client.nthreads()) != 1:
             time.sleep(0.05)
-        tasks = run(negated, items(), scheduler=client)
+        tasks = run(negated, items(), client)
         next(tasks)
         assert taken == 8
         threaded.scale(2)
         client.wait_for_workers(2)
         assert 8 < max(taken - done for done, _ in enumerate(tasks, start=2)) <= 16
-
-
-def test_messages_of_tasks_reach_the_client(threaded):
-    found = []
-    with Client(threaded, set_as_default=False) as client:
-        assert list(run(told, [4, 7], scheduler=client, report=lambda *message: found.append(message))) == []
-        stop = time.monotonic() + 10
-        while len(found) < 2 and time.monotonic() < stop:
-            time.sleep(0.01)
-    assert sorted(found) == [(4,), (7,)]
-
-
-def inverse(item):
-    yield 1 / item
-
-
-def test_an_error_of_a_task_comes_through(threaded):
-    with Client(threaded, set_as_default=False) as client, pytest.raises(ZeroDivisionError):
-        list(run(inverse, [1, 0], scheduler=client))

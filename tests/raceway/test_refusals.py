@@ -1,0 +1,97 @@
+"""Whatever ``generate`` refuses with several workers, it refuses before a process is started, in one sentence and with exit code 2."""
+
+import fcntl
+import os
+import shutil
+
+import psutil
+import pytest
+
+from gen import copy, generate
+from gen.support import cluster
+from tests.tampering import edit_manifest
+
+PARTS = 4
+
+
+@pytest.fixture(scope="module")
+def places(tiny_recipe, tiny_corpus, tmp_path_factory):
+    """What is in the way of a corpus, by name."""
+    here = tmp_path_factory.mktemp("in_the_way")
+    (here / "file").write_text("mine")
+    (here / "thesis").mkdir()
+    (here / "thesis" / "thesis.txt").write_text("mine")
+    (here / "table.nc").write_text("mine")
+    shutil.copytree(tiny_corpus, here / "whole")
+    shutil.copytree(tiny_corpus, here / "of_other_sources")
+    edit_manifest(here / "of_other_sources", sources_sha256="0" * 64)
+    manifest = shutil.copytree(tiny_corpus, here / "altered_manifest") / "manifest.json"
+    manifest.write_text(manifest.read_text().replace('"records": 48', '"records": 47'))
+    edit_manifest(shutil.copytree(tiny_corpus, here / "of_a_choice"), recipe_sha256=None)
+    copy(tiny_corpus, here / "copied")
+    generate(tiny_recipe, here / "one.nc")
+    (here / "wrong.yaml").write_text(tiny_recipe.read_text().replace("storage:", "storrage:"))
+    return {path.name.partition(".")[0]: path for path in here.iterdir()} | {
+        "recipe": tiny_recipe, "new": here / "new", "nowhere": here / "nowhere.yaml", "caf": here / "caf\udce9", "here": here,
+    }  # fmt: skip
+
+
+REFUSED = [
+    ("{nowhere} -o {new}", "neither a file nor one of the recipes"),
+    ("{wrong} -o {new}", "storrage"),
+    ("{recipe} -o {file}", "is a file; give a folder"),
+    ("{recipe} -o {thesis}", "is not empty and holds no corpus"),
+    ("{recipe} -o {table}", "has no checksum of Raceway at its end"),
+    ("{recipe} -o {whole}/parts/mine", "is in the corpus"),
+    ("{recipe} -o {caf}", "the name is not UTF-8"),
+    ("{recipe} -o {whole} --records 24", "holds a corpus of 48 records and not 24; a corpus grows and does not shrink"),
+    ("{recipe} -o {one} --records 60", "a corpus grows in a folder"),
+    ("{recipe} -o {whole} --seed 77", "holds a corpus of another recipe or seed"),
+    ("{recipe} -o {one} --seed 77", "holds a corpus of another recipe or seed"),
+    ("{recipe} -o {of_other_sources}", "was begun with sources 000000000000"),
+    ("{recipe} -o {altered_manifest}", "manifest.json: is altered"),
+    ("{recipe} -o {of_a_choice}", "was not generated from a recipe as a whole"),
+    ("{recipe} -o {copied}", "holds a corpus that was not generated|holds a copy of a corpus"),
+    ("{recipe} -o {new} --records 0", "records"),
+    (f"{{recipe}} -o {{new}} --parts 0-{PARTS}", f"has the parts 0-{PARTS - 1}"),
+    ("{recipe} -o {new} --parts 1-", "is no range"),
+    ("{recipe} -o {new}.nc --parts 0-1", "is one file, which has all parts"),
+    ("{recipe} -o {new} --workers 0", "0 is not in the range"),
+    ("{recipe} -o {new} --scheduler nowhere", "does not answer"),
+]
+
+
+@pytest.mark.parametrize(("line", "sentence"), REFUSED, ids=[line for line, _ in REFUSED])
+def test_a_refusal_starts_no_process_and_leaves_nothing(run, places, monkeypatch, line, sentence):
+    monkeypatch.setattr(cluster, "SpecCluster", lambda *_, **__: pytest.fail("a process was started"))
+    before = sorted(places["here"].rglob("*"))
+    result = run("generate", "--workers", 2, *line.format(**places).split())
+    assert result.exit_code == 2, result.output
+    assert len(result.stderr.strip().splitlines()) == 1 or "Usage" in result.stderr
+    assert any(part in result.stderr for part in sentence.split("|")), result.stderr
+    assert sorted(places["here"].rglob("*")) == before
+
+
+def test_a_second_call_in_a_folder_is_refused_before_a_process_is_started(run, places, monkeypatch):
+    monkeypatch.setattr(cluster, "SpecCluster", lambda *_, **__: pytest.fail("a process was started"))
+    handle = os.open(places["whole"], os.O_RDONLY)
+    fcntl.flock(handle, fcntl.LOCK_EX)
+    result = run("generate", places["recipe"], "-o", places["whole"], "--records", 480, "--workers", 2)
+    os.close(handle)
+    assert result.exit_code == 2
+    assert "another raceway command is writing into it" in result.stderr
+
+
+def test_a_command_that_refuses_and_one_that_is_done_leave_no_process(start, places, tmp_path):
+    for line, code in (("-o {whole} --records 24", 2), ("-o {tmp}/c", 0)):
+        process = start("generate", places["recipe"], "--workers", "2", *line.format(tmp=tmp_path, **places).split())
+        process.communicate(timeout=60)
+        assert process.returncode == code
+        assert [other for other in psutil.process_iter() if group_of(other.pid) == process.pid] == []
+
+
+def group_of(number):
+    try:
+        return os.getpgid(number)
+    except ProcessLookupError:
+        return None
