@@ -13,7 +13,7 @@ import os
 import resource
 import tempfile
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from multiprocessing.queues import Queue
@@ -28,7 +28,7 @@ from benchmarks.pairs import Line, Row
 from benchmarks.pipeline import SHORT, variant
 from gen.corpus import PartRow, part_name, read_manifest
 from gen.generation import corpus as making
-from gen.generation.parts import Outcome
+from gen.generation.parts import part_file
 from gen.recipe import Recipe
 
 PARTS = (100, 1000)
@@ -74,8 +74,8 @@ def simulated_runs(sizes: tuple[int, ...], workers: int, task_s: float, per_part
         storage = {"records_per_part": per_part}
         recipe = variant(SHORT, folder / "parts.yaml", corpus=largest, storage=storage)
         model = making.generate(recipe, folder / "model", records=per_part).path
-        made = partial(_made, model / "parts" / part_name(0), read_manifest(model).parts[0], task_s)
-        with patch.object(making, "_made", made):
+        linked = partial(_linked, model / "parts" / part_name(0), read_manifest(model).parts[0], task_s)
+        with patch.object(making, "_write", linked):
             first = 2 * workers * per_part
             making.generate(recipe, folder / "first", records=first, scheduler=address)  # loads libraries
             return [_cost(recipe, folder / str(size), size, per_part, address, scheduler) for size in sizes]
@@ -99,30 +99,14 @@ def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, s
     return Cost(parts, driver / parts, of_scheduler / parts, ending[0] / parts, memory)
 
 
-def _made(
-    model: Path,
-    row: PartRow,
-    task_s: float,
-    recipe: Recipe,
-    parts: Sequence[int],
-    directory: Path,
-    _workers: int,
-    client: Client,
-    _report: Callable[[int], None],
-) -> Generator[tuple[int, Outcome]]:
-    """Stand-in for the making of parts by tasks that wait."""
-    from gen.support.workers import run
-
-    yield from run(partial(_linked, model, row, task_s, directory.resolve(), recipe), parts, scheduler=client)
-
-
 def _linked(
-    model: Path, row: PartRow, task_s: float, directory: Path, _recipe: object, part: int
-) -> Iterator[tuple[int, Outcome]]:
-    """Wait, and link the model under the name of a part; the recipe is sent as for a real task."""
+    model: Path, row: PartRow, task_s: float, recipe: Recipe, folder: Path, _sources: str, part: int
+) -> making.Outcome:
+    """Stand-in for the making of a part: wait, and link the model under its name; the recipe is sent as for a real task."""
     time.sleep(task_s)
-    (directory / "parts" / part_name(part)).hardlink_to(model)
-    yield part, Outcome(row._replace(name=part_name(part)), kept=False, failures=())
+    name = part_file(recipe, part)
+    (folder / "parts" / name).hardlink_to(model)
+    return making.Outcome(row._replace(name=name), ())
 
 
 @contextmanager

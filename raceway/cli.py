@@ -4,6 +4,7 @@ import inspect
 import logging
 import os
 import re
+import resource
 import sys
 from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
@@ -25,7 +26,7 @@ from raceway.commands import (
     plotting,
     publishing,
 )
-from raceway.console.ending import NoReader, exit_code
+from raceway.console.ending import BAD_INPUT, NoReader, exit_code
 from raceway.console.signals import listen_for_signals
 
 GROUPS: Mapping[str, tuple[click.Command, ...]] = {
@@ -58,6 +59,9 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
 }
 """Commands in the order of the work."""
 
+LEAST_MEMORY = (
+    1_000_000_000  # bytes that may be addressed; with less, a library that is loaded tries without end to get more
+)
 ROAD = """\
   raceway generate quickstart -o corpus              make labelled records
   raceway plot corpus --record 7 -o record.png       look at one of them
@@ -160,5 +164,11 @@ def main() -> NoReturn:
     os.environ["MPLBACKEND"] = (
         "agg"  # a notebook names a backend that this process may not have, and no command needs a window
     )
+    memory, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if memory != resource.RLIM_INFINITY and memory < LEAST_MEMORY:
+        sys.stderr.write(
+            f"memory: the limit of this shell is {memory / 1e6:,.0f} MB; raise it with ulimit -v 2000000.\n"
+        )
+        sys.exit(BAD_INPUT)
     listen_for_signals()
     cli.main(prog_name="raceway")

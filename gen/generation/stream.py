@@ -167,14 +167,13 @@ class Stream(Iterator[xr.Dataset]):
         RecipeError
             If it is not the state of a stream of this recipe and seed.
         """
-        identity, following = (state.get(key) for key in ("identity", "next"))
-        if identity != corpus_identity(self.recipe) or type(following) is not int:
+        if not isinstance(state, Mapping) or state.get("identity") != corpus_identity(self.recipe):
             raise RecipeError(
                 f"{self.recipe.name}: not a state of a stream of this recipe and seed; give what its state_dict gave."
             )
-        _check_number("next", following, 0, self.recipe.n_records - 1)
+        _check_number("next", state.get("next"), 0, self.recipe.n_records - 1)
         self.close()
-        self._next = following
+        self._next = state["next"]
 
     def close(self) -> None:
         """End the workers; the next batch would start others."""

@@ -2,7 +2,6 @@
 
 import shlex
 import time
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +26,8 @@ from raceway.console.progress import notice, notice_compilation, progress
 from raceway.console.signals import if_interrupted
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from gen.generation.corpus import Generated
     from gen.generation.plan import Plan
     from gen.recipe import Recipe
@@ -185,7 +186,7 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     wanted = read_recipe(recipe, seed=options["seed"], records=options["records"])
     start = time.monotonic()
     workers = team.workers or _default_workers(wanted)
-    with if_interrupted(partial(_kept, output, wanted)):
+    with if_interrupted(_kept(output, wanted)):
         made = _generate(recipe, output, workers=workers, scheduler=team.scheduler, **options)
     for failure in made.failures:
         notice(f"left out: {failure}")
@@ -241,15 +242,22 @@ def _coarse_steps(corpus: Path) -> str | None:
         return step_complaint(opened)
 
 
-def _kept(corpus: Path, recipe: "Recipe") -> str:
-    """Remove the unfinished files of the workers, and return a sentence about the parts that are kept."""
+def _kept(corpus: Path, recipe: "Recipe") -> "Callable[[], str]":
+    """Function that removes the unfinished files of the workers and returns a sentence about the parts that are kept.
+
+    It imports nothing: the main thread may hold the lock of an import when it is called.
+    """
     from gen.corpus import is_single_file, part_number, remove_left_behind
 
-    corpus = corpus.with_name(f"{corpus.name}.parts") if is_single_file(corpus) else corpus
-    remove_left_behind(corpus / "parts", "part-*.nc")
-    parts = {part_number(path.name) for path in (corpus / "parts").glob("part-*.nc")} - {None}
-    of_all = f"{len(parts)} of {show.count_text(recipe.n_parts, 'part')}"
-    return f"interrupted; {of_all} kept in {corpus}; the same command completes the corpus."
+    folder = corpus.with_name(f"{corpus.name}.parts") if is_single_file(corpus) else corpus
+
+    def told() -> str:
+        remove_left_behind(folder / "parts", "part-*.nc")
+        parts = {part_number(path.name) for path in (folder / "parts").glob("part-*.nc")} - {None}
+        of_all = f"{len(parts)} of {show.count_text(recipe.n_parts, 'part')}"
+        return f"interrupted; {of_all} kept in {folder}; the same command completes the corpus."
+
+    return told
 
 
 def _default_workers(recipe: "Recipe") -> int:

@@ -23,9 +23,10 @@ from tests.diagnoses import corpus
 _START = """
 import os, signal, sys
 signal.signal(signal.SIGINT, signal.SIG_DFL)  # tests in the background ignore it, and so would the process
-if os.environ.get("LARGEST_FILE"):
-    import resource
-    resource.setrlimit(resource.RLIMIT_FSIZE, (int(os.environ["LARGEST_FILE"]),) * 2)
+for variable, limit in (("LARGEST_FILE", "RLIMIT_FSIZE"), ("LARGEST_MEMORY", "RLIMIT_AS")):
+    if os.environ.get(variable):
+        import resource
+        resource.setrlimit(getattr(resource, limit), (int(os.environ[variable]),) * 2)
 from raceway.cli import main
 if __name__ == "__main__":
     main()

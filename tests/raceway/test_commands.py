@@ -1,7 +1,6 @@
 """Output of each command, as text and as JSON."""
 
 import json
-import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -46,7 +45,7 @@ def test_raceway_alone_shows_the_road_and_every_command_of_it_exists(run):
     assert set(steps) < set(cli.commands)
 
 
-@pytest.mark.parametrize("words", ["plan", "generate", "train", "doctor --speed"])
+@pytest.mark.parametrize("words", ["plan", "generate", "train"])
 def test_a_shell_completes_names_of_recipes_and_else_files(words):
     parts = ["raceway", *words.split()]
 
@@ -84,7 +83,7 @@ def test_help_and_version_load_no_heavy_library():
 
 
 def test_a_list_of_recipes_and_a_misspelt_name_load_no_simulator():
-    lines = ["recipes", "plan quikstart", "generate quikstart -o new", "doctor --speed quikstart"]
+    lines = ["recipes", "plan quikstart", "generate quikstart -o new"]
     assert loaded(lines, SIMULATOR | {"xarray", "netCDF4", "scipy"}) == set()
 
 
@@ -125,7 +124,6 @@ def test_a_plan_counts_what_generate_makes_and_writes_nothing(
     run, told, tiny_recipe, tiny_corpus, tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("gen.generation.forecast.cache_folder", lambda: None)  # no rate of this machine
     planned, found = told("plan", tiny_recipe), told("info", tiny_corpus)
     same = (
         "records",
@@ -141,17 +139,13 @@ def test_a_plan_counts_what_generate_makes_and_writes_nothing(
     )
     assert {name: planned[name] for name in same} == {name: found[name] for name in same}
     assert planned["bytes"] == pytest.approx(found["bytes"], rel=0.5)
-    assert 0 < planned["estimated_seconds"] < 60
     assert "healthy 12, inner 12, outer 12, ball 12" in run("plan", tiny_recipe).stdout
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_plan_tells_the_time_of_kernels_and_of_records(run, tiny_recipe, monkeypatch):
+def test_a_plan_tells_of_kernels_that_will_be_compiled(run, tiny_recipe, monkeypatch):
     monkeypatch.setattr("gen.generation.plan.is_compiled", lambda _: False)
-    assert re.search(
-        r"about 20 s for one kernel, then about [\d,.]+ records/s with one worker: about",
-        run("plan", tiny_recipe).stdout,
-    )
+    assert "kernels    1, of which 1 will be compiled for this machine\n" in run("plan", tiny_recipe).stdout
 
 
 def test_generate_counts_its_records_and_a_second_call_keeps_them(told, tiny_recipe, tmp_path):

@@ -105,7 +105,6 @@ TABLE = [
     ("generate {recipe} -o {begun} --scheduler nowhere", "scheduler nowhere: does not answer (missing port number"),
     ("generate {straight} -o {begun}", "operation.axial_load_n: needs a contact angle; "),
     ("plan {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; give at least 66.12 N."),
-    ("doctor --speed {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; give at least 66.12 N."),
     ("generate {wide} -o {begun}", "a spall of 6 mm does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     # corpora
     ("generate {recipe} -o {table}", "table.nc: has no checksum of Raceway at its end"),
@@ -280,3 +279,10 @@ def test_control_characters_of_a_recipe_are_not_printed(run, tiny_recipe, tmp_pa
 
 def test_json_has_null_for_nan_and_infinity():
     assert show.plain({"load": [float("nan"), 1.5], "rate": float("inf")}) == {"load": [None, 1.5], "rate": None}
+
+
+def test_a_limit_of_memory_that_libraries_need_is_told_before_they_are_loaded(start):
+    process = start("recipes", LARGEST_MEMORY="600000000")
+    output, errors = process.communicate(timeout=60)
+    assert (process.returncode, output) == (2, "")
+    assert errors == "memory: the limit of this shell is 600 MB; raise it with ulimit -v 2000000.\n"

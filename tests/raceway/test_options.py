@@ -192,16 +192,3 @@ def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_p
     assert made["records_with_missing_features"] == 1
     shown = run("features", tiny_corpus, "-o", tmp_path / "features.nc").stdout
     assert "features of 48 records; some are missing in 1 record." in shown
-
-
-def test_doctor_times_every_stage_of_generate_and_names_the_machine(run, told, tiny_recipe):
-    found = told("doctor", "--speed", tiny_recipe, "--records", 6)
-    assert found["records"] == 6
-    seconds = found["stage_seconds"]
-    assert set(seconds) == {"draw", "integrate", "measure", "check", "write", "features"}
-    assert found["kernel_record_steps_per_second"] == pytest.approx(found["record_steps"] / seconds["integrate"])
-    assert found["features_records_per_second"] == pytest.approx(6 / seconds["features"])
-    assert found["records_per_second"] == pytest.approx(6 / (sum(seconds.values()) - seconds["features"]))
-    assert found["machine"].keys() == {"processor", "cores", "python", "raceway", "numba", "numpy", "scipy"}
-    shown = run("doctor", "--speed", tiny_recipe, "--records", 1).stdout
-    assert shown.startswith(f"tiny: 1 record on {found['machine']['processor']}\n")

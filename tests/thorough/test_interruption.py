@@ -6,7 +6,10 @@ import re
 import shutil
 import signal
 import time
+from contextlib import suppress
 
+import numpy as np
+import psutil
 import pytest
 
 from gen import generate
@@ -81,11 +84,11 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
 
 
 def without_progress(errors):
-    """What a call says beside its forecast and its progress."""
+    """What a call says beside its compilation and its progress."""
     return "".join(
         line
         for line in errors.splitlines(keepends=True)
-        if not line.startswith(("about ", "generating: ", "workers: "))
+        if not line.startswith(("compiling ", "kernel ", "generating: ", "workers: "))
     )
 
 
@@ -115,6 +118,44 @@ def test_a_corpus_killed_at_any_moment_has_whole_parts_and_is_completed_to_the_b
     assert not list(tmp_path.glob("**/.*"))
 
 
+@pytest.mark.parametrize("victim", ["driver", "worker", "group"])
+def test_kills_at_any_moment_leave_whole_parts_and_no_process(start, recipe, whole, tmp_path, victim):
+    """Ten kills of the driver, of a worker or of all processes, two workers; a lost worker is no loss: the other makes its part."""
+    folder, rng = tmp_path / "corpus", np.random.default_rng(0)
+    for moment in rng.uniform(1.0, 8.0, 10):
+        process = start("generate", recipe, "-o", folder, "--workers", 2)
+        time.sleep(moment)
+        workers = members(process.pid) - {process.pid}
+        if victim == "group":
+            os.killpg(process.pid, signal.SIGKILL)
+        elif victim == "driver" or not workers:
+            process.kill()
+        else:
+            os.kill(min(workers), signal.SIGKILL)
+        process.communicate(timeout=PATIENCE_S)
+        assert process.returncode == (0 if victim == "worker" and workers else -signal.SIGKILL)
+        stop = time.monotonic() + 5.0
+        while members(process.pid):
+            assert time.monotonic() < stop
+            time.sleep(0.05)
+        for part in (folder / "parts").glob("part-*.nc"):
+            assert part.read_bytes() == whole[part.name]
+        if process.returncode == 0:
+            shutil.rmtree(folder)
+    generate(recipe, folder)
+    assert part_bytes(folder) == whole
+
+
+def members(group):
+    """Numbers of the processes of a group."""
+    found = set()
+    for number in psutil.pids():
+        with suppress(ProcessLookupError):
+            if os.getpgid(number) == group:
+                found.add(number)
+    return found
+
+
 def test_a_full_disk_ends_in_one_sentence_and_the_same_command_completes_the_corpus(start, recipe, whole, tmp_path):
     folder = tmp_path / "corpus"
     largest_file = str(len(whole["part-00000.nc"]) // 2)
@@ -138,7 +179,7 @@ def test_the_processes_that_compile_end_with_the_command(start, tmp_path, number
     os.kill(process.pid, number)  # the command alone: a terminal would stop the others too
     _, errors = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == (130 if number == signal.SIGINT else -signal.SIGKILL)
-    assert "compiling kernel 1 of 7 (13 balls, " in errors
+    assert "compiling 7 kernels for this machine" in errors
     stop = time.monotonic() + PATIENCE_S
     while not all(map(is_free, cache.glob("kernel_*/*.lock"))):
         assert time.monotonic() < stop

@@ -5,12 +5,13 @@ import sys
 from types import ModuleType, SimpleNamespace
 
 import numpy as np
+import psutil
 import pytest
 
 import gen
 from gen.generation.stream import endless, records_from
 from gen.recipe import Recipe
-from gen.support.errors import RecipeError, SimulationError
+from gen.support.errors import ClusterError, RecipeError, SimulationError
 from tests.gen.conftest import small_with
 
 
@@ -55,6 +56,29 @@ def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
         gen.stream(recipe, seed=99).load_state_dict(state)
     with pytest.raises(RecipeError, match="not a state of a stream of this recipe and seed"):
         gen.stream(recipe).load_state_dict({})
+
+
+@pytest.mark.parametrize("wrong", [-5, 7.0, "7", None, float("nan"), [7], True, 2**40])
+def test_a_state_with_a_wrong_number_is_refused(recipe, wrong):
+    fresh = gen.stream(recipe)
+    with pytest.raises(RecipeError, match=r"^next: .* is not allowed; give a whole number from 0 to"):
+        fresh.load_state_dict(fresh.state_dict() | {"next": wrong})
+    with pytest.raises(RecipeError, match="not a state of a stream"):
+        fresh.load_state_dict([wrong])
+    assert fresh.state_dict()["next"] == 0
+
+
+def test_a_stream_goes_on_where_it_was_after_its_processes_were_killed(recipe, monkeypatch):
+    monkeypatch.setattr("gen.support.executor.cores", lambda: 2)
+    with gen.stream(recipe, batch=8, workers=2) as fresh:
+        found = [next(fresh)]
+        with pytest.raises(ClusterError, match="all worker processes have ended"):
+            while True:
+                for worker in psutil.Process().children():
+                    worker.kill()
+                found.append(next(fresh))
+        found.append(next(fresh))
+    assert numbers_of(found) == list(range(8 * len(found)))
 
 
 def test_several_processes_give_the_same_batches(recipe, monkeypatch):
