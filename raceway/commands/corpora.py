@@ -96,7 +96,7 @@ def _show_keys(prefix: str, as_json: bool) -> None:
 @records_option
 @json_option
 def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> None:
-    """Show counts, size, steps and kernels of a corpus; write nothing.
+    """Show counts, size and steps of a corpus; write nothing.
 
     Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. generate shows the time that is
     left as soon as some parts are done.

@@ -199,7 +199,7 @@ def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tm
     result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 24)
     assert result.exit_code == 0
     assert "left out: record 0 diverged.\nleft out: record 12 diverged.\n" in result.stderr
-    assert "22 records in 2 parts; 2 could not be simulated" in result.stdout
+    assert "22 records in 2 parts; 2 records left out" in result.stdout
     assert told("info", tmp_path / "corpus")["failures"] == ["record 0 diverged.", "record 12 diverged."]
     assert "Left out:\n- record 0 diverged.\n" in run("info", tmp_path / "corpus").stdout
 

@@ -58,6 +58,13 @@ def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
         gen.stream(recipe).load_state_dict({})
 
 
+def batches_after_kills(fresh):
+    while True:
+        for worker in psutil.Process().children():
+            worker.kill()
+        yield next(fresh)
+
+
 @pytest.mark.parametrize("wrong", [-5, 7.0, "7", None, float("nan"), [7], True, 2**40])
 def test_a_state_with_a_wrong_number_is_refused(recipe, wrong):
     fresh = gen.stream(recipe)
@@ -73,10 +80,7 @@ def test_a_stream_goes_on_where_it_was_after_its_processes_were_killed(recipe, m
     with gen.stream(recipe, batch=8, workers=2) as fresh:
         found = [next(fresh)]
         with pytest.raises(ClusterError, match="all worker processes have ended"):
-            while True:
-                for worker in psutil.Process().children():
-                    worker.kill()
-                found.append(next(fresh))
+            found.extend(batches_after_kills(fresh))
         found.append(next(fresh))
     assert numbers_of(found) == list(range(8 * len(found)))
 
