@@ -3,7 +3,6 @@
 import shutil
 
 import numpy as np
-import psutil
 import pytest
 from distributed import LocalCluster
 
@@ -13,6 +12,7 @@ from gen.corpus.manifest import Overrides
 from gen.generation.corpus import generate
 from gen.support.errors import ClusterError, CorpusError, RecipeError
 from tests.same_corpora import assert_the_same_corpus
+from tests.worker_processes import worker_processes
 
 
 def counts(folder):
@@ -69,7 +69,7 @@ def test_an_error_in_a_process_ends_all_processes_and_is_told(recipe_file, tmp_p
     (tmp_path / "c" / "parts" / "part-00001.nc").mkdir()  # where a process writes a part
     with pytest.raises(CorpusError, match=r"part-00001\.nc"):
         generate(recipe_file, tmp_path / "c", workers=2)
-    assert psutil.Process().children(recursive=True) == []
+    assert worker_processes() == []
 
 
 def test_workers_of_a_given_scheduler_make_the_same_corpus(recipe_file, whole, tmp_path):

@@ -5,7 +5,6 @@ import sys
 from types import ModuleType, SimpleNamespace
 
 import numpy as np
-import psutil
 import pytest
 
 import gen
@@ -13,6 +12,7 @@ from gen.generation.stream import endless, records_from
 from gen.recipe import Recipe
 from gen.support.errors import ClusterError, RecipeError, SimulationError
 from tests.gen.conftest import small_with
+from tests.worker_processes import worker_processes
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,7 @@ def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
 
 def batches_after_kills(fresh):
     while True:
-        for worker in psutil.Process().children():
+        for worker in worker_processes():
             worker.kill()
         yield next(fresh)
 

@@ -16,12 +16,13 @@ from distributed import LocalCluster
 
 from gen.support.errors import ClusterError, RecipeError
 from gen.support.executor import connected, run
+from tests.worker_processes import worker_processes
 
 
 @pytest.fixture(autouse=True)
 def no_process_is_left():
     yield
-    assert psutil.Process().children(recursive=True) == []
+    assert worker_processes() == []
 
 
 def halved(item):
@@ -63,7 +64,7 @@ def test_processes_and_schedulers_work_elsewhere_and_one_worker_here():
 def test_several_calls_share_their_processes():
     with connected(2) as client:
         found = {*run(process, range(20), client), *run(process, range(20), client)}
-        assert found <= {child.pid for child in psutil.Process().children(recursive=True)}
+        assert found <= {child.pid for child in worker_processes()}
 
 
 @pytest.mark.parametrize("workers", [1, 2])
