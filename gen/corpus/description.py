@@ -10,7 +10,7 @@ A corpus is one netCDF-4 file, `NAME.nc`, or a folder of such files:
 
 | file | content |
 |---|---|
-| `parts/part-00000.nc` ... | some hundred records each; every part has the layout of a single file and can be opened as a corpus; a last part that is not full has its number of records in its name, `part-00007-40.nc` |
+| `parts/part-00000.nc` ... | files of some hundred records, each with the layout of a corpus; a last one of 40: `part-00007-40.nc` |
 | `index.nc` | the variables and attributes of the single file, for all records, without the signal |
 | `manifest.json` | records, bytes and SHA-256 of each part; whether the corpus is complete; where the records come from; its own hash |
 | `recipe.yaml` | the recipe, if all records were generated from one |
