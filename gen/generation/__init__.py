@@ -11,6 +11,7 @@ undetected  records drawn, simulated and measured; faults that cannot be seen dr
 step_checks some records integrated again at half their step
 parts       a part: its records and labels, from the recipe and their numbers
 compilation kernels of a recipe compiled before its first record
+target      the folder of a corpus, checked before anything is made
 corpus      a corpus, part by part
 replaying   any record made again from the scenario that it stores, bit for bit
 memory      records as one Dataset, from keys or from scenarios made by hand

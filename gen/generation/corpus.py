@@ -8,23 +8,20 @@ what it is until all further parts are there: then its manifest is replaced. The
 
 import json
 import platform
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager, nullcontext, suppress
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gen.corpus import (
-    MANIFEST_NAME,
     RECIPE_NAME,
-    Manifest,
     PartRow,
     SignalCounts,
     check_place,
     corpus_files,
     facts_as_attributes,
-    facts_of_parts,
     file_facts,
     finish_corpus,
     finish_file,
@@ -34,17 +31,16 @@ from gen.corpus import (
     read_manifest,
     remove_left_behind_of,
     remove_parts,
-    remove_temporary_files,
     row_of,
     stored_columns,
     write_durably,
-    write_manifest,
     write_part,
     writing,
 )
 from gen.generation.compilation import compile_kernels
 from gen.generation.parts import failures_of, made_by, make_part, part_file
 from gen.generation.sources import sources_sha256
+from gen.generation.target import check_parts, check_same, claim, prepare, remove_other_parts
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.executor import Workers, connected, run, too_many
@@ -134,15 +130,15 @@ def generate(
     folder = target.with_name(f"{target.name}.parts") if is_single_file(target) else target
     facts = facts_of(checked, {"seed": seed, "records": records})
     if parts is not None:
-        _check_parts(checked, parts, target)
+        check_parts(checked, parts, target)
     elif is_single_file(target) and target.exists():
         return _finished_before(target, folder, checked, facts)
-    with nullcontext(workers) if scheduler is None else connected(scheduler) as place, _claim(folder):
+    with nullcontext(workers) if scheduler is None else connected(scheduler) as place, claim(folder):
         if folder is not target:
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
         text = find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode()
-        _prepare(folder, text, facts, checked)
+        prepare(folder, text, facts, checked)
         every = range(checked.n_parts)
         wanted = every if parts is None else sorted({*parts, *_there(folder)})
         outcomes = _all_parts(checked, wanted, folder, place, progress, notice)
@@ -150,7 +146,7 @@ def generate(
         if folder is not target:
             remove_parts(folder, [part_file(checked, part) for part in every])
         else:
-            _remove_others(folder, checked)
+            remove_other_parts(folder, checked)
         return corpus
 
 
@@ -170,13 +166,6 @@ def _there(folder: Path) -> set[int]:
     return {number for number in numbers if number is not None}
 
 
-def _remove_others(folder: Path, recipe: Recipe) -> None:
-    """Remove a last part that was not full, of a corpus with fewer records."""
-    for path in (folder / "parts").glob("part-*-*.nc"):
-        if path.name != part_file(recipe, recipe.n_parts - 1):
-            path.unlink(missing_ok=True)
-
-
 def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
     """Fields of the manifest that say where a generated corpus comes from."""
     return {
@@ -187,20 +176,11 @@ def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _check_parts(recipe: Recipe, parts: range, target: Path) -> None:
-    last = recipe.n_parts - 1
-    if is_single_file(target):
-        raise CorpusError(f"{target}: is one file, which has all parts; give a folder for some of them.")
-    if not parts or parts.step != 1 or parts.start < 0 or parts[-1] > last:
-        asked = f"{parts.start}-{parts.stop - 1}"
-        raise RecipeError(f"parts: {asked} is not allowed; {recipe.name} has the parts 0-{last}, give a range of them.")
-
-
 def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, Any]) -> Generated:
     """Result of a corpus in a single file that an earlier call has finished."""
     corpus_files(file)
     manifest = read_manifest(file)
-    _check_same(file, manifest, facts)
+    check_same(file, manifest, facts)
     held = manifest.records + len(manifest.failures)
     if recipe.life is not None:  # every bearing has a first snapshot
         last = int(stored_columns(file)["recording"].max())
@@ -299,80 +279,3 @@ def _finish(target: Path, folder: Path, text: bytes, outcomes: list[Outcome], fa
     signals = finish_corpus(folder, rows, **facts) if whole else finish_file(folder, rows, target, **facts)
     kept = sum(outcome.kept for outcome in outcomes)
     return Generated(target, sum(row.records for row in rows), len(rows), kept, failures, signals)
-
-
-@contextmanager
-def _claim(folder: Path) -> Iterator[None]:
-    """Create the folder and lock it against other calls."""
-    if folder.exists() and not folder.is_dir():
-        raise CorpusError(f"{folder}: is a file; give a folder, or a file that ends in .nc, for the corpus.")
-    with writing(folder):
-        folder.mkdir(parents=True, exist_ok=True)
-    with lock(folder):
-        yield
-
-
-def _prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe) -> None:
-    """Check what the folder holds, and write the manifest of an unfinished corpus, unless it holds a finished one, which may grow.
-
-    The manifest is written first: it tells a corpus without any part from a folder that holds something else.
-    """
-    finished = False
-    with writing(folder):
-        remove_temporary_files(folder)
-        if (folder / MANIFEST_NAME).exists():
-            manifest = read_manifest(folder)
-            _check_same(folder, manifest, facts)
-            _check_generated(folder, manifest)
-            _check_growth(folder, manifest, recipe)
-            if not facts["publication"].stored:
-                facts["publication"] = manifest.publication  # given after the corpus was made
-            finished = manifest.complete
-        elif any(folder.iterdir()):
-            raise CorpusError(f"{folder}: is not empty and holds no corpus; choose another folder.")
-        if not finished:
-            write_manifest(folder, facts_of_parts([], facts, complete=False))
-            write_durably(text, folder / RECIPE_NAME)
-        (folder / "parts").mkdir(exist_ok=True)
-        if not finished:
-            _remove_others(folder, recipe)
-
-
-def _check_growth(folder: Path, manifest: Manifest, recipe: Recipe) -> None:
-    """Refuse a corpus with fewer records than the one in the folder."""
-    overrides = {} if manifest.overrides is None else dict(manifest.overrides)
-    begun = folder / RECIPE_NAME  # not there if a call was killed before its first part
-    before = read_recipe(begun, **overrides).n_records if begun.exists() else recipe.n_records
-    if recipe.n_records < before:
-        raise CorpusError(
-            f"{folder}: holds a corpus of {before} records and not {recipe.n_records}; a corpus grows and does not shrink: choose another "
-            "name."
-        )
-
-
-def _check_same(place: Path, manifest: Manifest, facts: dict[str, Any]) -> None:
-    """Refuse to complete a corpus of another recipe, or one that other sources or libraries began: its records would not go together."""
-    if manifest.recipe_sha256 is None:
-        raise CorpusError(
-            f"{place}: holds a corpus that was not generated from a recipe as a whole; choose another name."
-        )
-    if manifest.recipe_sha256 != facts["recipe_sha256"]:
-        raise CorpusError(f"{place}: holds a corpus of another recipe or seed; choose another name.")
-    began = manifest.versions | {"sources": (manifest.sources_sha256 or "unknown")[:12]}
-    now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
-    other = [name for name in now if began.get(name) != now[name]]
-    if other:
-        was, installed = (
-            ", ".join(f"{name} {versions.get(name, 'none')}" for name in other) for versions in (began, now)
-        )
-        raise CorpusError(
-            f"{place}: was begun with {was}; {installed} is installed and can give other samples: install the former to "
-            "complete it, or choose another name."
-        )
-
-
-def _check_generated(folder: Path, manifest: Manifest) -> None:
-    """Refuse a copy: its parts have other records than those that are generated, and would be made again."""
-    whole = next(filter(row_of, (folder / "parts" / row.name for row in manifest.parts)), None)
-    if whole is not None and "recipe_sha256" not in file_facts(whole)[0]:
-        raise CorpusError(f"{folder}: holds a copy of a corpus, which is not generated again; choose another name.")
