@@ -20,7 +20,6 @@ settings.load_profile("same")
 
 TINY = """\
 # Tiny: four classes on two machines, for tests.
-# All share the kernel of the small recipe of tests/gen.
 name: tiny
 title: Tiny corpus
 seed: 3

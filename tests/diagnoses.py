@@ -11,7 +11,7 @@ from raceway.cli import cli
 
 FS = 12_000
 RECIPE = """\
-# Recordings to diagnose, for tests; they share the kernel of the tiny recipe.
+# Recordings to diagnose, for tests.
 name: recordings
 title: Recordings
 seed: {seed}

@@ -43,11 +43,11 @@ def march_batch(shape: Shape, batch: Batch, n_knots: int, n_steps: int, knot: fl
     angles = np.empty((n_knots + 1, N_ANGLES, LANES))
     history = np.empty(n_knots * n_steps * AXES * LANES)
     _march(shape, own, knot / n_steps, n_steps, states, angles, history)
-    accelerations = history.reshape(-1, AXES, LANES)
+    accelerations = history.reshape(AXES, -1, LANES)
     return [
         Trip(
             states[:, :N_DYNAMIC, i],
-            accelerations[..., i],
+            accelerations[..., i].T,
             angles[..., i],
             states[:, State.CAGE_COS : State.STEEPEST, i],
         )
@@ -73,4 +73,4 @@ def _march(shape, batch, dt, n_steps, states, angles, history):
         if knot + 1 < len(states):
             to_next_knot(shape, batch, knot, n_steps, dt, work)
             since = 2.0 * n_steps * (knot % STRIDE)
-            advance(shape, batch, dt, n_steps, since, history, knot * n_steps * AXES)
+            advance(shape, batch, dt, n_steps, since, history, knot * n_steps, history.size // AXES)

@@ -1,4 +1,4 @@
-"""Changes to the small recipe of ``tests/gen/conftest.py`` that use every feature of the model, in one kernel."""
+"""Changes to the small recipe of ``tests/gen/conftest.py`` that use every feature of the model."""
 
 EVERY_FAULT = [
     {"kind": "healthy"},
@@ -18,7 +18,7 @@ EVERY_FAULT = [
     },
 ]
 
-# every record, healthy or faulty, has waviness, jitter, a schedule, oil, play and a resonance: all share one kernel
+# every record, healthy or faulty, has waviness, jitter, a schedule, oil, play and a resonance
 EVERYTHING = {
     "corpus": {"rigs": 1, "specimens_per_rig": 16, "records_per_specimen": 2},
     "storage.records_per_part": 16,

@@ -1,7 +1,4 @@
-"""Hypothesis strategies for bearings, machines, motions and spalls within the ranges of a recipe.
-
-Records have nine balls and kernel variants that other tests use too: each new variant takes seconds to compile.
-"""
+"""Hypothesis strategies for bearings, machines, motions and spalls within the ranges of a recipe; records have nine balls by default."""
 
 from dataclasses import replace
 
@@ -31,6 +28,7 @@ RIG = Machine(
 
 seeds = st.integers(0, 2**32 - 1)
 angles = st.floats(-np.pi, np.pi)
+NINE = st.just(9)
 widths = st.floats(0.15e-3, 2e-3)
 depths = st.floats(2e-6, 3e-4)
 
@@ -142,15 +140,16 @@ def record(machine, turning, some_spalls=(), *, seed=0, waviness=0.0, n_balls=9)
 
 
 @st.composite
-def steady_records(draw):
+def steady_records(draw, *, balls=NINE):
     """A healthy record of even balls at a constant rate, without contact damping."""
-    return record(draw(machines(contact_damping=0.0)), draw(steady_turnings()))
+    return record(draw(machines(contact_damping=0.0)), draw(steady_turnings()), n_balls=draw(balls))
 
 
 @st.composite
-def wandering_records(draw, *, n_balls=9):
+def wandering_records(draw, *, balls=NINE):
     """A record with many mechanisms: two to four spalls, damped contacts, wander, jitter, waviness."""
-    some = draw(st.lists(spalls(), min_size=2, max_size=4))
+    n_balls = draw(balls)
+    some = [one._replace(ball=one.ball % n_balls) for one in draw(st.lists(spalls(), min_size=2, max_size=4))]
     seed, rms = draw(seeds), draw(st.floats(1e-9, 1e-7))
     return record(draw(machines()), draw(wandering_turnings()), some, seed=seed, waviness=rms, n_balls=n_balls)
 
@@ -178,7 +177,7 @@ def profiled_spalls(draw):
 
 
 @st.composite
-def troubled_turnings(draw):
+def troubled_turnings(draw, n_balls):
     """Motion with all processes, a broken cage, and a bent and misaligned shaft; the cage knocks soon after the start."""
     turning = draw(wandering_turnings())
     return turning._replace(
@@ -187,7 +186,7 @@ def troubled_turnings(draw):
         twice_y=draw(st.floats(-200, 200)),
         knock=draw(st.floats(1, 100)),
         knock_angle=turning.cage_angle + draw(st.floats(-0.02, 0.05)),
-        late_ball=draw(st.integers(0, 8)),
+        late_ball=draw(st.integers(0, n_balls - 1)),
         late_by=draw(st.floats(-0.08, 0.08)),
         walk=draw(st.floats(0, 0.02)),
         walk_seed=draw(st.integers(0, 2**52 - 1)),
@@ -197,23 +196,24 @@ def troubled_turnings(draw):
     )
 
 
-def ball_waves(seed, rms):
-    """Amplitudes of the waviness of nine balls over both contacts, shape (order, ball) [m]."""
-    real, imaginary = np.random.default_rng(seed).normal(scale=rms / np.sqrt(BALL_ORDERS), size=(2, BALL_ORDERS, 9))
+def ball_waves(seed, rms, n_balls=9):
+    """Amplitudes of the waviness of balls over both contacts, shape (order, ball) [m]."""
+    size = 2, BALL_ORDERS, n_balls
+    real, imaginary = np.random.default_rng(seed).normal(scale=rms / np.sqrt(BALL_ORDERS), size=size)
     return real + 1j * imaginary
 
 
 @st.composite
-def troubled_records(draw):
+def troubled_records(draw, *, balls=NINE):
     """A record with every mechanism of a recipe: also rollers, a support with play, and schedules of shaft rate and load."""
-    seed, rms = draw(seeds), draw(st.floats(1e-9, 1e-7))
-    some = draw(st.lists(profiled_spalls(), min_size=2, max_size=4))
+    n_balls, seed, rms = draw(balls), draw(seeds), draw(st.floats(1e-9, 1e-7))
+    some = [one._replace(ball=one.ball % n_balls) for one in draw(st.lists(profiled_spalls(), min_size=2, max_size=4))]
     machine = draw(machines())._replace(looseness=draw(st.floats(1e-8, 5e-6)))
     machine = machine._replace(load_deflection_factor=draw(st.floats(1e8, 1e9)), contact_exponent=LINE_EXPONENT)
-    there = record(machine, draw(troubled_turnings()), some, seed=seed, waviness=rms)
+    there = record(machine, draw(troubled_turnings(n_balls)), some, seed=seed, waviness=rms, n_balls=n_balls)
     schedule = np.random.default_rng(seed).uniform(0.7, 1.3, (draw(st.integers(1, 10)), 2))
     return there._replace(
         bearing=replace(there.bearing, roller_length=8e-3),
-        waviness=there.waviness._replace(balls=ball_waves(seed, rms)),
+        waviness=there.waviness._replace(balls=ball_waves(seed, rms, n_balls)),
         schedule=schedule,
     )

@@ -111,7 +111,7 @@ def generate(
     progress : callable, optional
         Called with the number of records that are on disk and of all records.
     notice : callable, optional
-        Called with a sentence when kernels are compiled, and one about more workers than cores.
+        Called with a sentence when the kernel is compiled, and one about more workers than cores.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Plan of a corpus: counts, size, steps and kernels, without generating it.
+"""Plan of a corpus: counts, size and steps, without generating it.
 
 Records are drawn as :func:`gen.generate` draws them, and some of them checked as it checks them.
 """
@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from gen.corpus import CODECS, FAULTS, SPLITS
-from gen.generation.compilation import needed_shapes
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_inputs
@@ -53,9 +52,8 @@ class Plan:
     classes: dict[str, int]
     splits: dict[str, int]
     steps_per_sample: dict[int, int]
-    kernels: int
-    uncompiled: int
-    """Kernels that are not compiled on this machine."""
+    compiled: bool
+    """Whether this machine has the kernel already."""
     bytes: int
     drawn: int
     checked: int
@@ -91,7 +89,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     failures = [one for one in found if isinstance(one, str)]
     if not steps:
         raise SimulationError(failures[0])
-    recording, needed = whole.recording, needed_shapes(whole)
+    recording = whole.recording
     of_drawn, of_checked = count / len(drawn), count / len(places)
     return Plan(
         recipe=whole.name,
@@ -104,8 +102,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         sample_rate=recording.sample_rate_hz,
         duration=recording.duration_s,
         channels=tuple(channel.name for channel in recording.channels),
-        kernels=len(needed),
-        uncompiled=sum(not is_compiled(shape) for shape in needed),
+        compiled=is_compiled(),
         bytes=_bytes(whole, count),
         drawn=len(drawn),
         checked=len(places),

@@ -11,8 +11,8 @@ damage   spalls and waviness
 inputs   kernel inputs, put together from these
 hits     how often loaded balls pass the spalls
 truth    what is true of a record by construction
-kernels  the kernels of this machine by their shapes
-batches  records grouped by kernel and step, and integrated in lanes
+kernels  the kernel of this machine
+batches  records grouped by shape and step, and integrated in lanes
 steps    the step: chosen before the run, checked after it
 simulate scenarios integrated
 ======== ====================================================================

@@ -1,4 +1,4 @@
-"""Records grouped by kernel shape and step, and integrated in lanes, ``LANES`` at a time.
+"""Records grouped by shape and step, and integrated in lanes, ``LANES`` at a time.
 
 A record does not depend on the others in its batch.
 """
@@ -23,7 +23,7 @@ from gen.simulation.timeline import Timeline
 
 
 class Group(NamedTuple):
-    """Records of one group share their compiled kernel and their step, so they may share batches."""
+    """Records of one group share their shape and their step, so they may share batches."""
 
     shape: Shape
     steps: int
@@ -64,7 +64,7 @@ def batches(groups: Mapping[int, Group]) -> Iterator[tuple[Group, list[int]]]:
 
 def integrate_batch(group: Group, batch: Batch, timeline: Timeline) -> Integral:
     """Integrate one batch along the time axis of the recipe."""
-    load_kernel(group.shape)
+    load_kernel()
     step = 1 / (timeline.fs * group.steps)
     return integrate(group.shape, batch, step, group.steps, _filters(group.steps), timeline.dropped, timeline.returned)
 
@@ -81,5 +81,5 @@ def integrate_together(integrations: Sequence[Integration], timeline: Timeline) 
     batch = lay_out([one.given for one in integrations], group.shape, 1 / timeline.fs)
     made = integrate_batch(group, batch, timeline)
     for lane, one in enumerate(integrations):
-        one.response = made.response[:, :, lane].T.copy()
+        one.response = made.response[:, :, lane].copy()
         one.diverged, one.steepest = int(made.diverged[lane]), float(made.steepest[lane])

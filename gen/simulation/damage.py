@@ -129,7 +129,7 @@ def _wear_of(scenario: Scenario) -> tuple[Any, ...]:
     return tuple(tuple(drawn.items()) for drawn in scenario.specimen.damage.values() if "wear" in drawn)
 
 
-def is_wavy(scenario: Scenario) -> bool:
+def _is_wavy(scenario: Scenario) -> bool:
     """Whether races or balls of a specimen are wavy, as made or as worn."""
     properties = scenario.specimen.properties
     return bool(properties["waviness"] or properties["ball_waviness"] or _wear_of(scenario))
@@ -137,7 +137,7 @@ def is_wavy(scenario: Scenario) -> bool:
 
 def waviness_of(scenario: Scenario, fs: float) -> Waviness:
     """Fourier amplitudes of races and balls of the specimen of a record, without waves that pass a ball too fast for ``fs`` [Hz]."""
-    if not is_wavy(scenario):
+    if not _is_wavy(scenario):
         return ROUND
     specimen, profile = scenario.specimen, scenario.record.speed_profile
     place = scenario.settings.seed, scenario.rig.number, specimen.number, 0

@@ -1,7 +1,6 @@
-"""The kernels of this machine by their shapes: whether they are compiled, and where they are kept."""
+"""The kernel of this machine: whether it is compiled, and how it is loaded."""
 
 import functools
-from pathlib import Path
 from typing import Any
 
 import numba
@@ -19,28 +18,23 @@ _kernel: Any = integrate_lanes
 _on_disk: KernelCache | None = _kernel._cache if _kernel.stats.cache_path is not None else None  # noqa: SLF001
 
 
-def cache_folder() -> Path | None:
-    """Folder of the compiled kernels; None if none can be written."""
-    return None if _on_disk is None else Path(_on_disk.cache_path)
+def is_compiled() -> bool:
+    """Whether the kernel is loaded or on disk."""
+    return signature() in _kernel.overloads or (_on_disk is not None and _on_disk.has(signature()))
 
 
-def is_compiled(shape: Shape) -> bool:
-    """Whether the kernel of a shape is loaded or on disk."""
-    types = signature(shape)
-    return types in _kernel.overloads or (_on_disk is not None and _on_disk.has(types))
-
-
-@functools.cache
-def load_kernel(shape: Shape) -> None:
-    """Load the kernel of a shape, or compile it if neither the disk nor another process has it."""
+def load_kernel() -> None:
+    """Load the kernel, or compile it if neither the disk nor another process has it."""
+    if signature() in _kernel.overloads:
+        return
     if _on_disk is None:
-        _kernel.compile(signature(shape))
-    elif signature(shape) not in _kernel.overloads:
-        _on_disk.load(signature(shape))
+        _kernel.compile(signature())
+    else:
+        _on_disk.load(signature())
 
 
 @functools.cache
-def signature(shape: Shape) -> tuple[Any, ...]:
-    """Types of the arguments of the kernel of a shape."""
+def signature() -> tuple[Any, ...]:
+    """Types of the arguments of the kernel."""
     arrays = Batch(1, *(np.empty((0,) * DIMENSIONS.get(field, 1)) for field in Batch._fields[1:]))
-    return tuple(numba.typeof(argument) for argument in (shape, arrays, 1e-5, 1, decimation(1), 0, 1))
+    return tuple(numba.typeof(argument) for argument in (Shape(1, 1), arrays, 1e-5, 1, decimation(1), 0, 1))

@@ -125,7 +125,6 @@ def _show_plan(planned: "Plan") -> None:
         for count, done in ((planned.drawn, "drawn"), (planned.checked, "checked"))
     )
     without = f", without {planned.left_out:,} that cannot be simulated{about_checked}" if planned.left_out else ""
-    uncompiled = f", of which {planned.uncompiled} will be compiled for this machine" if planned.uncompiled else ""
     show.text(planned.title, "")
     show.facts(
         {
@@ -139,7 +138,7 @@ def _show_plan(planned: "Plan") -> None:
             "parts": f"{planned.parts:,}",
             "size": f"about {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",
-            "kernels": f"{planned.kernels}{uncompiled}",
+            "kernel": "compiled" if planned.compiled else "will be compiled for this machine, in 10 to 20 s",
         }
     )
     if planned.first_left_out is not None:

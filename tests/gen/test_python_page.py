@@ -12,7 +12,7 @@ from tests.page_examples import blocks, run_blocks
 from tests.paths import ROOT
 
 PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
-# one kernel of the small recipes, and seconds instead of minutes
+# seconds instead of minutes
 SMALLER = {
     r'^ +(- )?\{"?name"?: "?fan_end.*\n': "",
     "n=40": "n=5",

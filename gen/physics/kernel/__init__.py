@@ -6,6 +6,7 @@ module       responsibility
 compiling    how the kernel is compiled: one record per lane, fixed rounding
 layout       every array of the kernel, and every row in it, by name
 drop         how far a ball drops over a spall
+contacts     the force of the rolling elements
 equations    the equations of motion
 step         one step of the classical Runge-Kutta method
 turning      how shaft, cage and balls turn from knot to knot

@@ -10,14 +10,17 @@ import numpy as np
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, TABLE_POINTS
 from gen.physics.inputs import KernelInput, Turning, farthest_jitter, is_wavy, spall_span, walk_slip_rms
 from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.contacts import COS, SIN
 from gen.physics.kernel.drop import PROFILES
 from gen.physics.kernel.layout import (
     AXES,
+    CONTACT_ROWS,
     JITTER_TERMS,
     PICKUPS,
     STATE_ROWS,
     Angle,
     Batch,
+    Contact,
     Drive,
     FloatArray,
     Param,
@@ -25,8 +28,7 @@ from gen.physics.kernel.layout import (
     Site,
     SpallRow,
     State,
-    direction_row,
-    make_shape,
+    contact_row,
     n_folds,
     race_rows,
 )  # fmt: skip
@@ -38,20 +40,16 @@ _SITES = {"inner": Site.INNER, "outer": Site.OUTER, "ball": Site.BALL}
 
 
 def input_shape(record: KernelInput) -> Shape:
-    """Shape of the kernel that a record needs; it depends on nothing but the record."""
+    """Shape of a record; it depends on nothing but the record."""
     turning = record.turning
-    wavy = is_wavy(record.waviness)
-    return make_shape(
-        record.bearing.n_balls,
+    return Shape(
+        int(record.bearing.n_balls),
         len(record.pickups),
         displacement=record.displacement,
-        resonator=record.machine.sensor_mass > 0,
         damped=record.machine.contact_damping > 0,
-        wavy=wavy,
-        spalled=bool(record.spalls) or wavy,  # a wavy bearing shares its kernel with its damaged twins
+        wavy=is_wavy(record.waviness),
         jittered=turning.jitter_rms > 0 or turning.late_by != 0,
         forced=record.schedule.size > 0 or bool(turning.twice_x or turning.twice_y or turning.knock),
-        loose=record.machine.looseness > 0,
         roller=record.bearing.roller_length is not None,
     )
 
@@ -105,15 +103,15 @@ def _angles(turning: Turning) -> FloatArray:
 
 
 def _params(records: list[KernelInput], machine: Machine, shape: Shape) -> FloatArray:
-    params = unset(direction_row(shape), LANES)
+    params = unset(contact_row(shape) + CONTACT_ROWS * shape.balls, LANES)
     sensor = np.asarray(machine.sensor_mass)
+    held = sensor > 0  # without a mass, nothing pulls at the housing
     params[Param.LOAD_DEFLECTION_FACTOR] = machine.load_deflection_factor
     params[Param.CONTACT_DAMPING] = np.divide(machine.contact_damping, machine.load_deflection_factor)
     params[Param.CONTACT_COSINE] = machine.contact_cosine
-    params[Param.HALF_CLEARANCE] = machine.half_clearance
     params[Param.PER_SHAFT_MASS] = 1 / np.asarray(machine.shaft_mass)
     params[Param.PER_HOUSING_MASS] = 1 / np.asarray(machine.housing_mass)
-    params[Param.PER_SENSOR_MASS] = np.divide(1.0, sensor, out=np.zeros(LANES), where=sensor > 0)
+    params[Param.PER_SENSOR_MASS] = np.divide(1.0, sensor, out=np.zeros(LANES), where=held)
     params[Param.RING_DAMPING] = machine.ring_damping
     params[Param.SHAFT_DAMPING] = machine.shaft_damping
     params[Param.SHAFT_STIFFNESS] = machine.shaft_stiffness
@@ -124,13 +122,19 @@ def _params(records: list[KernelInput], machine: Machine, shape: Shape) -> Float
         machine.support_damping_x,
         machine.support_damping_y,
     )
-    params[Param.SENSOR_STIFFNESS_X] = machine.sensor_stiffness_x
-    params[Param.SENSOR_STIFFNESS_Y] = machine.sensor_stiffness_y
-    params[Param.SENSOR_DAMPING] = machine.sensor_damping
+    params[Param.SENSOR_STIFFNESS_X] = np.where(held, machine.sensor_stiffness_x, 0.0)
+    params[Param.SENSOR_STIFFNESS_Y] = np.where(held, machine.sensor_stiffness_y, 0.0)
+    params[Param.SENSOR_DAMPING] = np.where(held, machine.sensor_damping, 0.0)
     params[Param.LOOSENESS] = machine.looseness
     params[Param.SHAFT_FORCE_X], params[Param.SHAFT_FORCE_Y] = machine.load_x, machine.load_y
+    params[Param.HOUSING_FORCE_X : Param.HOUSING_FORCE_Y_SLOPE + 1] = 0.0
     for lane, record in enumerate(records):
-        params[PICKUPS:, lane] = record.pickups.ravel()
+        params[PICKUPS : contact_row(shape), lane] = record.pickups.ravel()
+    contacts = params[contact_row(shape) :].reshape(shape.balls, CONTACT_ROWS, LANES)
+    contacts[:, Contact.COS] = COS[shape.balls, : shape.balls, None]
+    contacts[:, Contact.SIN] = SIN[shape.balls, : shape.balls, None]
+    contacts[:, Contact.GAP] = machine.half_clearance
+    contacts[:, Contact.COS_SLOPE :] = 0.0
     return params
 
 
@@ -227,7 +231,7 @@ def _resampled(drops: tuple[float, ...]) -> FloatArray:
 
 def _waves(records: list[KernelInput], shape: Shape) -> FloatArray:
     """Waviness amplitudes as :class:`Batch` has them, shape (row, lane); rows of round surfaces are 0 or left out."""
-    n_balls = len(shape.balls)
+    n_balls = shape.balls
     of_races = any(is_wavy(record.waviness) for record in records)
     of_balls = any(record.waviness.balls.size > 0 for record in records)
     waves = np.zeros((race_rows(shape) * of_races + 2 * BALL_ORDERS * n_balls * of_balls, LANES))

@@ -97,7 +97,6 @@ def _stage(taps: NDArray[np.float64], factor: int) -> Stage:
 
 @njit(**INLINE)
 def filter_rows(
-    channels: tuple[None, ...],
     stage: Stage,
     n_outputs: int,
     history: Single,
@@ -108,13 +107,13 @@ def filter_rows(
 ) -> None:
     """Compute ``n_outputs`` rows of ``out``, from row ``at`` on: weighted sums of the rows of ``history`` from row ``first`` on.
 
-    A row has all lanes of all ``channels``; ``total`` is a work array of ``n_outputs`` rows, a multiple of ``OUTPUTS``. The innermost loop
-    adds four rows to four outputs. One outside it goes through all outputs before the next taps are read: with one channel, whose rows are
-    a single vector, the sums of four outputs alone would wait for each other, and take twice as long.
+    A row has all lanes of one channel; ``total`` is a work array of ``n_outputs`` rows, a multiple of ``OUTPUTS``. The innermost loop adds
+    four rows to four outputs. One outside it goes through all outputs before the next taps are read: the sums of four outputs alone would
+    wait for each other, and take twice as long.
     """
     wide()
-    taps, width = stage.taps, len(channels) * LANES
-    for i in range(n_outputs * len(channels) * lane_count(LANES)):
+    taps = stage.taps
+    for i in range(n_outputs * lane_count(LANES)):
         total[i] = 0.0
     for row in range(0, len(taps), 4):
         a0, b0, c0, d0 = taps[row, 0], taps[row, 1], taps[row, 2], taps[row, 3]
@@ -122,13 +121,13 @@ def filter_rows(
         a2, b2, c2, d2 = taps[row + 2, 0], taps[row + 2, 1], taps[row + 2, 2], taps[row + 2, 3]
         a3, b3, c3, d3 = taps[row + 3, 0], taps[row + 3, 1], taps[row + 3, 2], taps[row + 3, 3]
         for output in range(0, n_outputs, OUTPUTS):
-            rows, sums = history[(first + row + output * stage.factor) * width :], total[output * width :]
-            for i in range(len(channels) * LANES):  # a constant length, so that the loop has no remainder
-                w, x, y, z = rows[i], rows[width + i], rows[2 * width + i], rows[3 * width + i]
+            rows, sums = history[(first + row + output * stage.factor) * LANES :], total[output * LANES :]
+            for i in range(LANES):  # a constant length, so that the loop has no remainder
+                w, x, y, z = rows[i], rows[LANES + i], rows[2 * LANES + i], rows[3 * LANES + i]
                 sums[i] = fma(a0, w, fma(a1, x, fma(a2, y, fma(a3, z, sums[i]))))
-                sums[width + i] = fma(b0, w, fma(b1, x, fma(b2, y, fma(b3, z, sums[width + i]))))
-                sums[2 * width + i] = fma(c0, w, fma(c1, x, fma(c2, y, fma(c3, z, sums[2 * width + i]))))
-                sums[3 * width + i] = fma(d0, w, fma(d1, x, fma(d2, y, fma(d3, z, sums[3 * width + i]))))
-    outputs = out[at * width :]
-    for i in range(n_outputs * len(channels) * lane_count(LANES)):
+                sums[LANES + i] = fma(b0, w, fma(b1, x, fma(b2, y, fma(b3, z, sums[LANES + i]))))
+                sums[2 * LANES + i] = fma(c0, w, fma(c1, x, fma(c2, y, fma(c3, z, sums[2 * LANES + i]))))
+                sums[3 * LANES + i] = fma(d0, w, fma(d1, x, fma(d2, y, fma(d3, z, sums[3 * LANES + i]))))
+    outputs = out[at * LANES :]
+    for i in range(n_outputs * lane_count(LANES)):
         outputs[i] = total[i]

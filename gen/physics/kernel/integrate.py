@@ -16,7 +16,6 @@ from gen.physics.kernel.layout import (
     Batch,
     FloatArray,
     Param,
-    Process,
     Shape,
     State,
     param_rows,
@@ -31,10 +30,9 @@ from gen.physics.kernel.turning import (
     keep_turning,
     move_processes,
     new_walk,
-    start_processes,
     turn_rings,
 )
-from gen.physics.kernel.waviness import N_ROTATION_ROWS, move_gaps
+from gen.physics.kernel.waviness import gap_work_rows, move_gaps
 
 FAR_OFF = 1.0  # displacement beyond which a record has diverged [m]; soft supports sag by millimetres
 BLOCK = 8  # knots between two runs of the filters, a multiple of ``OUTPUTS`` of the filters
@@ -47,7 +45,7 @@ class Integral(NamedTuple):
     """Result of a batch."""
 
     response: Single
-    """Output of the channels at the knots, shape (knot, channel, lane) [m s-2, or m]."""
+    """Output of the channels at the knots, shape (channel, knot, lane) [m s-2, or m]."""
     diverged: NDArray[np.int64]
     """Knot at which a record was farther off than ``FAR_OFF`` or not finite, -1 if never, shape (lane,)."""
     steepest: FloatArray
@@ -60,7 +58,7 @@ class Work(NamedTuple):
     moves: FloatArray
     """Angles by which shaft, cage and ball spin turn up to the next knot, rows of :class:`Angle` [rad]."""
     gaps: FloatArray
-    """Gap of every ball at the next knot without spalls [m]."""
+    """Gap of every ball at the next knot without spalls, and room for as many [m]."""
     met: FloatArray
     """Which balls meet spalls, see :func:`gen.physics.kernel.spalls.none_met`."""
     scratch: FloatArray
@@ -90,27 +88,27 @@ def set_out(shape: Shape, batch: Batch, n_steps: int) -> Batch:
 
 @njit(**ALLOCATING)
 def prepare(shape: Shape, batch: Batch, n_steps: int) -> Work:
-    """Work arrays, with processes as they are at the first knot."""
-    n_balls = len(shape.balls)
-    rows = N_ROTATION_ROWS + 2 * n_balls + Process.JITTER
-    scratch = zeros(rows * LANES + 2 * n_steps + 1)
-    work = Work(zeros(N_ANGLES * LANES), zeros(n_balls * LANES), none_met(shape, batch), scratch)
-    start_processes(shape, batch)
-    return work
+    """Work arrays."""
+    return Work(
+        moves=zeros(N_ANGLES * LANES),
+        gaps=zeros(2 * shape.balls * LANES),
+        met=none_met(shape, batch),
+        scratch=zeros(gap_work_rows(shape) * LANES + 2 * n_steps + 1),
+    )
 
 
 @njit(**INLINE)
 def to_next_knot(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float, work: Work) -> None:
     """Set ``batch.params`` for the steps up to the next knot, and advance the angles to it."""
     if knot % STRIDE == 0:
-        move_processes(shape, batch, n_steps, work.scratch)
+        move_processes(shape, batch, knot, n_steps, work.scratch)
         new_walk(batch, knot)
     turn_rings(shape, batch, knot, n_steps, dt, work.moves)
-    if len(shape.forced):
+    if shape.forced:
         move_forces(batch, knot, n_steps, dt, work.moves, work.scratch)
-    if len(shape.wavy):
+    if shape.wavy:
         move_gaps(shape, batch, knot, n_steps, work.moves, work.scratch, work.gaps)
-    if len(shape.spalled):
+    if batch.spalls.size > 0:
         move_spalls(shape, batch, n_steps, work.moves, work.scratch, work.met)
     keep_turning(shape, batch, work.moves)
 
@@ -138,7 +136,7 @@ def watch(batch: Batch, knot: int, diverged: NDArray[np.int64]) -> None:
 def largest_stiffness(shape: Shape, batch: Batch) -> FloatArray:
     """Largest contact stiffness of each lane, shape (lane,) [N/m]: ``n K cos(alpha)^2`` times the largest sum of ``squeeze**(n - 1)``."""
     steepest = np.empty(LANES)
-    exponent = 10 / 9 if len(shape.roller) else 1.5
+    exponent = 10 / 9 if shape.roller else 1.5
     for lane in range(lane_count(batch.n_records)):
         cosine, factor = (
             batch.params[Param.CONTACT_COSINE * LANES + lane],
@@ -154,38 +152,37 @@ def integrate_lanes(
 ) -> Columns:
     """Kernel of :func:`integrate`; a plain tuple, since numba builds a named tuple in Python, where a signal could interrupt it."""
     batch = set_out(shape, batch, n_steps)
-    n_channels, width = len(shape.channels), len(shape.channels) * LANES
     two_stages = len(filters.first.taps) > 0
     first_stage = filters.first if two_stages else filters.last
     kept, half_kept = first_stage.kept, filters.last.kept
-    history = zeros((kept + BLOCK * n_steps + 4) * width, np.float32)
-    halfway = zeros((half_kept + 2 * BLOCK * ROOM + 4) * width, np.float32)
+    room, half_room = (kept + BLOCK * n_steps + 4) * LANES, (half_kept + 2 * BLOCK * ROOM + 4) * LANES  # of a channel
+    history, halfway = zeros(shape.channels * room, np.float32), zeros(shape.channels * half_room, np.float32)
     lead = (kept + (half_kept * first_stage.factor if two_stages else 0)) // (2 * n_steps)
-    response = np.empty((n_out + 2 * BLOCK) * width, np.float32)
-    totals = zeros(2 * BLOCK * width, np.float32)
+    out_room = (n_out + 2 * BLOCK) * LANES
+    response = np.empty(shape.channels * out_room, np.float32)
+    totals = zeros(2 * BLOCK * LANES, np.float32)
     diverged = np.full(LANES, -1)
     work = prepare(shape, batch, n_steps)
     for first in range(0, lead + n_settle + n_out, BLOCK):
         for knot in range(first, first + BLOCK):
             to_next_knot(shape, batch, knot, n_steps, dt, work)
             since = 2.0 * n_steps * (knot % STRIDE)
-            at = (kept + (knot - first) * n_steps) * n_channels
-            advance(shape, batch, dt, n_steps, since, history, at)
+            advance(shape, batch, dt, n_steps, since, history, kept + (knot - first) * n_steps, room)
             watch(batch, knot, diverged)
         start = 2 * BLOCK * (first // BLOCK % ROOM) if two_stages else 0
-        if two_stages:
-            filter_rows(
-                shape.channels, first_stage, 2 * BLOCK, history, 0, halfway, half_kept + start, totals,
-            )  # fmt: skip
         out = first - lead - n_settle + BLOCK  # one block later, so that earlier outputs have room before the first
-        if out >= 0:
-            source = halfway if two_stages else history
-            filter_rows(shape.channels, filters.last, BLOCK, source, start, response, out, totals)
-        keep(history, kept * width, BLOCK * n_steps * width)
-        if start == 2 * BLOCK * (ROOM - 1):
-            keep(halfway, half_kept * width, 2 * BLOCK * ROOM * width)
+        for channel in range(shape.channels):
+            steps, halves = history[channel * room :], halfway[channel * half_room :]
+            if two_stages:
+                filter_rows(first_stage, 2 * BLOCK, steps, 0, halves, half_kept + start, totals)
+            if out >= 0:
+                source = halves if two_stages else steps
+                filter_rows(filters.last, BLOCK, source, start, response[channel * out_room :], out, totals)
+            keep(steps, kept * LANES, BLOCK * n_steps * LANES)
+            if start == 2 * BLOCK * (ROOM - 1):
+                keep(halves, half_kept * LANES, 2 * BLOCK * ROOM * LANES)
     steepest = largest_stiffness(shape, batch)
-    return response.reshape((n_out + 2 * BLOCK, n_channels, LANES))[BLOCK : BLOCK + n_out], diverged, steepest
+    return response.reshape((shape.channels, n_out + 2 * BLOCK, LANES))[:, BLOCK : BLOCK + n_out], diverged, steepest
 
 
 def integrate(
@@ -196,7 +193,7 @@ def integrate(
     Parameters
     ----------
     shape : Shape
-        What the kernel contains.
+        What the records of the batch have.
     batch : Lanes
         The batch; its arrays are left untouched.
     dt : float

@@ -20,37 +20,25 @@ COORDINATES = ("x1", "y1", "x2", "y2", "xr", "yr")
 
 
 class Shape(NamedTuple):
-    """Which parts the compiled kernel contains, as lengths of tuples (see :mod:`gen.physics.kernel.compiling`).
+    """What all records of a batch have in common: a record is computed with the parts of the model that it needs and no others.
 
-    A record is computed with the parts that it needs and no others.
+    One compiled kernel serves all shapes.
     """
 
-    balls: tuple[None, ...]
-    channels: tuple[None, ...]
-    displacement: tuple[None, ...]
+    balls: int
+    channels: int
+    displacement: bool = False
     """Whether channels measure displacements instead of accelerations."""
-    resonator: tuple[None, ...]
-    """Whether there is a sensor mass."""
-    damped: tuple[None, ...]
+    damped: bool = False
     """Whether contacts have a viscous damping."""
-    wavy: tuple[None, ...]
+    wavy: bool = False
     """Whether races or balls are wavy, so that gaps change from knot to knot."""
-    spalled: tuple[None, ...]
-    """Whether balls may drop into spalls."""
-    jittered: tuple[None, ...]
+    jittered: bool = False
     """Whether balls leave their place in the cage."""
-    forced: tuple[None, ...]
+    forced: bool = False
     """Whether outer forces change between knots: load profiles, misalignment, cage knocks."""
-    loose: tuple[None, ...]
-    """Whether the housing has play in its support."""
-    roller: tuple[None, ...]
+    roller: bool = False
     """Whether contacts are lines, with the exponent 10/9."""
-
-
-def make_shape(n_balls: int, n_channels: int, **flags: bool) -> Shape:
-    """Shape of a kernel; every flag of :class:`Shape` that is not given is off."""
-    counts = {"balls": n_balls, "channels": n_channels, **flags}
-    return Shape(**{field: (None,) * int(counts.get(field, 0)) for field in Shape._fields})
 
 
 class State(IntEnum):
@@ -65,56 +53,72 @@ class State(IntEnum):
     STEEPEST = 16  # largest sum over all balls of squeeze**(n - 1) so far; it bounds the contact stiffness
     BEGINNING = 17  # of the step under way: coordinates and rates at its start, N_DYNAMIC rows
     SLOPES = 29  # of the step under way: weighted sum of its slopes, N_DYNAMIC rows
+    RELATIVE = (
+        41  # of the stage under way: motion of the shaft relative to the housing in the frame of the cage, x, y, x', y'
+    )
+    PUSH = 45  # of the stage under way: force of the balls over K along and across the cage, and the sum of squeeze**(n - 1)
 
 
 N_DYNAMIC = 2 * AXES
-STATE_ROWS = State.SLOPES + N_DYNAMIC
+STATE_ROWS = State.PUSH + 3
 
 
 class Param(IntEnum):
     """Rows of ``params``: constants of the record, then quantities that hold until the next knot.
 
-    After them, where :class:`Shape` says so: pickup weights, directions of the balls, gaps under the balls, drops into spalls (see
-    :func:`direction_row`, :func:`gap_row`, :func:`drop_row`).
+    After them: pickup weights, rows of :class:`Contact` of each ball, drops into spalls (see :func:`contact_row`, :func:`drop_row`).
     """
 
     LOAD_DEFLECTION_FACTOR = 0  # K, of one ball [N m^-n]
     CONTACT_DAMPING = 1  # of one ball over K [s m^(n - 1)]: the sum over all balls is multiplied by K
     CONTACT_COSINE = 2  # cosine of the contact angle [1]
-    HALF_CLEARANCE = 3  # [m]
-    PER_SHAFT_MASS = 4  # 1 / m1 [1/kg]
-    PER_HOUSING_MASS = 5  # 1 / m2
-    PER_SENSOR_MASS = 6  # 1 / mr, 0 without a sensor mass
-    RING_DAMPING = 7  # c1, between shaft and housing [N s/m]
-    SHAFT_DAMPING = 8  # c0, between shaft and ground
-    SHAFT_STIFFNESS = 9  # k0 [N/m]
-    RING_STIFFNESS_X = 10  # k1
-    RING_STIFFNESS_Y = 11
-    SUPPORT_STIFFNESS_X = 12  # k2, between housing and ground
-    SUPPORT_STIFFNESS_Y = 13
-    SUPPORT_DAMPING_X = 14  # c2
-    SUPPORT_DAMPING_Y = 15
-    SENSOR_STIFFNESS_X = 16  # kr, between sensor and housing
-    SENSOR_STIFFNESS_Y = 17
-    SENSOR_DAMPING = 18  # cr
-    LOOSENESS = 19  # half the play of the housing in its support [m]
-    CAGE_TURN_COS = 20  # rotation of the cage in half a step
-    CAGE_TURN_SIN = 21
-    SHAFT_TURN_COS = 22  # rotation of the shaft in half a step
-    SHAFT_TURN_SIN = 23
-    UNBALANCE_RADIAL = 24  # p, force along the mark of the shaft [N]
-    UNBALANCE_TANGENTIAL = 25  # q, force across it while the speed changes [N]
-    SHAFT_FORCE_X = 26  # outer forces at the knot [N]
-    SHAFT_FORCE_Y = 27
-    HOUSING_FORCE_X = 28
-    HOUSING_FORCE_Y = 29
-    SHAFT_FORCE_X_SLOPE = 30  # and their change per half step
-    SHAFT_FORCE_Y_SLOPE = 31
-    HOUSING_FORCE_X_SLOPE = 32
-    HOUSING_FORCE_Y_SLOPE = 33
+    PER_SHAFT_MASS = 3  # 1 / m1 [1/kg]
+    PER_HOUSING_MASS = 4  # 1 / m2
+    PER_SENSOR_MASS = 5  # 1 / mr, 0 without a sensor mass
+    RING_DAMPING = 6  # c1, between shaft and housing [N s/m]
+    SHAFT_DAMPING = 7  # c0, between shaft and ground
+    SHAFT_STIFFNESS = 8  # k0 [N/m]
+    RING_STIFFNESS_X = 9  # k1
+    RING_STIFFNESS_Y = 10
+    SUPPORT_STIFFNESS_X = 11  # k2, between housing and ground
+    SUPPORT_STIFFNESS_Y = 12
+    SUPPORT_DAMPING_X = 13  # c2
+    SUPPORT_DAMPING_Y = 14
+    SENSOR_STIFFNESS_X = 15  # kr, between sensor and housing
+    SENSOR_STIFFNESS_Y = 16
+    SENSOR_DAMPING = 17  # cr
+    LOOSENESS = 18  # half the play of the housing in its support [m]
+    CAGE_TURN_COS = 19  # rotation of the cage in half a step
+    CAGE_TURN_SIN = 20
+    SHAFT_TURN_COS = 21  # rotation of the shaft in half a step
+    SHAFT_TURN_SIN = 22
+    UNBALANCE_RADIAL = 23  # p, force along the mark of the shaft [N]
+    UNBALANCE_TANGENTIAL = 24  # q, force across it while the speed changes [N]
+    SHAFT_FORCE_X = 25  # outer forces at the knot [N]
+    SHAFT_FORCE_Y = 26
+    HOUSING_FORCE_X = 27
+    HOUSING_FORCE_Y = 28
+    SHAFT_FORCE_X_SLOPE = 29  # and their change per half step
+    SHAFT_FORCE_Y_SLOPE = 30
+    HOUSING_FORCE_X_SLOPE = 31
+    HOUSING_FORCE_Y_SLOPE = 32
 
 
 PICKUPS = len(Param)  # first row of the weights of the AXES accelerations in each channel
+
+
+class Contact(IntEnum):
+    """Rows of one ball in ``params``, from :func:`contact_row` on."""
+
+    COS = 0  # direction of the ball in the frame of the cage
+    SIN = 1
+    GAP = 2  # [m]
+    COS_SLOPE = 3  # and their change per half step
+    SIN_SLOPE = 4
+    GAP_SLOPE = 5
+
+
+CONTACT_ROWS = len(Contact)
 
 
 class Angle(IntEnum):
@@ -252,15 +256,9 @@ class Batch(NamedTuple):
 
 
 @in_both
-def direction_row(shape: Shape) -> int:
-    """First row of the directions of jittered balls in ``params``: cosine, sine, and their slopes per half step, of each ball."""
-    return PICKUPS + len(shape.channels) * AXES
-
-
-@in_both
-def gap_row(shape: Shape) -> int:
-    """First row of the gaps in ``params``: gap and its slope per half step, of each ball."""
-    return direction_row(shape) + (4 * len(shape.balls) if len(shape.jittered) else 0)
+def contact_row(shape: Shape) -> int:
+    """First row of the contacts of the balls in ``params``: rows of :class:`Contact`, ball after ball."""
+    return PICKUPS + shape.channels * AXES
 
 
 @in_both
@@ -269,28 +267,28 @@ def drop_row(shape: Shape) -> int:
 
     The row before it is 1 in lane 0 if a ball of any lane drops before the next knot.
     """
-    return gap_row(shape) + (2 * len(shape.balls) if len(shape.wavy) else 0) + 1
+    return contact_row(shape) + CONTACT_ROWS * shape.balls + 1
 
 
 @in_both
 def param_rows(shape: Shape, n_steps: int) -> int:
     """Number of rows of ``params``."""
-    return drop_row(shape) + ((2 * n_steps + 1) * len(shape.balls) if len(shape.spalled) else 0)
+    return drop_row(shape) + (2 * n_steps + 1) * shape.balls
 
 
 @in_both
 def n_folds(shape: Shape) -> int:
     """Number of waviness orders of a race that differ by a multiple of the number of balls."""
-    return HIGHEST_ORDER // len(shape.balls) + 1
+    return HIGHEST_ORDER // shape.balls + 1
 
 
 @in_both
 def race_rows(shape: Shape) -> int:
     """Number of rows of ``waves`` that belong to the races."""
-    return 4 * n_folds(shape) * len(shape.balls)
+    return 4 * n_folds(shape) * shape.balls
 
 
 @in_both
 def slow_rows(shape: Shape) -> int:
     """Number of processes."""
-    return Process.JITTER + (len(shape.balls) if len(shape.jittered) else 0)
+    return Process.JITTER + (shape.balls if shape.jittered else 0)

@@ -98,7 +98,7 @@ def none_met(shape: Shape, batch: Batch) -> FloatArray:
 
     Then, spall after spall, the number of the last passage of each lane and the factor of its drop.
     """
-    n_balls, n_spalls = len(shape.balls), batch.spalls.size // (SPALL_ROWS * LANES)
+    n_balls, n_spalls = shape.balls, batch.spalls.size // (SPALL_ROWS * LANES)
     met = zeros(n_balls + 2 * n_spalls * LANES)
     for i in range(2 * n_spalls * LANES):
         met[n_balls + i] = NEVER
@@ -166,7 +166,7 @@ def pass_spall(
             falls[half_step] = drop(profile, fma(slope, half_step, start), half, arc, radius, race, depth)
     drops = batch.params[(drop_row(shape) + ball) * LANES + lane :]
     for half_step in range(n_half_steps):
-        drops[half_step * len(shape.balls) * LANES] += share * falls[half_step]
+        drops[half_step * shape.balls * LANES] += share * falls[half_step]
 
 
 @njit(**INLINE)
@@ -186,7 +186,7 @@ def meet_spall(
     Ball 0, or for a ball spall the contact with the inner race, is ``start`` past the spall at the knot and moves by ``slope`` to the next
     knot [rad].
     """
-    n_balls, rate = len(shape.balls), slope / (2 * n_steps)
+    n_balls, rate = shape.balls, slope / (2 * n_steps)
     this = batch.spalls[spall * SPALL_ROWS * LANES :]
     site, period = int(this[SpallRow.SITE * LANES + lane]), this[SpallRow.PERIOD * LANES + lane]
     nearest = np.int64(np.rint((start + 0.5 * slope) / period))
@@ -204,7 +204,7 @@ def meet_spall(
     for rank in range(-around, n_balls - around if 2 * around >= n_balls else around + 1):
         ball = int((rank - nearest) % n_balls)
         offset, passing = start + (rank - nearest) * period, rate
-        if len(shape.jittered):
+        if shape.jittered:
             source = (Process.JITTER + ball) * LANES + lane
             offset += batch.slow[source]
             passing += batch.slow[slow_rows(shape) * LANES + source] / (2 * n_steps)
@@ -218,11 +218,11 @@ def meet_spall(
 def clear_drops(shape: Shape, batch: Batch, n_steps: int, met: FloatArray) -> None:
     """Set the drops of the last knot back to zero, of the balls that have any: a knot writes a few of all rows."""
     wide()
-    for ball in range(len(shape.balls)):
+    for ball in range(shape.balls):
         if met[ball] > 0.0:
             met[ball] = 0.0
             for half_step in range(2 * n_steps + 1):
-                drops = batch.params[(drop_row(shape) + half_step * len(shape.balls) + ball) * LANES :]
+                drops = batch.params[(drop_row(shape) + half_step * shape.balls + ball) * LANES :]
                 for lane in range(LANES):  # of a length that LLVM knows: otherwise it calls memset for each row
                     drops[lane] = 0.0
 
@@ -256,6 +256,6 @@ def move_spalls(shape: Shape, batch: Batch, n_steps: int, moves: FloatArray, wor
                 start, slope = work[starts + lane], work[slopes + lane]
                 meet_spall(shape, batch, spall, lane, n_steps, start, slope, falls, met)
     dropping = 0.0
-    for ball in range(len(shape.balls)):
+    for ball in range(shape.balls):
         dropping = max(dropping, met[ball])
     batch.params[(drop_row(shape) - 1) * LANES] = dropping

@@ -7,12 +7,14 @@ table in memory and does not depend on the step.
 
 import math
 
+import numpy as np
 from numba import njit
 
 from gen.physics.kernel.chance import standard_normal
 from gen.physics.kernel.compiling import INLINE, LANES, cosine, fma, lane_count, sine, wide
-from gen.physics.kernel.equations import COS, SIN
+from gen.physics.kernel.contacts import COS, SIN
 from gen.physics.kernel.layout import (
+    CONTACT_ROWS,
     JITTER_FIRST,
     JITTER_TERMS,
     SLIP_FIRST,
@@ -24,96 +26,92 @@ from gen.physics.kernel.layout import (
     TILT_TERMS,
     Angle,
     Batch,
+    Contact,
     Drive,
     FloatArray,
     Param,
     Process,
     Shape,
     State,
-    direction_row,
+    contact_row,
     slow_rows,
 )  # fmt: skip
 
+# of each kind of process, in the order of Process
+N_TERMS = np.array([SPEED_TERMS, SLIP_TERMS, SPIN_TERMS, TILT_TERMS, JITTER_TERMS])
+FIRST_TERMS = np.array([0, SLIP_FIRST, SPIN_FIRST, TILT_FIRST, JITTER_FIRST])
+RMS_ROWS = np.array([Drive.SPEED_RMS, Drive.SLIP_RMS, Drive.SPIN_RMS, Drive.AXIS_RMS, Drive.JITTER_RMS], dtype=int)
 STRIDE = 8  # knots over which processes change linearly: the period of their fastest terms, at twice the shaft rate, is tens of knots
 N_ANGLES = len(Angle)
-OF_SPEED, OF_SLIP, OF_SPIN, OF_TILT, OF_JITTER = (
-    (None,) * terms for terms in (SPEED_TERMS, SLIP_TERMS, SPIN_TERMS, TILT_TERMS, JITTER_TERMS)
-)
 
 
 @njit(**INLINE)
-def turn_and_sum(
-    terms: tuple[None, ...],
-    turning: tuple[None, ...],
-    first: int,
-    rms: int,
-    batch: Batch,
-    values: FloatArray,
-) -> None:
+def turn_and_sum(n_terms: int, turning: bool, first: int, rms: int, batch: Batch, values: FloatArray) -> None:
     """Value of one process for every lane, into ``values``.
 
-    Its phasors are rotated by ``STRIDE`` knots first, unless ``turning`` is empty. ``first`` is the first of its terms, ``rms`` the row of
+    If it is ``turning``, its phasors are rotated by ``STRIDE`` knots first. ``first`` is the first of its terms, ``rms`` the row of
     ``batch.drive`` with its rms.
     """
     wide()
-    own, size, scale = batch.phasors[4 * first * LANES :], batch.drive[rms * LANES :], math.sqrt(2.0 / len(terms))
+    own, size, scale = batch.phasors[4 * first * LANES :], batch.drive[rms * LANES :], math.sqrt(2.0 / n_terms)
     for lane in range(lane_count(batch.n_records)):
-        total = 0.0
-        for term in range(len(terms)):
-            i = 4 * term * LANES + lane
-            c = own[i]
-            if len(turning):
-                s, dc, ds = own[i + LANES], own[i + 2 * LANES], own[i + 3 * LANES]
-                c, s = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
-                own[i], own[i + LANES] = c, s
-            total += c
-        values[lane] = scale * total * size[lane]
+        values[lane] = 0.0
+    for term in range(n_terms):
+        phasor = own[4 * term * LANES :]
+        for lane in range(lane_count(batch.n_records)):
+            c, s = phasor[lane], phasor[LANES + lane]
+            dc, ds = phasor[2 * LANES + lane], phasor[3 * LANES + lane]
+            dc, ds = (dc, ds) if turning else (1.0, 0.0)
+            c, s = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
+            phasor[lane], phasor[LANES + lane] = c, s
+            values[lane] += c
+    for lane in range(lane_count(batch.n_records)):
+        values[lane] *= scale * size[lane]
 
 
 @njit(**INLINE)
-def processes(shape: Shape, batch: Batch, turning: tuple[None, ...], values: FloatArray) -> None:
+def processes(shape: Shape, batch: Batch, turning: bool, values: FloatArray) -> None:
     """Values of all processes, rows of :class:`Process`; see :func:`turn_and_sum`."""
     drive = batch.drive
-    turn_and_sum(OF_SPEED, turning, 0, Drive.SPEED_RMS, batch, values[Process.SPEED * LANES :])
-    turn_and_sum(OF_SLIP, turning, SLIP_FIRST, Drive.SLIP_RMS, batch, values[Process.SLIP * LANES :])
-    turn_and_sum(OF_SPIN, turning, SPIN_FIRST, Drive.SPIN_RMS, batch, values[Process.SPIN * LANES :])
-    turn_and_sum(OF_TILT, turning, TILT_FIRST, Drive.AXIS_RMS, batch, values[Process.TILT * LANES :])
-    for ball in range(len(shape.balls) if len(shape.jittered) else 0):
-        jitter, first = values[(Process.JITTER + ball) * LANES :], JITTER_FIRST + ball * JITTER_TERMS
-        turn_and_sum(OF_JITTER, turning, first, Drive.JITTER_RMS, batch, jitter)
+    for process in range(slow_rows(shape)):
+        ball = max(process - Process.JITTER, 0)
+        kind = process - ball
+        first = FIRST_TERMS[kind] + JITTER_TERMS * ball
+        turn_and_sum(N_TERMS[kind], turning, first, RMS_ROWS[kind], batch, values[process * LANES :])
+    for ball in range(shape.balls if shape.jittered else 0):
+        jitter = values[(Process.JITTER + ball) * LANES :]
         for lane in range(lane_count(batch.n_records)):
             late = drive[Drive.LATE_BALL * LANES + lane] == ball
             jitter[lane] += drive[Drive.LATE_BY * LANES + lane] if late else 0.0
 
 
 @njit(**INLINE)
-def start_processes(shape: Shape, batch: Batch) -> None:
-    """Set the processes to their values at the first knot."""
-    processes(shape, batch, (), batch.slow)
-
-
-@njit(**INLINE)
-def move_processes(shape: Shape, batch: Batch, n_steps: int, after: FloatArray) -> None:
+def move_processes(shape: Shape, batch: Batch, knot: int, n_steps: int, after: FloatArray) -> None:
     """Set the slopes of every process, and of the direction of every ball in its pocket, for the next ``STRIDE`` knots.
 
     Each reaches its exact value ``STRIDE`` knots from now. ``after`` is a work array of as many rows as there are processes.
     """
     wide()
-    processes(shape, batch, (None,), after)
+    # in a loop, so that the code of processes is compiled once
+    for later in range(0 if knot == 0 else 1, 2):
+        processes(shape, batch, later == 1, after)
+        if later == 0:
+            for i in range(slow_rows(shape) * lane_count(LANES)):
+                batch.slow[i] = after[i]
     rows = slow_rows(shape)
-    if len(shape.jittered):
-        for ball in range(len(shape.balls)):
-            line = batch.params[(direction_row(shape) + 4 * ball) * LANES :]
+    if shape.jittered:
+        for ball in range(shape.balls):
+            line = batch.params[(contact_row(shape) + CONTACT_ROWS * ball) * LANES :]
             now, later = batch.slow[(Process.JITTER + ball) * LANES :], after[(Process.JITTER + ball) * LANES :]
-            ball_c, ball_s = COS[len(shape.balls), ball], SIN[len(shape.balls), ball]
+            ball_c, ball_s = COS[shape.balls, ball], SIN[shape.balls, ball]
             for lane in range(lane_count(batch.n_records)):
                 c, s = cosine(now[lane]), sine(now[lane])
                 start_c, start_s = fma(ball_c, c, -(ball_s * s)), fma(ball_s, c, ball_c * s)
                 c, s = cosine(later[lane]), sine(later[lane])
-                line[lane], line[LANES + lane] = start_c, start_s
+                line[Contact.COS * LANES + lane], line[Contact.SIN * LANES + lane] = start_c, start_s
                 per_half_step = 1 / (2 * n_steps * STRIDE)
-                line[2 * LANES + lane] = (fma(ball_c, c, -(ball_s * s)) - start_c) * per_half_step
-                line[3 * LANES + lane] = (fma(ball_s, c, ball_c * s) - start_s) * per_half_step
+                line[Contact.COS_SLOPE * LANES + lane] = (fma(ball_c, c, -(ball_s * s)) - start_c) * per_half_step
+                line[Contact.SIN_SLOPE * LANES + lane] = (fma(ball_s, c, ball_c * s) - start_s) * per_half_step
     slopes = batch.slow[rows * LANES :]
     for i in range(rows * lane_count(LANES)):
         slopes[i] = (after[i] - batch.slow[i]) * (1 / STRIDE)

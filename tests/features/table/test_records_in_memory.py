@@ -16,9 +16,7 @@ from gen.support.errors import CorpusError
 @pytest.fixture(scope="module")
 def records():
     faults = [gen.healthy(), gen.outer(width_mm=0.8)]
-    return gen.records(
-        bearing="6206", fault=faults, n=6, duration_s=0.5, seed=4, waviness_nm=20
-    )  # the kernel of the tiny corpus
+    return gen.records(bearing="6206", fault=faults, n=6, duration_s=0.5, seed=4, waviness_nm=20)
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,6 @@ import gen
 from gen.corpus import SIGNAL
 from gen.support.errors import CorpusError, RecipeError, SimulationError
 
-# the kernel of the small recipes
 SHORT = {"waviness_nm": 20, "sample_rate_hz": 12000, "duration_s": 0.1, "settle_s": 0.06, "seed": 5}
 OUTER, INNER = gen.outer(width_mm=0.8), gen.inner(width_mm=0.4)
 QUICK = gen.read_recipe("quickstart")

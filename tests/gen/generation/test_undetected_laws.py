@@ -177,7 +177,7 @@ def hidden(recipe_with, undetected):
 
 
 def test_a_fault_that_adds_exactly_nothing_keeps_its_label_where_the_recipe_says_so(recipe_with):
-    """Records with and without a spall that no loaded ball meets have the same bits, although they share a kernel."""
+    """Records with and without a spall that no loaded ball meets have the same bits."""
     _, made = hidden(recipe_with, "keep")
     assert made.measured.fault_snr.tolist() == [-np.inf, -np.inf]
     assert made.measured.fault_share.tolist() == [0.0, 0.0]

@@ -10,7 +10,7 @@ from gen.simulation.timeline import timeline
 
 FS = 12_000.0
 RATE, MASS = 30.0, 10.0  # of the shaft [Hz], of shaft and housing [kg]
-# a steady machine in the one kernel of ``EVERYTHING``: a support as stiff as in no resonance, oil, a load that hardly wanders
+# a steady machine: a support as stiff as in no resonance, oil, a load that hardly wanders
 STEADY = {
     "corpus": {"rigs": 1, "specimens_per_rig": 2, "records_per_specimen": 1},
     "recording.duration_s": 1.0,

@@ -20,9 +20,6 @@ KNOT = 1 / 12_000
 N_KNOTS = 240  # 20 ms
 STEPS = [2, 4, 8, 16, 32]  # per knot: 24 to 384 kHz
 EXACT = 256
-SHARED = (
-    1e-16  # jitter [rad], damping [N s/m] and waviness [m] too small to matter: one kernel with the wandering records
-)
 # Half the clearance [m], the profile of the spalls, and the order in theory. With preload the contacts are never lost, so that
 # spalls are the only events.
 CASES = {
@@ -47,17 +44,12 @@ def errors(case, seed=0):
             unbalance=2.75e-5,
             shaft_angle=shaft,
             cage_angle=cage,
-            jitter_rms=SHARED if profile else 0,
         )
         spalls = [
             SpallInput("inner", 0.53e-3, 5e-6, inner, 0, profile),
             SpallInput("outer", 0.36e-3, 5e-6, -1.5, 0, profile),
         ]
-        machine = RIG._replace(half_clearance=half_clearance)
-        if profile:
-            some.append(record(machine._replace(contact_damping=SHARED), motion, spalls, waviness=SHARED))
-        else:
-            some.append(record(machine, motion))
+        some.append(record(RIG._replace(half_clearance=half_clearance), motion, spalls if profile else ()))
     marches = ([trip.states[:, :6] for trip in march_lanes(some, N_KNOTS, n, KNOT)] for n in [EXACT, *STEPS])
     exact, *found = map(np.array, marches)
     return np.array([np.abs(trips - exact).max(axis=(1, 2)) for trips in found])

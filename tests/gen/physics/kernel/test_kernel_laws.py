@@ -13,7 +13,6 @@ from tests.strategies import RIG, machines, record, steady_turnings, wandering_r
 law = settings(max_examples=20)
 KNOT = 1 / 12_000
 STANDING = Turning(0.0)
-SHARED = 1e-16  # waviness [m]: too small to matter, so that the kernel is that of the wandering records
 UNDAMPED = RIG._replace(
     ring_damping=0.0, shaft_damping=0.0, support_damping_x=0.0, support_damping_y=0.0, sensor_damping=0.0
 )
@@ -90,7 +89,6 @@ def test_a_damped_contact_never_pulls(speed, deflection):
         RIG._replace(load_x=0.0, load_y=0.0, contact_damping=600.0, ring_damping=0.0, shaft_damping=0.0),
         Turning(0.0, jitter_rms=1e-9),
         [SpallInput("outer", 2e-4, 1e-4, 2.0), SpallInput("outer", 2e-4, 1e-4, 2.0)],
-        waviness=SHARED,
     )
     start = displaced(along=0.0, by=deflection, clearance=RIG.half_clearance)
     start[6] = -speed  # away from the ball

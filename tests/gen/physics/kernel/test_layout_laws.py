@@ -10,7 +10,7 @@ from gen.physics.inputs import SpallInput, Turning, Waviness, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
-from gen.physics.kernel.layout import PICKUPS, Angle, Drive, Param, Site, SpallRow, direction_row
+from gen.physics.kernel.layout import PICKUPS, Angle, Drive, Param, Site, SpallRow
 from tests.lanes import march_batch
 from tests.strategies import RIG, ball_waves, race_waves, record
 
@@ -55,7 +55,7 @@ def laid_out():
     """A shape, and a batch that holds one record with every feature in all its lanes."""
     drawn = record(MACHINE, TURNING, SPALLS)
     drawn = drawn._replace(
-        bearing=replace(drawn.bearing, roller_length=8e-3),  # the kernel of the troubled records
+        bearing=replace(drawn.bearing, roller_length=8e-3),
         waviness=Waviness(race_waves(3, 5e-8), ball_waves(3, 5e-8)), schedule=np.linspace([0.9, 1.1], [1.1, 0.9], 20),
     )  # fmt: skip
     shape = input_shape(drawn)
@@ -63,8 +63,8 @@ def laid_out():
 
 
 def test_every_row_that_a_batch_needs_is_written(laid_out):
-    shape, batch = laid_out
-    params = batch.params.reshape(direction_row(shape), LANES)
+    _, batch = laid_out
+    params = batch.params.reshape(-1, LANES)
     unwritten = {row for row in range(len(params)) if np.isnan(params[row]).any()}
     assert unwritten <= set(HELD)
     for name in ("state", "drive", "angles", "spalls", "phasors", "waves"):
@@ -112,8 +112,8 @@ def rows_without_effect(laid_out, name, rows, place=0, n_rows=None):
 
 def test_every_constant_of_a_machine_is_read(laid_out):
     constants = [row for row in Param if row not in HELD]
-    # the steady load is among the rows that hold until the next knot here, and half the clearance is in the gaps of wavy balls
-    assert rows_without_effect(laid_out, "params", constants) == ["HALF_CLEARANCE"]
+    # the steady load is among the rows that hold until the next knot here
+    assert rows_without_effect(laid_out, "params", constants) == []
 
 
 def test_every_row_that_drives_the_motion_is_read(laid_out):

@@ -19,6 +19,7 @@ from tests.strategies import extended_records, steady_records, troubled_records,
 
 law = settings(max_examples=20)
 KNOT = 1 / 12_000
+BALLS = st.integers(3, 24) | st.integers(25, MAX_BALLS)
 
 
 def assert_the_twin_agrees(drawn, n_knots=8):
@@ -33,20 +34,14 @@ def assert_the_twin_agrees(drawn, n_knots=8):
 
 
 @law
-@given(steady_records())
+@given(steady_records(balls=BALLS))
 def test_the_kernel_goes_where_its_twin_goes_without_a_fault(drawn):
     assert_the_twin_agrees(drawn)
 
 
 @law
-@given(wandering_records())
+@given(wandering_records(balls=BALLS))
 def test_the_kernel_goes_where_its_twin_goes_with_spalls_and_wander(drawn):
-    assert_the_twin_agrees(drawn)
-
-
-@settings(law, max_examples=5)
-@given(wandering_records(n_balls=MAX_BALLS))
-def test_the_kernel_goes_where_its_twin_goes_with_as_many_balls_as_it_takes(drawn):
     assert_the_twin_agrees(drawn)
 
 
@@ -57,7 +52,7 @@ def test_a_spall_under_several_balls_lets_each_of_them_drop(drawn):
 
 
 @law
-@given(troubled_records())
+@given(troubled_records(balls=BALLS))
 def test_the_kernel_goes_where_its_twin_goes_with_rollers_and_every_fault_of_bearing_and_machine(drawn):
     assert_the_twin_agrees(drawn, 12)
 
@@ -81,7 +76,7 @@ def assert_what_comes_out_is_the_twins(drawn, seed, slack):
         rates = [right_hand_side(drawn, slow, knot, at, 0.0, y) for at, y in enumerate(states)]
         expected = np.array(rates)[:, 6:] @ pickups.T
     largest = np.abs(expected).max()
-    np.testing.assert_allclose(found.response[..., 0], expected, rtol=np.finfo(np.float32).eps, atol=1e-9 * largest)
+    np.testing.assert_allclose(found.response[..., 0].T, expected, rtol=np.finfo(np.float32).eps, atol=1e-9 * largest)
     squeezes = [contacts(drawn, slow, at, 0.0, y).squeeze for at, y in enumerate(states)]
     low, high = (max(contact_stiffness(drawn.machine, s + off) for s in squeezes) for off in (-slack, slack))
     assert low * (1 - 1e-9) <= found.steepest[0] <= high * (1 + 1e-9)
@@ -89,12 +84,12 @@ def assert_what_comes_out_is_the_twins(drawn, seed, slack):
 
 
 @law
-@given(wandering_records(), st.integers(0, 2**32 - 1))
+@given(wandering_records(balls=BALLS), st.integers(0, 2**32 - 1))
 def test_the_integrator_gives_the_weighted_accelerations_and_the_largest_contact_stiffness(drawn, seed):
     assert_what_comes_out_is_the_twins(drawn, seed, 1e-20)
 
 
 @law
-@given(troubled_records(), st.integers(0, 2**32 - 1))
+@given(troubled_records(balls=BALLS), st.integers(0, 2**32 - 1))
 def test_the_integrator_gives_the_weighted_displacements_and_the_largest_stiffness_of_rollers(drawn, seed):
     assert_what_comes_out_is_the_twins(drawn._replace(displacement=True), seed, 1e-11)
