@@ -13,9 +13,6 @@ orders       signals at equal angles of the shaft in place of equal times, their
 motion       velocity and displacement, and the zones of their level
 lines        levels of fault lines and combs at orders of the shaft
 speed        shaft speed that fits fault lines and shaft harmonics together
-chirplets    path through short-time spectra with the most evidence for shaft harmonics
-steady_lines signals without lines of constant frequency
-refinement   course of the shaft speed to the limit of the noise, from one near it
 tracking     course of the shaft speed of a run-up, where it can be believed
 modulation   phase wander, sidebands and cyclostationarity of a line of an envelope
 colour       roll-off, centroid and tonality of a power spectrum
