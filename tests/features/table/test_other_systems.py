@@ -20,7 +20,7 @@ import numpy as np
 from features import feature_table
 from gen import open_corpus
 for path in sys.argv[1:]:
-    print(float(np.abs(open_corpus(path)["acceleration"].values).max()), np.nansum(feature_table(path, workers=2)["features"].values))
+    print(float(np.abs(open_corpus(path)["acceleration"].values).max()), np.nansum(feature_table(path)["features"].values))
 """
 
 

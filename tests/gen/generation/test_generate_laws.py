@@ -45,7 +45,7 @@ def test_one_call_makes_one_file_with_the_same_records(single, whole):
 
 def test_processes_make_the_same_corpus_as_one(recipe_file, whole, single, tmp_path):
     done = []
-    generate(recipe_file, tmp_path / "c", workers=3, progress=lambda *counts: done.append(counts))
+    generate(recipe_file, tmp_path / "c", workers=2, progress=lambda *counts: done.append(counts))
     generate(recipe_file, tmp_path / "c.nc", workers=2)
     assert_the_same_corpus(tmp_path / "c", whole)
     assert_the_same_corpus(tmp_path / "c.nc", single)
