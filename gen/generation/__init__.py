@@ -6,6 +6,7 @@
 module      responsibility
 =========== ==================================================================
 sources     hash of the source files that make records
+facts       file name and origin of a part
 labels      variables written beside each record
 undetected  records drawn, simulated and measured; faults that cannot be seen drawn again
 step_checks some records integrated again at half their step

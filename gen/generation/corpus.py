@@ -37,8 +37,7 @@ from gen.corpus import (
     write_part,
     writing,
 )
-from gen.generation.compilation import compile_kernels
-from gen.generation.parts import failures_of, made_by, make_part, part_file
+from gen.generation.facts import failures_of, made_by, part_file
 from gen.generation.sources import sources_sha256
 from gen.generation.target import check_parts, check_same, claim, prepare, remove_other_parts
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
@@ -217,16 +216,20 @@ def _all_parts(
         if (kept := _kept(recipe, folder, part)) is not None:
             done(part, kept)
     missing = [part for part in parts if part not in outcomes]
-    if isinstance(workers, int):
-        workers = min(workers, max(len(missing), 1))
-        if (sentence := too_many(workers)) is not None:
-            notice(sentence)
-        if missing:
+    if not missing:
+        return [outcomes[part] for part in parts]
+    here = isinstance(workers, int)
+    if here and (sentence := too_many(workers)) is not None:
+        notice(sentence)
+    with connected(min(workers, len(missing)) if here else workers) as place:
+        if here:
+            from gen.generation.compilation import compile_kernels  # loaded while the processes start
+
             compile_kernels(recipe, notice)
-    task = partial(_write, recipe, folder.resolve(), sources_sha256())
-    with closing(run(task, missing, workers)) as made:
-        for part, outcome in zip(missing, made, strict=True):
-            done(part, outcome)
+        task = partial(_write, recipe, folder.resolve(), sources_sha256())
+        with closing(run(task, missing, place)) as made:
+            for part, outcome in zip(missing, made, strict=True):
+                done(part, outcome)
     return [outcomes[part] for part in parts]
 
 
@@ -245,6 +248,8 @@ def _write(recipe: Recipe, folder: Path, sources: str, part: int) -> Outcome:
         )
     if (kept := _kept(recipe, folder, part)) is not None:
         return kept
+    from gen.generation.parts import make_part  # the simulator, which takes a second and a half to load
+
     made = make_part(recipe, recipe.records_of_part(part))
     path = folder / "parts" / part_file(recipe, part)
     row = write_part(made, path, recipe.storage.codec) if made.sizes["record"] else None

@@ -23,7 +23,7 @@ from gen.corpus import (
     write_manifest,
     writing,
 )
-from gen.generation.parts import part_file
+from gen.generation.facts import part_file
 from gen.recipe import Recipe, read_recipe
 from gen.support.errors import CorpusError, RecipeError
 

@@ -6,16 +6,20 @@ An item may be worked on twice: dask repeats what a lost worker was doing.
 import os
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import islice
+from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-AHEAD = 2  # items in hand for each worker: the next one is there when one is done
-PATIENCE_S, LONGEST_S = 5.0, 60.0
-"""How long a result is waited for before the cluster is looked at again, at first; then twice as long, up to the second [s]."""
+AHEAD, HELD = (
+    2,
+    4,
+)  # items under way for each worker, so that the next one is there when one is done; and those with results that wait
+PATIENCE_S, LONGEST_S = 2.0, 60.0
+"""How long a result is waited for before the cluster is looked at again; and how long, twice as long each time, while it is fetched [s]."""
 
 Workers: TypeAlias = "Client | str | int"
 """Number of processes on this machine, where 1 is the calling one; or a dask client, or the address of a dask scheduler."""
@@ -26,8 +30,8 @@ Result = TypeVar("Result")
 def run(function: Callable[[Item], Result], items: Iterable[Item], workers: Workers = 1) -> Generator[Result]:
     """Results of a function on every item, in the order of the items.
 
-    With one worker the function runs in this process, when its result is asked for. Otherwise dask runs it, ``AHEAD`` items for each worker
-    in advance, so ``items`` may have no end. The first error of the function is raised here. Processes that were started for the call end
+    With one worker the function runs in this process, when its result is asked for. Otherwise dask runs it, some items for each worker in
+    advance, so ``items`` may have no end. The first error of the function is raised here. Processes that were started for the call end
     with it: with the last result, with an error, or when the generator is closed.
 
     Parameters
@@ -51,12 +55,18 @@ def run(function: Callable[[Item], Result], items: Iterable[Item], workers: Work
         from gen.support import cluster
 
         task, waiting, left = cluster.sent_once(client, function), deque["Future"](), iter(items)
-        threads, patience = cluster.threads(client), PATIENCE_S
+        arrived, threads, patience = SimpleQueue["Future"](), cluster.threads(client), PATIENCE_S
         while True:
-            for item in islice(left, max(0, AHEAD * next(threads) - len(waiting))):
+            n_threads, under_way = next(threads), sum(not future.done() for future in waiting)
+            for item in islice(left, max(0, min(AHEAD * n_threads - under_way, HELD * n_threads - len(waiting)))):
                 waiting.append(client.submit(_call, task, item, pure=False))
+                waiting[-1].add_done_callback(arrived.put)
             if not waiting:
                 return
+            if not waiting[0].done():
+                with suppress(Empty):
+                    arrived.get(timeout=PATIENCE_S)
+                continue
             done = cluster.result_within(client, waiting[0], patience)
             patience = min(2 * patience, LONGEST_S) if done is None else PATIENCE_S
             if done is not None:

@@ -172,7 +172,7 @@ def test_a_corpus_that_other_sources_or_libraries_began_is_refused_by_name(recip
 
 
 def test_edited_sources_neither_complete_a_corpus_nor_keep_its_parts(recipe_file, begun, single, monkeypatch):
-    for module in ("gen.generation.corpus", "gen.generation.parts"):
+    for module in ("gen.generation.corpus", "gen.generation.facts"):
         monkeypatch.setattr(f"{module}.sources_sha256", lambda: "b" * 64)
     for corpus in (begun, single.path):
         with pytest.raises(CorpusError, match=r"was begun with sources [0-9a-f]{12}; sources bbbbbbbbbbbb is"):

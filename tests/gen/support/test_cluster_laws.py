@@ -41,7 +41,7 @@ def test_every_item_is_worked_on_once(threaded):
 
 
 def test_few_tasks_are_submitted_ahead_of_their_results(threaded):
-    """Two per thread, of which there are eight: memory does not grow with the number of items."""
+    """Four per thread, of which there are eight: memory does not grow with the number of items."""
     taken = 0
 
     def items():
@@ -52,11 +52,11 @@ def test_few_tasks_are_submitted_ahead_of_their_results(threaded):
 
     with Client(threaded, set_as_default=False) as client:
         for done, _ in enumerate(run(negated, items(), client)):
-            assert taken - done <= 2 * 8 + 1
+            assert taken - done <= 4 * 8 + 1
 
 
 def test_workers_that_come_later_are_given_tasks(threaded, monkeypatch):
-    """With one worker of four threads 8 tasks are in hand, with two 16."""
+    """With one worker of four threads at most 16 items are held, with two 32."""
     monkeypatch.setattr(cluster, "COUNT_AGAIN_S", 0.0)
     taken = 0
 
@@ -71,7 +71,7 @@ def test_workers_that_come_later_are_given_tasks(threaded, monkeypatch):
             time.sleep(0.05)
         tasks = run(negated, items(), client)
         next(tasks)
-        assert taken == 8
+        assert taken <= 17
         threaded.scale(2)
         client.wait_for_workers(2)
-        assert 8 < max(taken - done for done, _ in enumerate(tasks, start=2)) <= 16
+        assert 16 < max(taken - done for done, _ in enumerate(tasks, start=2)) <= 33
