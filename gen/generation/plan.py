@@ -3,6 +3,7 @@
 Records are drawn as :func:`gen.generate` draws them, and some of them checked as it checks them.
 """
 
+import zlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ import numpy as np
 
 from gen.corpus import CODECS, FAULTS, SPLITS
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import Scenario, draw_scenarios, settings_of
+from gen.scenarios import Scenario, draw_scenarios, scenario_texts, settings_of
 from gen.simulation.inputs import kernel_inputs
 from gen.simulation.kernels import is_compiled
 from gen.simulation.motion import draw_motion
@@ -26,7 +27,8 @@ MOST_CHECKED = 64  # of the drawn records; one of some seconds with a changing s
 AT_ONCE = 8  # records: a schedule of a minute takes 10 MB
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
-BYTES_PER_RECORD = 700  # labels and drawn values
+BYTES_PER_RECORD = 250  # labels
+SCENARIOS = 256  # whose stored text is compressed to estimate its size
 BYTES_PER_FILE = 80_000  # overhead of a part or of the index
 
 
@@ -103,7 +105,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         duration=recording.duration_s,
         channels=tuple(channel.name for channel in recording.channels),
         compiled=is_compiled(),
-        bytes=_bytes(whole, count),
+        bytes=_bytes(whole, count, drawn[:SCENARIOS]),
         drawn=len(drawn),
         checked=len(places),
         left_out=round(len(failures) * of_checked),
@@ -144,8 +146,9 @@ def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
     return [(first, min(first + min(size, MOST_DRAWN), recipe.n_records)) for first in firsts]
 
 
-def _bytes(recipe: Recipe, records: int) -> int:
-    """Estimated size of the corpus [B]."""
+def _bytes(recipe: Recipe, records: int, some: Sequence[Scenario]) -> int:
+    """Estimated size of the corpus [B]; the text of each scenario is in its part and in the index."""
+    of_text = 2 * len(zlib.compress("".join(scenario_texts(some)).encode(), 1)) / len(some)
     samples = records * recipe.n_samples * len(recipe.recording.channels)
     of_signals = samples * STORED_BYTES[recipe.recording.converter.kind] * CODECS[recipe.storage.codec].share
-    return round(of_signals + records * BYTES_PER_RECORD) + (recipe.n_parts + 1) * BYTES_PER_FILE
+    return round(of_signals + records * (BYTES_PER_RECORD + of_text)) + (recipe.n_parts + 1) * BYTES_PER_FILE

@@ -10,6 +10,7 @@ from gen.generation.corpus import generate
 from gen.generation.plan import BYTES_PER_FILE, MOST_CHECKED, MOST_DRAWN, plan, some_ranges
 from gen.generation.plan import _bytes as plan_bytes
 from gen.recipe import read_recipe
+from gen.scenarios import draw_scenarios
 
 
 @settings(deadline=None)
@@ -66,6 +67,6 @@ def test_a_plan_checks_some_of_its_records_and_says_so(write_recipe, tmp_path):
 @pytest.mark.parametrize("per_part", [1, 5, 24])
 def test_the_size_of_a_plan_has_one_overhead_for_each_part_and_one_for_the_index(recipe_with, per_part):
     recipe = recipe_with({"storage.records_per_part": per_part})
-    lean = recipe_with({"storage.records_per_part": 1000})
-    assert plan_bytes(recipe, 24) - plan_bytes(lean, 24) == (recipe.n_parts - 1) * BYTES_PER_FILE
-    assert plan_bytes(lean, 24) > 2 * BYTES_PER_FILE
+    lean, some = recipe_with({"storage.records_per_part": 1000}), draw_scenarios(recipe)
+    assert plan_bytes(recipe, 24, some) - plan_bytes(lean, 24, some) == (recipe.n_parts - 1) * BYTES_PER_FILE
+    assert plan_bytes(lean, 24, some) > 2 * BYTES_PER_FILE
