@@ -61,7 +61,7 @@ class Generated(Shown):
     kept: int
     """Number of parts that were kept from an earlier call."""
     failures: tuple[str, ...]
-    """One sentence for each record that is left out because it could not be simulated."""
+    """One sentence for each record that is left out: it could not be simulated, or its fault cannot be seen."""
     signals: SignalCounts
     """Number of records that cannot be used."""
 

@@ -231,7 +231,7 @@ def records_from(
             if not part.sizes["record"]:
                 raise SimulationError(failures[0])
             if failures and not warned:
-                warnings.warn(f"records that cannot be simulated are left out; the first: {failures[0]}", stacklevel=3)
+                warnings.warn(f"some records are left out; the first: {failures[0]}", stacklevel=3)
                 warned = True
             records = decoded([part])
             yield records.isel(record=records["recording"].values >= first)

@@ -6,10 +6,12 @@ An item may be worked on twice: dask repeats what a lost worker was doing.
 import os
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from itertools import islice
-from queue import Empty, SimpleQueue
+from threading import Event
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
+
+from gen.support.errors import ClusterError
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -55,17 +57,17 @@ def run(function: Callable[[Item], Result], items: Iterable[Item], workers: Work
         from gen.support import cluster
 
         task, waiting, left = cluster.sent_once(client, function), deque["Future"](), iter(items)
-        arrived, threads, patience = SimpleQueue["Future"](), cluster.threads(client), PATIENCE_S
+        arrived, threads, patience = Event(), cluster.threads(client), PATIENCE_S
         while True:
             n_threads, under_way = next(threads), sum(not future.done() for future in waiting)
             for item in islice(left, max(0, min(AHEAD * n_threads - under_way, HELD * n_threads - len(waiting)))):
                 waiting.append(client.submit(_call, task, item, pure=False))
-                waiting[-1].add_done_callback(arrived.put)
+                waiting[-1].add_done_callback(lambda _: arrived.set())
             if not waiting:
                 return
             if not waiting[0].done():
-                with suppress(Empty):
-                    arrived.get(timeout=PATIENCE_S)
+                arrived.wait(PATIENCE_S)
+                arrived.clear()
                 continue
             done = cluster.result_within(client, waiting[0], patience)
             patience = min(2 * patience, LONGEST_S) if done is None else PATIENCE_S
@@ -81,11 +83,13 @@ def connected(workers: Workers) -> "Iterator[Client | int]":
     Raises
     ------
     ClusterError
-        If the scheduler does not answer or has no workers.
+        If the scheduler does not answer or has no workers, or a number of processes is below 1.
     """
     if workers == 1:
         yield 1
         return
+    if isinstance(workers, int) and workers < 1:
+        raise ClusterError(f"workers: {workers} is not allowed; use 1 or more.")
     from gen.support import cluster  # distributed takes 0.5 s to load, and work in this process does not need it
 
     with cluster.client_of(workers) as client:

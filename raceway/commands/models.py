@@ -75,7 +75,7 @@ def train(
 
     The model keeps the band, and raceway evaluate computes features from the same one.
 
-    --workers and --scheduler compute the features. Up to four workers also train, in threads of this process; the model is the same.
+    --workers and --scheduler compute the features. The workers also train; the model is the same.
 
     Next: raceway evaluate OTHER --model MODEL
     """

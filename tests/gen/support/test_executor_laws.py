@@ -137,3 +137,8 @@ def test_processes_end_with_the_one_that_started_them(how):
     driver.wait(timeout=5)
     _, left = psutil.wait_procs(started, timeout=5)
     assert left == []
+
+
+def test_less_than_one_worker_is_refused():
+    with pytest.raises(ClusterError, match="workers: 0 is not allowed; use 1 or more"):
+        list(run(halved, [1], 0))
