@@ -8,7 +8,7 @@ def worker_processes():
     found = []
     for child in psutil.Process().children(recursive=True):
         try:
-            if "dask" in child.cmdline():
+            if "gen.support.copied_workers" in child.cmdline():
                 found.append(child)
         except (psutil.NoSuchProcess, psutil.ZombieProcess):
             continue

@@ -171,7 +171,7 @@ class Model(Shown):
         compares = isinstance(self.classifier, str) and self.classifier not in UNTRAINED
         fits = (1 + FOLDS) * (1 + compares)
         done = counter(progress, fits)
-        with connected(workers) as place:
+        with connected(workers, __name__) as place:
             _fit(self, table, place, done)
             paired = (
                 paired_table(table, self.features, self.seed) if compares and isinstance(table, xr.Dataset) else None

@@ -111,7 +111,7 @@ def feature_table(
     starts = np.cumsum([0, *(block.stop - block.first for block in blocks)])
     report = counter(progress, len(blocks) * (1 if treatment == "off" else 2))
     values, missing = np.empty((table.sizes["record"], len(coordinates["feature"][1]))), 0
-    with connected(min(workers, len(blocks)) if scheduler is None else scheduler) as place:
+    with connected(min(workers, len(blocks)) if scheduler is None else scheduler, __name__) as place:
         if treatment != "off":
             recording = recording_numbers(table)
             tasks = list(zip(blocks, np.split(recording, starts[1:-1]), strict=True))

@@ -49,6 +49,8 @@ from gen.support.shown import Shown
 if TYPE_CHECKING:
     from distributed import Client
 
+_SIMULATOR = "gen.generation.parts"  # takes a second and a half to load
+
 
 @dataclass(frozen=True, repr=False)
 class Generated(Shown):
@@ -132,7 +134,7 @@ def generate(
         check_parts(checked, parts, target)
     elif is_single_file(target) and target.exists():
         return _finished_before(target, folder, checked, facts)
-    with nullcontext(workers) if scheduler is None else connected(scheduler) as place, claim(folder):
+    with nullcontext(workers) if scheduler is None else connected(scheduler, _SIMULATOR) as place, claim(folder):
         if folder is not target:
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
@@ -221,7 +223,7 @@ def _all_parts(
     here = isinstance(workers, int)
     if here and (sentence := too_many(workers)) is not None:
         notice(sentence)
-    with connected(min(workers, len(missing)) if here else workers) as place:
+    with connected(min(workers, len(missing)) if here else workers, _SIMULATOR) as place:
         if here:
             from gen.generation.compilation import compile_kernels  # loaded while the processes start
 

@@ -1,20 +1,20 @@
 """What all stages use: errors, limits, units, YAML, progress, and the executor that runs independent work.
 
-=========== ==================================================================
-module      responsibility
-=========== ==================================================================
-errors      one exception class per stage; each carries one sentence
-garbage     cheaper making of many objects
-sources     hash of source files
-kernels     compiled kernels on disk, made again if they are damaged or of other sources
-progress    progress of a long call
-shown       what an object shows in print and in a notebook
-limits      how much a file from elsewhere may ask for
-units       units of recipes and labels, turned into SI
-yaml_files  recipes and common keys of labels, read within the limits
-sentences   an error sentence for each wrong key or value of these files
-executor    a function of many items: in this process, or by dask
-cluster     clients of dask: of processes of this machine, or of a scheduler
-with_parent the end of a worker process with the process that started it
-=========== ==================================================================
+============== ==================================================================
+module         responsibility
+============== ==================================================================
+errors         one exception class per stage; each carries one sentence
+garbage        cheaper making of many objects
+sources        hash of source files
+kernels        compiled kernels on disk, made again if they are damaged or of other sources
+progress       progress of a long call
+shown          what an object shows in print and in a notebook
+limits         how much a file from elsewhere may ask for
+units          units of recipes and labels, turned into SI
+yaml_files     recipes and common keys of labels, read within the limits
+sentences      an error sentence for each wrong key or value of these files
+executor       a function of many items: in this process, or by dask
+cluster        clients of dask: of processes of this machine, or of a scheduler
+copied_workers dask workers of this machine, copies of one process that loaded the libraries
+============== ==================================================================
 """

@@ -5,7 +5,6 @@ Processes of this machine are started as programs of their own, not as copies of
 """
 
 import asyncio
-import json
 import logging
 import math
 import os
@@ -24,7 +23,7 @@ from distributed.deploy.spec import SpecCluster
 from distributed.deploy.subprocess import Subprocess
 from distributed.security import Security
 
-from gen.support import with_parent
+from gen.support import copied_workers
 from gen.support.errors import ClusterError
 
 CONNECT_S = 3.0  # a scheduler that is near answers within milliseconds
@@ -34,11 +33,11 @@ PATIENCE_S = 60.0
 logging.getLogger("distributed.batched").setLevel(
     logging.WARNING
 )  # at the end of a cluster it logs tracebacks as information
-_HERE = {"host": "127.0.0.1", "dashboard": False, "dashboard_address": "127.0.0.1:0"}
+_HERE = {"host": "127.0.0.1", "port": 0, "dashboard": False, "dashboard_address": "127.0.0.1:0"}
 
 
 @contextmanager
-def client_of(place: "Client | str | int") -> Iterator[Client]:
+def client_of(place: "Client | str | int", module: str) -> Iterator[Client]:
     """Client of a number of processes that end with the block, or of the scheduler at an address; a client is yielded as it is.
 
     Raises
@@ -52,28 +51,32 @@ def client_of(place: "Client | str | int") -> Iterator[Client]:
         with _client_at(place) as client:
             yield client
     else:
-        workers = {number: {"cls": _Process, "options": {}} for number in range(place)}
-        scheduler = {"cls": Scheduler, "options": {**_HERE, "port": 0}}
+        options = {"module": module, "count": place}
+        workers = {"local": {"cls": _Processes, "options": options, "group": _suffixes(place)}}
+        scheduler = {"cls": Scheduler, "options": _HERE}
         silent = {"asynchronous": False, "silence_logs": logging.CRITICAL}
         with SpecCluster(workers, scheduler, **silent) as cluster, Client(cluster, set_as_default=False) as client:
             yield client
 
 
-class _Process(Subprocess):
-    """A worker of one thread in a process of its own, which ends with this one."""
+class _Processes(Subprocess):
+    """Workers of one thread in processes of their own, which end with this one."""
 
-    def __init__(self, scheduler: str, name: object) -> None:
+    def __init__(self, scheduler: str, name: object, module: str, count: int) -> None:
         super().__init__()
-        self.scheduler, self.name = scheduler, name
+        self.scheduler, self.module = scheduler, module
+        self.names = [f"{name}{suffix}" for suffix in _suffixes(count)]
 
     async def _start(self) -> None:
-        options = {**_HERE, "nthreads": 1, "name": self.name, "memory_limit": 0, "preload": [with_parent.__name__]}
-        spec = json.dumps({"cls": "distributed.Worker", "opts": options})
         environment = {"OMP_NUM_THREADS": "1", "DASK_LOGGING__DISTRIBUTED": "critical"} | os.environ
         environment["PYTHONPATH"] = os.pathsep.join(path or os.getcwd() for path in sys.path)  # noqa: PTH109 - as text
-        command = [sys.executable, "-m", "dask", "spec", self.scheduler, "--spec", spec]
+        command = [sys.executable, "-m", copied_workers.__name__, self.scheduler, self.module, *self.names]
         pipe, silent = asyncio.subprocess.PIPE, asyncio.subprocess.DEVNULL
         self.process = await asyncio.create_subprocess_exec(*command, stdin=pipe, stdout=silent, env=environment)
+
+
+def _suffixes(count: int) -> list[str]:
+    return [f"-{number}" for number in range(count)]
 
 
 @contextmanager
@@ -141,22 +144,21 @@ def threads(client: Client) -> Iterator[int]:
             raise _lost(client)
         now = time.monotonic()
         workers = getattr(client.cluster, "workers", {}).values()
-        processes = [worker.process for worker in workers if isinstance(worker, _Process)]
-        if processes and all(process is not None and process.returncode is not None for process in processes):
-            codes = ", ".join({f"{process.returncode}" for process in processes if process})
+        here = [worker for worker in workers if isinstance(worker, _Processes)]
+        for ended in (worker.process for worker in here if worker.process and worker.process.returncode is not None):
             raise ClusterError(
-                f"all worker processes have ended, with code {codes}; use fewer workers if memory is short."
+                f"all worker processes have ended, with code {ended.returncode}; use fewer workers if memory is short."
             )
         if now - counted_at > COUNT_AGAIN_S or not count:
             count, counted_at = sum(_threads(client).values()), now
-            if count or processes:
+            if count or here:
                 had_workers_at = now
             elif now - had_workers_at > PATIENCE_S:
                 raise ClusterError(
                     f"{_name(client)}: has had no worker for {PATIENCE_S:g} s; start workers and run the same command again; "
                     "finished parts are kept."
                 )
-        yield max(count, len(processes), 1)
+        yield max(count, *(len(worker.names) for worker in here), 1)
 
 
 def result_within(client: Client, future: Future, patience: float) -> tuple[Any] | None:

@@ -50,7 +50,7 @@ def run(function: Callable[[Item], Result], items: Iterable[Item], workers: Work
     ClusterError
         If the scheduler does not answer or has no workers, or if the cluster or all processes are lost.
     """
-    with connected(workers) as client:
+    with connected(workers, getattr(function, "func", function).__module__) as client:
         if isinstance(client, int):
             yield from map(function, items)
             return
@@ -77,8 +77,15 @@ def run(function: Callable[[Item], Result], items: Iterable[Item], workers: Work
 
 
 @contextmanager
-def connected(workers: Workers) -> "Iterator[Client | int]":
+def connected(workers: Workers, module: str) -> "Iterator[Client | int]":
     """Client of processes or of a scheduler, for several calls of :func:`run`; 1 where this process works.
+
+    Parameters
+    ----------
+    workers : int, str or Client
+        As for ``Workers``.
+    module : str
+        Name of a module with what the processes will do: it is loaded once, before they are copied.
 
     Raises
     ------
@@ -92,7 +99,7 @@ def connected(workers: Workers) -> "Iterator[Client | int]":
         raise ClusterError(f"workers: {workers} is not allowed; use 1 or more.")
     from gen.support import cluster  # distributed takes 0.5 s to load, and work in this process does not need it
 
-    with cluster.client_of(workers) as client:
+    with cluster.client_of(workers, module) as client:
         yield client
 
 
