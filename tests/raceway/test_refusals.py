@@ -4,7 +4,6 @@ import fcntl
 import os
 import shutil
 
-import psutil
 import pytest
 
 from gen import copy, generate
@@ -80,18 +79,3 @@ def test_a_second_call_in_a_folder_is_refused_before_a_process_is_started(run, p
     os.close(handle)
     assert result.exit_code == 2
     assert "another raceway command is writing into it" in result.stderr
-
-
-def test_a_command_that_refuses_and_one_that_is_done_leave_no_process(start, places, tmp_path):
-    for line, code in (("-o {whole} --records 24", 2), ("-o {tmp}/c", 0)):
-        process = start("generate", places["recipe"], "--workers", "2", *line.format(tmp=tmp_path, **places).split())
-        process.communicate(timeout=60)
-        assert process.returncode == code
-        assert [other for other in psutil.process_iter() if group_of(other.pid) == process.pid] == []
-
-
-def group_of(number):
-    try:
-        return os.getpgid(number)
-    except ProcessLookupError:
-        return None

@@ -6,10 +6,14 @@ import time
 import pytest
 from distributed import Client
 
+import gen
+from gen.recipe import Recipe
 from gen.support import cluster, executor
 from gen.support.errors import ClusterError
 from gen.support.executor import run
+from tests.gen.conftest import small_with
 from tests.gen.support.test_cluster_laws import threaded
+from tests.worker_processes import worker_processes
 
 __all__ = ["threaded"]
 
@@ -54,3 +58,21 @@ def test_a_cluster_that_gets_workers_again_completes_the_work(threaded, monkeypa
         found += list(tasks)
         later.join()
     assert set(found) == set(range(40))
+
+
+def batches_after_kills(fresh):
+    while True:
+        for worker in worker_processes():
+            worker.kill()
+        yield next(fresh)
+
+
+def test_a_stream_goes_on_where_it_was_after_its_processes_were_killed(monkeypatch):
+    monkeypatch.setattr("gen.support.executor.cores", lambda: 2)
+    with gen.stream(Recipe(small_with({})), batch=8, workers=2) as fresh:
+        found = [next(fresh)]
+        with pytest.raises(ClusterError, match="all worker processes have ended"):
+            found.extend(batches_after_kills(fresh))
+        found.append(next(fresh))
+    numbers = [number for batch in found for number in batch["recording"].values.tolist()]
+    assert numbers == list(range(8 * len(found)))

@@ -25,6 +25,7 @@ def table():
     )
 
 
+@pytest.mark.usefixtures("started_processes")
 @pytest.mark.parametrize("name", ["random_forest", "svm"])
 def test_predictions_do_not_depend_on_the_number_of_workers(table, name):
     models = [Model(name).fit(table, workers=workers) for workers in (1, 2)]
@@ -35,6 +36,7 @@ def test_predictions_do_not_depend_on_the_number_of_workers(table, name):
             assert other.answers == first.answers
 
 
+@pytest.mark.usefixtures("started_processes")
 def test_scores_do_not_depend_on_the_number_of_workers(table):
     def scores(workers):
         return benchmark(
@@ -44,6 +46,7 @@ def test_scores_do_not_depend_on_the_number_of_workers(table):
     assert scores(2) == scores(1)
 
 
+@pytest.mark.usefixtures("started_processes")
 def test_progress_counts_up_to_the_end(table):
     told = []
     Model("logistic_regression").fit(table, workers=2, progress=lambda *counts: told.append(counts))

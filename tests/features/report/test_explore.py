@@ -93,9 +93,10 @@ def test_text_of_a_corpus_cannot_become_markup_and_only_the_script_of_the_page_m
     assert not [letter for letter in held if category(letter) in ("Cc", "Cf") and letter != "\n"]
 
 
-def test_equal_corpora_give_equal_pages_and_a_record_takes_two_kilobytes(corpus, tmp_path):
+@pytest.mark.usefixtures("started_processes")
+def test_equal_corpora_give_equal_pages_and_a_record_takes_two_kilobytes(corpus, page, tmp_path):
     for workers in (1, 2):
-        write_explorer(corpus, tmp_path / f"{workers}.html", workers=workers)
+        write_explorer(corpus, tmp_path / f"{workers}.html", table=page.with_name("features.nc"), workers=workers)
     one, two = ((tmp_path / f"{k}.html").read_bytes() for k in (1, 2))
     assert one == two
     assert sum(len(part) for part in re.findall(rb'id="block\d+">([^<]*)', one)) < 2000 * RECORDS

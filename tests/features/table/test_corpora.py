@@ -158,6 +158,7 @@ def test_two_workers_and_this_process_give_the_same_numbers(corpus, table):
     assert done == [(1, 3), (2, 3), (3, 3)]
 
 
+@pytest.mark.usefixtures("started_processes")
 def test_processes_give_the_same_numbers(corpus, table):
     done = []
     found = feature_table(corpus, workers=2, progress=lambda *counts: done.append(counts))
@@ -210,7 +211,7 @@ def test_an_altered_table_is_refused_or_reads_the_same(tmp_path, table):
     path, rng, table = tmp_path / "table.nc", np.random.default_rng(5), table.isel(feature=[0, 1, 2], record=slice(4))
     write_table(table, path)
     content, refused = path.read_bytes(), 0
-    for _ in range(200):
+    for _ in range(60):
         altered = bytearray(content)
         for place in rng.integers(0, len(content), rng.integers(1, 4)):
             altered[place] ^= int(rng.integers(1, 256))
@@ -219,7 +220,7 @@ def test_an_altered_table_is_refused_or_reads_the_same(tmp_path, table):
             xr.testing.assert_identical(read_table(path), table)
         except CorpusError:
             refused += 1
-    assert refused > 20
+    assert refused > 6
 
 
 @pytest.mark.parametrize("change", [{"title": "another"}, {"records_with_missing_features": 1}], ids=["title", "count"])

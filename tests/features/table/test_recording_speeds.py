@@ -129,6 +129,7 @@ def test_blocks_of_records_may_come_in_any_order(corpus, checked):
     assert recording_speeds(recording, rate, sums) == recording_speeds(recording, rate, reversed(sums))
 
 
+@pytest.mark.usefixtures("started_processes")
 def test_two_workers_give_the_same_table(corpus, corrected):
     done = []
     parallel = feature_table(corpus, GROUPS, speed="correct", workers=2, progress=lambda *counts: done.append(counts))

@@ -43,6 +43,7 @@ def test_one_call_makes_one_file_with_the_same_records(single, whole):
         assert one.identical(other)
 
 
+@pytest.mark.usefixtures("started_processes")
 def test_processes_make_the_same_corpus_as_one(recipe_file, whole, single, tmp_path):
     done = []
     generate(recipe_file, tmp_path / "c", workers=2, progress=lambda *counts: done.append(counts))
@@ -52,6 +53,7 @@ def test_processes_make_the_same_corpus_as_one(recipe_file, whole, single, tmp_p
     assert done == [(8, 24), (16, 24), (24, 24)]
 
 
+@pytest.mark.usefixtures("started_processes")
 def test_processes_share_out_what_is_missing_alone(recipe_file, whole, tmp_path):
     shutil.copytree(whole.path, tmp_path / "c")
     (tmp_path / "c" / "parts" / "part-00001.nc").unlink()
@@ -73,9 +75,16 @@ def test_an_error_in_a_process_ends_all_processes_and_is_told(recipe_file, tmp_p
 
 
 def test_workers_of_a_given_scheduler_make_the_same_corpus(recipe_file, whole, tmp_path):
+    done = []
+
+    def note(count, total):
+        done.append((count, total))
+        assert len(list((tmp_path / "given" / "parts").glob("part-*.nc"))) * 8 >= count
+
     with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0") as cluster:
-        generate(recipe_file, tmp_path / "given", scheduler=cluster.scheduler_address)
+        generate(recipe_file, tmp_path / "given", scheduler=cluster.scheduler_address, progress=note)
     assert_the_same_corpus(tmp_path / "given", whole)
+    assert done == [(8, 24), (16, 24), (24, 24)]
 
 
 def test_what_is_in_the_way_of_a_corpus_is_named(recipe_file, tmp_path):
@@ -111,19 +120,15 @@ def test_a_scheduler_that_does_not_answer_is_refused_before_anything_is_written(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("where", ["this process", "a cluster"])
-def test_records_count_when_their_part_is_on_disk(recipe_file, tmp_path, where):
+def test_records_count_when_their_part_is_on_disk(recipe_file, tmp_path):
+    """On a cluster: the test of a given scheduler."""
     corpus, done = tmp_path / "c", []
 
     def note(count, total):
         done.append((count, total))
         assert len(list((corpus / "parts").glob("part-*.nc"))) * 8 >= count
 
-    if where == "this process":
-        generate(recipe_file, corpus, progress=note)
-    else:
-        with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0") as cluster:
-            generate(recipe_file, corpus, scheduler=cluster.scheduler_address, progress=note)
+    generate(recipe_file, corpus, progress=note)
     assert done == [(8, 24), (16, 24), (24, 24)]
 
 

@@ -84,6 +84,7 @@ def test_a_snapshot_in_the_middle_of_a_life_is_made_again(lives, records):
         )
 
 
+@pytest.mark.usefixtures("started_processes")
 def test_two_workers_and_an_interrupted_call_give_the_same_files(lives, recipe_with, tmp_path):
     generate(recipe_with(SHORT), tmp_path / "two", workers=2)
     assert files(tmp_path / "two") == files(lives)

@@ -11,8 +11,8 @@ import gen
 from gen.generation.stream import endless, records_from
 from gen.recipe import Recipe
 from gen.support.errors import ClusterError, RecipeError, SimulationError
+from gen.support.executor import run
 from tests.gen.conftest import small_with
-from tests.worker_processes import worker_processes
 
 
 @pytest.fixture(scope="module")
@@ -58,13 +58,6 @@ def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
         gen.stream(recipe).load_state_dict({})
 
 
-def batches_after_kills(fresh):
-    while True:
-        for worker in worker_processes():
-            worker.kill()
-        yield next(fresh)
-
-
 @pytest.mark.parametrize("wrong", [-5, 7.0, "7", None, float("nan"), [7], True, 2**40])
 def test_a_state_with_a_wrong_number_is_refused(recipe, wrong):
     fresh = gen.stream(recipe)
@@ -75,16 +68,24 @@ def test_a_state_with_a_wrong_number_is_refused(recipe, wrong):
     assert fresh.state_dict()["next"] == 0
 
 
-def test_a_stream_goes_on_where_it_was_after_its_processes_were_killed(recipe, monkeypatch):
-    monkeypatch.setattr("gen.support.executor.cores", lambda: 2)
-    with gen.stream(recipe, batch=8, workers=2) as fresh:
+def test_a_stream_goes_on_where_it_was_after_its_processes_were_lost(recipe, monkeypatch):
+    """After processes are killed: tests/thorough/test_lost_cluster.py."""
+
+    def lost_after_two(*given):
+        yield from itertools.islice(run(*given), 2)
+        raise ClusterError("all worker processes have ended.")
+
+    with gen.stream(recipe, batch=12) as fresh, monkeypatch.context() as patch:
+        patch.setattr("gen.generation.stream.run", lost_after_two)
         found = [next(fresh)]
         with pytest.raises(ClusterError, match="all worker processes have ended"):
-            found.extend(batches_after_kills(fresh))
+            next(fresh)
+        patch.undo()
         found.append(next(fresh))
-    assert numbers_of(found) == list(range(8 * len(found)))
+    assert numbers_of(found) == list(range(24))
 
 
+@pytest.mark.usefixtures("started_processes")
 def test_several_processes_give_the_same_batches(recipe, monkeypatch):
     monkeypatch.setattr("gen.support.executor.cores", lambda: 2)
     with gen.stream(recipe, batch=20, workers=2) as by_two, gen.stream(recipe, batch=20) as by_one:

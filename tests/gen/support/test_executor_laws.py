@@ -16,7 +16,7 @@ from distributed import LocalCluster
 
 from gen.support.errors import ClusterError, RecipeError
 from gen.support.executor import connected, run
-from tests.worker_processes import worker_processes
+from tests.worker_processes import SHARED, worker_processes
 
 
 @pytest.fixture(autouse=True)
@@ -48,10 +48,10 @@ def killed(marker, item):
     return item
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_every_item_has_its_result_in_order(workers):
-    assert list(run(halved, iter(range(40)), workers)) == [item / 2 for item in range(40)]
-    assert list(run(halved, [], workers)) == []
+def test_every_item_has_its_result_in_order(two_processes):
+    for workers in (1, two_processes):
+        assert list(run(halved, iter(range(40)), workers)) == [item / 2 for item in range(40)]
+        assert list(run(halved, [], workers)) == []
 
 
 def test_processes_and_schedulers_work_elsewhere_and_one_worker_here():
@@ -61,10 +61,10 @@ def test_processes_and_schedulers_work_elsewhere_and_one_worker_here():
         assert set(run(process, range(3), cluster.scheduler_address)) == {os.getpid()}
 
 
-def test_several_calls_share_their_processes():
-    with connected(2, __name__) as client:
+def test_several_calls_share_their_processes(two_processes):
+    with connected(two_processes, __name__) as client:
         found = {*run(process, range(20), client), *run(process, range(20), client)}
-        assert found <= {child.pid for child in worker_processes()}
+    assert found <= {child.pid for child in SHARED}
 
 
 def uneven(item):
