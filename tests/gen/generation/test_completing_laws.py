@@ -142,8 +142,10 @@ STRANGE = {
 
 
 def test_every_part_that_is_not_the_right_one_is_made_again_to_the_byte(write_recipe, tmp_path):
-    recipe = write_recipe(tmp_path / "r.yaml", {"storage.records_per_part": 2})
-    whole, other = generate(recipe, tmp_path / "whole"), generate(recipe, tmp_path / "other", seed=4, records=10)
+    recipe = write_recipe(
+        tmp_path / "r.yaml", {"storage.records_per_part": 1, "corpus.rigs": 1, "corpus.specimens_per_rig": 6}
+    )
+    whole, other = generate(recipe, tmp_path / "whole"), generate(recipe, tmp_path / "other", seed=4, records=5)
     for begun in (lambda folder: folder, unfinished):
         folder = begun(shutil.copytree(whole.path, tmp_path / "damaged"))
         for number, damage in enumerate(STRANGE.values()):
