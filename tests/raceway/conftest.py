@@ -5,12 +5,13 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from click.testing import CliRunner, Result
 
 from features import feature_table
@@ -41,6 +42,22 @@ def run() -> Callable[..., Result]:
         return CliRunner().invoke(cli, [str(argument) for argument in arguments], prog_name="raceway")
 
     return call
+
+
+@pytest.fixture(scope="module")
+def tables_once() -> Iterator[None]:
+    """Commands that ask for the same feature table again get the first one: what they do with it is tested."""
+    made: dict[str, xr.Dataset] = {}
+
+    def table_of(corpus: Path, **options: Any) -> xr.Dataset:
+        key = repr((corpus, {name: value for name, value in options.items() if name != "progress"}))
+        if key not in made:
+            made[key] = feature_table(corpus, **options)
+        return made[key].copy(deep=True)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("features.feature_table", table_of)
+        yield
 
 
 @pytest.fixture

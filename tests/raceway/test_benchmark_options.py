@@ -5,10 +5,9 @@ import json
 import pytest
 
 from features.baselines import TRACKS, cross_validate, load_maker
-from features.table.corpora import feature_table
 from raceway.commands import benchmarking
 
-pytestmark = pytest.mark.usefixtures("unpainted")
+pytestmark = pytest.mark.usefixtures("unpainted", "tables_once")
 
 MINE = """
 import numpy as np
@@ -92,16 +91,15 @@ def test_options_that_cannot_be_used_are_refused_before_any_feature_is_computed(
     assert sentence in str(result.exception) + result.output
 
 
-def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, tiny_corpus, tmp_path, mine):
+def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, tiny_corpus, tiny_table, tmp_path, mine):
     protocol = ("--track", "rig", "--folds", "2")
     file = tmp_path / "rows.csv"
     names = ("--estimator", mine, "--estimator", "logistic_regression")
     done = run("benchmark", tiny_corpus, *protocol, *names, "--submit", file)
     assert done.exit_code == 0
     checked = told("benchmark", tiny_corpus, *protocol, "--check", file)
-    table = feature_table(tiny_corpus)
     for name, estimator in ((mine, load_maker(mine)), ("logistic_regression", "logistic_regression")):
-        scores = cross_validate(table, estimator, track="rig", folds=2)
+        scores = cross_validate(tiny_table, estimator, track="rig", folds=2)
         same = ("balanced_accuracy", "false_alarms", "records")
         assert [checked[name][figure] for figure in same] == [getattr(scores, figure) for figure in same]
         assert checked[name]["interval"] == list(scores.interval)

@@ -24,6 +24,8 @@ from raceway.console.summary import _shown_faults
 from tests.command_tree import commands
 from tests.labels import write_labels
 
+pytestmark = pytest.mark.usefixtures("tables_once")
+
 
 @pytest.mark.parametrize(
     ("path", "command"), list(commands()), ids=lambda value: " ".join(value) if isinstance(value, tuple) else ""
@@ -314,10 +316,8 @@ def test_evaluate_gives_the_figures_over_the_classes_present(run, told, tiny_cor
     assert line[4] == f"{scores['false_alarms']:.3f}"
 
 
-@pytest.mark.usefixtures("unpainted")
-def test_benchmark_writes_a_report_and_results(run, told, tiny_corpus, tmp_path, monkeypatch):
-    for name in ("svm", "random_forest", "extra_trees", "gradient_boosting", "ensemble"):
-        monkeypatch.setitem(ESTIMATORS, name, ESTIMATORS["logistic_regression"])  # for speed
+@pytest.mark.usefixtures("unpainted", "quick_estimators")
+def test_benchmark_writes_a_report_and_results(run, told, tiny_corpus, tmp_path):
     results = told("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2)
     assert results["baselines"].keys() == ESTIMATORS.keys()
     assert json.loads((tmp_path / "report" / "results.json").read_text())["baselines"] == results["baselines"]

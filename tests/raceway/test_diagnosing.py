@@ -152,7 +152,7 @@ def test_the_only_acceleration_of_a_file_is_read_and_told(model, recordings, tmp
 
 
 def test_a_healthy_recording_has_the_channels_of_the_recording(model, recordings, tmp_path):
-    signal, rpm = recordings["outer"]
+    signal, rpm = recordings["outer"][0][:FS], recordings["outer"][1]
     options = ("--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model, "--unit", "g")
     three = write_axes(tmp_path / "r.csv", "x,y,z", signal, signal, signal)
     two = write_axes(tmp_path / "h.csv", "x,y", signal, signal)

@@ -22,11 +22,11 @@ from raceway.cli import cli
 from raceway.commands.models import warn_of_durations
 from tests.model_files import make_table
 
-pytestmark = pytest.mark.usefixtures("unpainted")
+pytestmark = pytest.mark.usefixtures("unpainted", "quick_estimators", "tables_once")
 
 
 @pytest.fixture
-def trainings(tiny_table, few_trees, tmp_path, monkeypatch):  # noqa: ARG001
+def trainings(tiny_table, tmp_path, monkeypatch):
     """List that grows with each training; the table of the tiny corpus replaces that of every recipe."""
     made = []
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))

@@ -73,12 +73,10 @@ def write_corpus(directory, title="a made-up corpus", specimens=8, records=3, cl
 
 
 @pytest.fixture(scope="module")
-def results_of():
+def results_of(quick_estimators):  # noqa: ARG001
     def results(corpus, test=None, estimators=None):
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("features.baselines.estimators.TREES", 10)
-            other = () if test is None else feature_table(test)
-            return benchmark(feature_table(corpus), other, folds=2, estimators=estimators)
+        other = () if test is None else feature_table(test)
+        return benchmark(feature_table(corpus), other, folds=2, estimators=estimators)
 
     return results
 
