@@ -14,7 +14,7 @@ from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
 from gen.corpus.fault_classes import CLASSES, COMBS, EVIDENCE
 
-FS, TURNS, RECORDS = 12_000.0, 30, 40
+FS, TURNS, RECORDS = 12_000.0, 30, 20
 FTF, BPFO, BPFI, BSF = 0.3983, 3.5848, 5.4152, 2.3567
 TRAINS = {
     "healthy": (),

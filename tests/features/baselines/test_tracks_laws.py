@@ -189,9 +189,14 @@ def test_a_track_without_groups_is_refused_in_one_sentence(track, changed, sente
     )
     with pytest.raises(CorpusError, match=sentence):
         cross_validate(plain, "majority", track=track)
-    results = benchmark(plain, tracks="all", estimators={"majority": "majority"}, folds=3)
-    assert list(results.left_out) == [track] or track in results.left_out
-    assert results.track == "specimen"
+
+
+def test_tracks_without_groups_are_left_out():
+    table = varied_table()
+    one = table.assign(bpfo=0 * table.bpfo + 3.0, bpfi=0 * table.bpfi + 5.0, shaft_rate=0 * table.shaft_rate + 30.0)
+    results = benchmark(one, tracks="all", estimators={"majority": "majority"}, folds=3)
+    assert set(results.left_out) == {"bearing", "speed"}
+    assert (results.track, set(results.further)) == ("specimen", {*TRACKS} - {"specimen", "bearing", "speed"})
 
 
 def test_all_tracks_are_scored_by_three_baselines_and_single_ones_by_all():

@@ -49,7 +49,7 @@ def test_every_view_is_drawn_at_constant_and_at_varying_speed_and_over_another_r
     for shown, under in ((run_up, None), (steady, steady)):
         figure = draw_view(view, shown, under)
         assert bool(figure.legends) == (under is not None and view not in MAPS)
-        assert picture(figure, "png").startswith(b"\x89PNG")
+    assert picture(figure, "png").startswith(b"\x89PNG")
 
 
 def test_the_envelope_of_a_run_up_has_its_line_within_half_a_bin_of_its_order(run_up):

@@ -67,22 +67,22 @@ def test_a_train_of_impulses_with_a_wrong_label_is_found_within_its_uncertainty(
 def test_clear_estimates_are_common_and_their_errors_are_within_two_uncertainties(family):
     rng = np.random.default_rng(7)
     clear, within = 0, 0
-    for seed in range(40):
+    for seed in range(24):
         orders = bearing(rng.integers(7, 14), rng.uniform(0.15, 0.28))
         order = {"bpfo": orders.bpfo, "bpfi": orders.bpfi, "2bsf": 2 * orders.bsf}[family]
         rate, error = rng.uniform(12, 45), rng.uniform(-0.075, 0.075)
         found = shaft_speed(recording(seed, rate, order), FS, rate / (1 + error), orders)
         clear += found.clear
         within += found.clear and abs(found.rate - rate) < 2 * found.uncertainty
-    assert clear >= 20
+    assert clear >= 12
     assert within >= 0.95 * clear
 
 
-def clear_in_noise(windows):
-    """Of 300 recordings of noise, those whose speed is clear."""
+def clear_in_noise(windows, recordings=300):
+    """Of so many recordings of noise, those whose speed is clear."""
     rng = np.random.default_rng(3)
     clear = 0
-    for _ in range(300):
+    for _ in range(recordings):
         orders = bearing(rng.integers(7, 14), rng.uniform(0.15, 0.28))
         clear += shaft_speed(rng.standard_normal((windows, SAMPLES)), FS, rng.uniform(9, 50), orders).clear
     return clear
@@ -90,16 +90,16 @@ def clear_in_noise(windows):
 
 def test_noise_alone_is_clear_in_less_than_one_per_cent():
     """Of eight windows too: tests/thorough/test_speed_laws.py."""
-    assert clear_in_noise(1) <= 2
+    assert clear_in_noise(1, 150) <= 1
 
 
 def test_a_healthy_machine_with_the_right_label_raises_no_alarm():
     rng = np.random.default_rng(4)
     alarms = 0
-    for seed in range(300):
+    for seed in range(150):
         orders, rate = bearing(rng.integers(7, 14), rng.uniform(0.15, 0.28)), rng.uniform(12, 45)
         alarms += not shaft_speed(recording(seed, rate, windows=2, shaft=rng.uniform(0, 1)), FS, rate, orders).agrees
-    assert alarms <= 2
+    assert alarms <= 1
 
 
 @pytest.mark.parametrize("mains", [50.0, 60.0])
