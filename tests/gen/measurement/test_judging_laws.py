@@ -64,16 +64,16 @@ def with_impulses(signal):
 )
 def test_another_recording_of_a_healthy_machine_gives_an_alarm_as_rarely_as_stated(machine, impulses):
     """What a fault adds may be the difference of two recordings of the machine, which differ in their noise alone."""
-    recordings = [(machine(noise(2 * k)), machine(noise(2 * k + 1))) for k in range(500)]
+    recordings = [(machine(noise(2 * k)), machine(noise(2 * k + 1))) for k in range(200)]
     alarms = sum(judged(other - one, one, impulses=impulses) for other, one in recordings)
-    assert alarms <= 500 * FALSE_ALARM + 3 * math.sqrt(500 * FALSE_ALARM) + 1
+    assert alarms <= 200 * FALSE_ALARM + 3 * math.sqrt(200 * FALSE_ALARM) + 1
 
 
 def test_more_channels_do_not_give_more_false_alarms(monkeypatch):
     monkeypatch.setattr(judging, "FALSE_ALARM", 0.1)
-    two = [noise(k, 16 * N).reshape(2, 8, N) for k in range(300)]
+    two = [noise(k, 16 * N).reshape(2, 8, N) for k in range(150)]
     alarms = sum(judged(one - other, other) for one, other in two)
-    assert alarms <= 300 * 0.1 + 3 * math.sqrt(300 * 0.1)
+    assert alarms <= 150 * 0.1 + 3 * math.sqrt(150 * 0.1)
 
 
 def test_a_line_that_the_record_shows_without_its_fault_is_not_the_fault():

@@ -111,8 +111,8 @@ def test_a_bearing_of_ones_own_is_rated_by_its_geometry(recipe_with):
 def test_no_shipped_recipe_asks_for_a_load_near_the_limit(name):
     """The largest load over static rating is 0.3, of domain_randomised."""
     recipe = read_recipe(name)
-    ratios = [
-        scenario.record.conditions.load / static_rating(scenario.rig.bearing) for scenario in draw_scenarios(recipe)
-    ]
+    if recipe.life is not None and recipe.life.accelerated:
+        return
+    drawn = draw_scenarios(recipe, 0, min(recipe.n_records, 500))
     highest = 0.35 if recipe.life is None else 0.6  # bearings tire under higher loads alone
-    assert max(ratios) < highest or (recipe.life is not None and recipe.life.accelerated)
+    assert max(one.record.conditions.load / static_rating(one.rig.bearing) for one in drawn) < highest
