@@ -1,4 +1,4 @@
-"""The page of the seed paper, and the command that writes it."""
+"""The page of the seed paper, and the command that writes it; experiments by hand are in tests/thorough/test_paper_experiments.py."""
 
 import json
 
@@ -26,18 +26,6 @@ def test_the_figures_and_the_statements_are_on_one_page(written):
         assert f">{finding['id']}<" in page
         assert (f"paper, {finding['id']}: " in page) == (not finding["holds"])
         assert f"amended: {finding['amended']}" in page or not finding["amended"]
-
-
-def test_an_experiment_is_run_by_hand_and_replaces_the_page(written, capsys):
-    folder, findings = written
-    assert [finding["holds"] for finding in findings if finding["id"] == "H8"] == [False]
-    assert main(["--preset", "paper", "--change", "support_damping_y=4500", "-o", str(folder)]) == 0
-    found = json.loads((folder / "findings.json").read_text())["findings"]
-    assert [finding["holds"] for finding in found if finding["id"] == "H8"] == [True]
-    assert {finding["preset"] for finding in found} == {"paper-changed"}
-    assert "paper-changed" in (folder / "ophel2025.html").read_text()
-    holding = sum(finding["holds"] for finding in found)
-    assert f"paper-changed: {holding} of {len(found)} statements hold." in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -1,12 +1,14 @@
 """The one constant that makes a statement of the seed paper hold: every experiment is run, and the causes that it refutes as well."""
 
 import itertools
+import json
 import math
 
 import numpy as np
 import pytest
 
 from gen.physics.catalogue import CATALOGUE
+from studies.ophel2025.__main__ import main
 from studies.ophel2025.experiments import EXPERIMENTS, UNITS, changed, constant, experiment
 from studies.ophel2025.paper import PRESETS, SHAFT_MASS, Preset, run_many
 from studies.ophel2025.statements import findings
@@ -106,3 +108,16 @@ def test_load_and_its_angle_change_the_two_components_together():
     assert constant(preset, "load_angle") == pytest.approx(90)
     assert changed(PRESETS["paper"], {}) == PRESETS["paper"]
     assert set(UNITS) == {*Preset._fields, "load", "load_angle"}
+
+
+def test_an_experiment_is_run_by_hand_and_replaces_the_page(tmp_path, capsys):
+    for change, name, holds in ((), "paper", False), (("--change", "support_damping_y=4500"), "paper-changed", True):
+        assert main(["--preset", "paper", *change, "-o", str(tmp_path)]) == 0
+        found = json.loads((tmp_path / "findings.json").read_text())["findings"]
+        assert [finding["holds"] for finding in found if finding["id"] == "H8"] == [holds]
+        assert {finding["preset"] for finding in found} == {name}
+        assert (
+            f"{name}: {sum(finding['holds'] for finding in found)} of {len(found)} statements hold."
+            in capsys.readouterr().out
+        )
+    assert "paper-changed" in (tmp_path / "ophel2025.html").read_text()
