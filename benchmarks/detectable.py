@@ -66,11 +66,11 @@ def cases(recipe: Recipe, pairs: int) -> list[Case]:
     whole = [place for place in range(1, len(scenarios), 2) if not {place - 1, place} & response.failures.keys()]
     found = []
     for place in whole:
-        orders = lines_of_faults(scenarios[place], response.truth[place].orders)
+        orders = lines_of_faults(response.truth[place])
         if orders:
             signals = made.measured.signal[place], made.measured.signal[place - 1], again[place // 2]
             record, twin, other = (signal[0] / (made.measured.counts_per_unit or 1.0) for signal in signals)
-            seen, rate = bool(made.measured.detectable[place]), response.truth[place].true_shaft_rate
+            seen, rate = bool(made.measured.detectable[place]), response.truth[place].shaft_rate
             found.append(
                 Case(
                     scenarios[place].specimen.fault,

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from gen.corpus import format_page
 from gen.drawing import KINDS
-from gen.mechanisms.labels import LABELS
+from gen.generation.labels import LABELS
 from gen.physics.catalogue import catalogue_page
 from gen.recipe.finding import recipe_purpose, shipped_recipes
 from gen.recipe.keys import Key, recipe_keys

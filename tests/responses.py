@@ -1,5 +1,7 @@
 """Responses whose bodies move as a test wants; labels do not depend on the motion."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
 from gen.scenarios import settings_of
@@ -7,7 +9,7 @@ from gen.simulation.inputs import kernel_input
 from gen.simulation.motion import draw_motion
 from gen.simulation.simulate import Response
 from gen.simulation.timeline import timeline
-from gen.simulation.truth import Truth, truth_of, with_loaded_hits
+from gen.simulation.truth import LABELS, truth_of
 
 
 def input_of(scenario):
@@ -27,11 +29,10 @@ def response_of(scenarios, recipe, *, impossible=()):
     motions = [draw_motion(scenario) for scenario in scenarios]
     truth = [truth_of(motion, axis, given) for motion, given in zip(motions, inputs, strict=True)]
     steps = np.arange(n) + 2, np.linspace(0.1, 0.3, n)
-    return Response(still(recipe, n), *steps, {}, inputs, motions, truth, [])
+    return Response(still(recipe, n), *steps, {}, motions, truth, [])
 
 
-def truth(scenario, recipe) -> Truth:
-    """Truth of a scenario."""
-    axis = timeline(settings_of(recipe))
-    given = input_of(scenario)
-    return with_loaded_hits([truth_of(draw_motion(scenario), axis, given)], [given], axis)[0]
+def truth(scenario):
+    """Variables of the corpus that follow from the truth of a scenario, and its mean orders."""
+    known = truth_of(draw_motion(scenario), timeline(scenario.settings), input_of(scenario))
+    return SimpleNamespace(orders=known.orders, **{label.name: label.column([known])[0] for label in LABELS})

@@ -6,7 +6,7 @@ module          responsibility
 codecs          codecs of stored signals
 fault_classes   the fault classes: colour, lines and telling features of each
 schema          dimensions, variables, units and roles
-simulated       further variables of simulated corpora
+simulated       further variables that readers know
 hdf5            lock of the HDF5 library, refusal of links to other files
 unicode_text    global attributes with letters beyond ASCII
 layout          allowed shapes, types and attributes in a file

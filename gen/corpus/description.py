@@ -1,8 +1,10 @@
 """Page in Markdown about the format, with tables generated from its schema."""
 
-from gen.corpus.schema import FORMAT, SCHEMA, SIGNAL, Variable, listed_flags
+from collections.abc import Iterable
+
+from gen.corpus.schema import FORMAT, ROLES, SCHEMA, SIGNAL, Variable, listed_flags
 from gen.corpus.signals import CLIPPED_SHARE
-from gen.corpus.simulated import LIFE, SIMULATED
+from gen.corpus.simulated import LIFE
 
 _FORMAT = f"""# The corpus format, version {FORMAT}
 
@@ -97,17 +99,16 @@ failed:
 """
 
 
-def format_page(simulated: tuple[Variable, ...]) -> str:
-    """Markdown page about the format, with tables of the variables of all corpora, of simulated ones and of lives.
-
-    ``simulated`` are the labels of mechanisms, beside those of every simulated corpus.
-    """
-    tables = _table(SCHEMA), _table(SIMULATED + simulated), _table(LIFE)
+def format_page(simulated: Iterable[Variable]) -> str:
+    """Markdown page about the format, with tables of the variables of all corpora, of ``simulated`` ones and of lives."""
+    general = {variable.name for variable in SCHEMA}
+    further = (one for one in simulated if one.name not in general)
+    tables = _table(SCHEMA), _table(sorted(further, key=lambda one: ROLES.index(one.role))), _table(LIFE)
     texts = _FORMAT, _SIMULATED, _LIFE
     return "".join(text + table for text, table in zip(texts, tables, strict=True))
 
 
-def _table(variables: tuple[Variable, ...]) -> str:
+def _table(variables: Iterable[Variable]) -> str:
     rows = ["| variable | type | unit | role | meaning |", "|---|---|---|---|---|"]
     for variable in variables:
         flags = f" ({listed_flags(variable.flags)})" if variable.flags else ""

@@ -5,7 +5,8 @@
 ``provenance`` (origin of the record). Features may use the signal and ``operating`` variables only.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -40,14 +41,22 @@ MISSING_COUNT = -32768  # count of a missing sample (_FillValue); the converter 
 
 
 class Variable(NamedTuple):
-    """One per-record variable of the format; ``flags`` names the values of a class by their codes."""
+    """One per-record variable, declared once: in the format, or beside the stage or mechanism that knows its value."""
 
     name: str
     dtype: str
     units: str
     role: str
     long_name: str
+    value: Callable[[Any], Any] | None = None
+    """Value of a record, from what its stage or mechanism knows of the record; None if it has the name of the variable there."""
     flags: Mapping[int, str] = {}
+    """Names of the values of a class by their codes."""
+
+    def column(self, records: Iterable[Any]) -> list[Any]:
+        """Value of each record, NaN for None."""
+        value = self.value or attrgetter(self.name)
+        return [np.nan if (found := value(one)) is None else found for one in records]
 
 
 SCHEMA = (
@@ -59,7 +68,7 @@ SCHEMA = (
     Variable("bpfi", "f8", "1", "operating", "nominal ball pass frequency of the inner race in shaft orders"),
     Variable("bsf", "f8", "1", "operating", "nominal ball spin frequency in shaft orders"),
     Variable("bearing", "str", "1", "operating", "designation of the bearing"),
-    Variable("fault", "i1", "1", "label", "fault class", FAULT_NAMES),
+    Variable("fault", "i1", "1", "label", "fault class", flags=FAULT_NAMES),
     Variable("n_spalls", "i2", "1", "label", "number of spalls, -1 if unknown"),
     Variable(
         "width",
@@ -79,7 +88,7 @@ SCHEMA = (
     Variable("rig", "i4", "1", "provenance", "number of the machine"),
     Variable("specimen", "i4", "1", "provenance", "number of the physical bearing"),
     Variable("recording", "i4", "1", "provenance", "number of the recording that the record was cut from"),
-    Variable("split", "i1", "1", "provenance", "split that the record belongs to", dict(enumerate(SPLITS))),
+    Variable("split", "i1", "1", "provenance", "split that the record belongs to", flags=dict(enumerate(SPLITS))),
     Variable("source", "str", "1", "provenance", "file or recipe that the record comes from, and its place there"),
     Variable(
         IDENTITY,
@@ -193,7 +202,7 @@ def make_dataset(
     columns : mapping
         One array of shape (record,) for each variable of ``SCHEMA`` and of ``extra``.
     extra : tuple of Variable
-        Further per-record variables, such as those of simulated corpora.
+        Further per-record variables, such as those of simulated corpora; those of ``SCHEMA`` may be among them.
     counts_per_unit : float, optional
         Converter counts per m s-2, for int16 signals.
     attributes : mapping
@@ -206,15 +215,13 @@ def make_dataset(
     """
     import xarray as xr  # not at the top: recipes use the names above, and xarray takes 0.25 s to load
 
-    variables = SCHEMA + extra
-    names = {variable.name for variable in variables}
-    if names != set(columns):
-        message = f"columns {sorted(names ^ set(columns))} are either missing or not described; give each exactly once."
+    variables = {variable.name: variable for variable in SCHEMA + extra}
+    if variables.keys() != columns.keys():
+        message = f"columns {sorted(variables.keys() ^ columns.keys())} are either missing or not described; give each exactly once."
         raise CorpusError(message)
-    simulated = any(variable.name == DRAWS for variable in extra)
-    content = {"coverage_content_type": "modelResult" if simulated else "physicalMeasurement"}
+    content = {"coverage_content_type": "modelResult" if DRAWS in variables else "physicalMeasurement"}
     data: dict[str, Any] = {SIGNAL: (SIGNAL_DIMS, signal, signal_attributes(counts_per_unit) | content)}
-    for variable in variables:
+    for variable in variables.values():
         dtype = object if variable.dtype == "str" else np.dtype(variable.dtype)
         values = np.asarray(columns[variable.name], dtype=dtype)
         data[variable.name] = ("record", values, variable_attributes(variable))
@@ -225,7 +232,7 @@ def make_dataset(
         "channel": ("channel", np.asarray(channels, dtype=object), named),
         "elapsed_time": ("elapsed_time", np.arange(signal.shape[2]) / fs, axis),
     }
-    labels = {variable.name: data.pop(variable.name) for variable in variables if variable.dtype == "str"}
+    labels = {variable.name: data.pop(variable.name) for variable in variables.values() if variable.dtype == "str"}
     return xr.Dataset(
         data,
         coordinates | labels,

@@ -1,59 +1,61 @@
-"""Variables stored with each record: operating conditions, labels and the truth of the simulation, copied from where they are known."""
+"""Variables stored with each record: each is declared once, beside the stage or mechanism that knows its value."""
 
 from importlib.metadata import version
-from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from gen.corpus import DRAWS, FAULTS, LIFE, SIMULATED, SPLITS, identity, make_dataset
+from gen.corpus import DRAWS, LIFE, make_dataset
+from gen.corpus.simulated import with_values
+from gen.measurement import levels
 from gen.measurement.measure import Measured
-from gen.mechanisms.background.section import labels_of
-from gen.mechanisms.labels import LABELS
-from gen.physics.bearing import orders
-from gen.scenarios import Scenario, common_settings, scenario_texts, simulation_errors
+from gen.mechanisms import labels as mechanisms
+from gen.scenarios import common_settings, scenario_texts, simulation_errors, variables
+from gen.simulation import steps, truth
 from gen.simulation.simulate import Response
+
+LABELS = (
+    *variables.LABELS,
+    *truth.LABELS,
+    *steps.LABELS,
+    *levels.LABELS,
+    *mechanisms.LABELS,
+    *with_values(step_error=None, draws=None),
+)
+"""Variables of every simulated record, those of all corpora among them."""
 
 
 @simulation_errors()
 def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.float64] | None = None) -> xr.Dataset:
     """Measured records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
-    scenarios, rows = measured.scenarios, []
-    settings = common_settings(scenarios)
-    of_records = zip(scenarios, response.truth, measured.detectable, measured.chain_labels, strict=True)
-    for one, truth, seen, chain in of_records:
-        unseen = settings.undetected == "healthy" and not seen
-        scenario = one.without_fault() if unseen else one
-        labels = dict.fromkeys((label.name for label in LABELS), 0) | labels_of(scenario.rig.background) | chain
-        for drawn in scenario.specimen.damage.values():
-            labels |= {name: value for name, value in drawn.items() if name in labels}
-        rows.append(_drawn(scenario) | (truth.without_fault() if unseen else truth)._asdict() | labels)
-    columns: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
-    columns |= {
-        "clipped": measured.clipped,
-        "snr": measured.snr,
-        "fault_snr": measured.fault_snr,
-        "fault_share": measured.fault_share,
-        "detectable": measured.detectable,
-        "oversampling": response.oversampling,
-        "step_phase": response.step_phase,
-        "step_error": np.full(len(rows), np.nan) if step_error is None else step_error,
-        DRAWS: scenario_texts(scenarios),
+    settings = common_settings(measured.scenarios)
+    scenarios = [
+        scenario.without_fault() if settings.undetected == "healthy" and not detectable else scenario
+        for scenario, detectable in zip(measured.scenarios, measured.detectable, strict=True)
+    ]
+    truths = [known._replace(scenario=one) for known, one in zip(response.truth, scenarios, strict=True)]
+    lives = [life for one in scenarios if (life := one.record.life) is not None]
+    life_labels = LIFE if lives else ()
+    of_mechanisms = [
+        mechanisms.label_values(one.specimen.damage, one.rig.background, chain)
+        for one, chain in zip(scenarios, measured.chain_labels, strict=True)
+    ]
+    columns: dict[str, ArrayLike] = {
+        DRAWS: scenario_texts(measured.scenarios),
+        "step_error": np.full(len(scenarios), np.nan) if step_error is None else step_error,
     }
-    lives = [scenario.record.life for scenario in scenarios]
-    if any(lives):
-        columns |= {
-            one.name: [np.nan if (value := getattr(life, one.name)) is None else value for life in lives]
-            for one in LIFE
-        }
-        columns["bearing"] = [f"{one.rig.bearing.designation} #{one.specimen.number}" for one in scenarios]
+    for labels, records in ((variables.LABELS, scenarios), (truth.LABELS, truths), (life_labels, lives)):
+        columns |= {label.name: label.column(records) for label in labels}
+    for labels, arrays in ((steps.LABELS, response), (levels.LABELS, measured)):
+        columns |= {label.name: getattr(arrays, label.name) for label in labels}
+    columns |= {label.name: [values[label.name] for values in of_mechanisms] for label in mechanisms.LABELS}
     return make_dataset(
         measured.signal,
         settings.sample_rate,
         settings.channels,
         columns,
-        extra=SIMULATED + LABELS + (LIFE if any(lives) else ()),
+        extra=LABELS + life_labels,
         counts_per_unit=measured.counts_per_unit,
         attributes={
             "title": f"Records of recipe {settings.recipe}",
@@ -61,32 +63,3 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
             "source": "simulation: Hertz contact shaft-bearing model, classical Runge-Kutta",
         },
     )
-
-
-def _drawn(scenario: Scenario) -> dict[str, Any]:
-    """Variables of one record that are copied from its scenario."""
-    settings, rig, specimen, record = scenario.settings, scenario.rig, scenario.specimen, scenario.record
-    conditions = record.conditions
-    return {
-        "sample_rate": settings.sample_rate,
-        "axial_load": conditions.axial_load,
-        "temperature": np.nan if rig.lubricant is None else conditions.temperature,
-        **orders(rig.bearing)._asdict(),
-        "bearing": rig.bearing.designation,
-        "fault": FAULTS.index(specimen.fault),
-        "parts": "+".join(specimen.damaged_parts),
-        "n_spalls": len(specimen.spalls),
-        "rig": rig.number,
-        "specimen": specimen.number,
-        "recording": record.number,
-        "pair": record.pair,
-        "rung": record.rung,
-        "split": SPLITS.index(specimen.split),
-        "source": f"{settings.recipe}/{record.number}",
-        "identity": identity(settings.corpus, rig.number, specimen.number, record.number, record.pair),
-        "diametral_clearance": specimen.properties["diametral_clearance"],
-        "gain": rig.gain if record.snr is None else np.nan,
-        "background_rms": rig.background_rms if record.snr is None else np.nan,
-        "fault_tries": specimen.fault_try,
-        "level_tries": record.level_try,
-    }

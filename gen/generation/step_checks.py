@@ -19,7 +19,8 @@ CHECKED_PARTS = 8  # every 8th part integrates a batch of its records again: 1 t
 def step_errors(recipe: Recipe, numbers: range, made: MadeRecords) -> NDArray[np.float64]:
     """Relative rms change between some records of a part and the same at half the step, NaN for the other records, shape (record,)."""
     response, axis = made.response, timeline(settings_of(recipe))
-    usable = {place: one for place, one in enumerate(response.inputs) if one and place not in response.failures}
+    inputs = {place: truth.given for place, truth in enumerate(response.truth)}
+    usable = {place: one for place, one in inputs.items() if one and place not in response.failures}
     groups = {place: group_of(given, int(response.oversampling[place])) for place, given in usable.items()}
     faults = [scenario.specimen.fault for scenario in made.measured.scenarios]
     halved = {

@@ -18,7 +18,6 @@ from gen.corpus import (
     RECIPE_TEXT,
     SCHEMA,
     SIGNAL,
-    SIMULATED,
     Variable,
     check_new,
     make_dataset,
@@ -28,8 +27,8 @@ from gen.corpus.joining import new_numbers
 from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
 from gen.generation.corpus import facts_of
 from gen.generation.facts import part_attributes, part_file
+from gen.generation.labels import LABELS
 from gen.measurement.measure import LARGEST_COUNT
-from gen.mechanisms.labels import LABELS
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
 from gen.scenarios import Settings, read_scenario
 from gen.support.errors import CorpusError
@@ -135,9 +134,7 @@ def _stored(
     full_scale: float | None,
 ) -> xr.Dataset:
     """The records in the layout of the corpus (undecoded)."""
-    known = {
-        variable.name: variable for variable in SCHEMA + SIMULATED + LABELS + LIFE if variable.name in rows.variables
-    }
+    known = {variable.name: variable for variable in SCHEMA + LABELS + LIFE if variable.name in rows.variables}
     derived = {SIGNAL, "channel", "elapsed_time", *(f"{name}_name" for name in NAMED)}
     further = {}
     for name in sorted(map(str, set(rows.variables) - known.keys() - derived)):
@@ -159,11 +156,11 @@ def _stored(
         float(rows["sample_rate"][0]),
         tuple(map(str, rows["channel"].values)),
         {name: columns[name] for name in variables},
-        extra=tuple(variable for name, variable in variables.items() if variable not in SCHEMA),
+        extra=tuple(variables.values()),
         counts_per_unit=None if full_scale is None else LARGEST_COUNT / full_scale,
         attributes={"title": "Vibration records"}
         | {key: rows.attrs[key] for key in ("title", "history", "source") if key in rows.attrs},
     )
-    for problem in schema_problems(stored, SIMULATED + LABELS + LIFE):
+    for problem in schema_problems(stored, LABELS + LIFE):
         raise CorpusError(problem)
     return stored

@@ -5,11 +5,24 @@ The products are exact: parts that are correlated over a short record neither ra
 
 import math
 
+from gen.corpus.schema import Variable
+from gen.corpus.simulated import with_values
 from gen.measurement.mixing import Products
 from gen.physics.elementary import decibels
 from gen.scenarios import Gains, Scenario
 
 SILENCE = 1e-30  # m s-2; a smaller rms counts as no signal
+
+# 20 log10 of the ratio of two rms; CF has no unit for levels
+_SNR = "bearing over background or rounding of the converter in decibels re 1, NaN without either or in silence"
+_FAULT_SNR = "what the fault adds over all else of the record in decibels re 1, NaN without a fault or if not known"
+LABELS = (
+    Variable("snr", "f8", "1", "latent", _SNR),
+    Variable("fault_snr", "f8", "1", "latent", _FAULT_SNR),
+    Variable("fault_share", "f8", "1", "latent", "power of what the fault adds over its sum with that of all else, NaN if not known"),
+    *with_values(detectable=None, clipped=None),
+)  # fmt: skip
+"""Variables of the corpus, arrays of a :class:`gen.measurement.measure.Measured`."""
 
 
 def gains_of(scenario: Scenario, products: Products) -> Gains:

@@ -13,6 +13,7 @@ records       records of a specimen, with rungs of severity
 draw          draw rigs and specimens, and with them all records
 settings      values that a recipe fixes for all of its records
 checks        check a scenario that was changed by hand, or comes from a file
+variables     variables of a corpus that a scenario tells
 stored        write scenarios as the JSON texts that a corpus stores, and read them
 ============= =================================================================
 """

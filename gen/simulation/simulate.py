@@ -17,7 +17,7 @@ from gen.simulation.inputs import kernel_inputs, without_fault
 from gen.simulation.motion import Motion, draw_motion
 from gen.simulation.steps import failure, step_phase, steps_per_sample
 from gen.simulation.timeline import timeline
-from gen.simulation.truth import Truth, lines_of_faults, truth_of, with_loaded_hits
+from gen.simulation.truth import Truth, lines_of_faults, truth_of
 
 FloatArray = NDArray[np.float64]
 
@@ -45,8 +45,6 @@ class Response:
     """Fastest angular frequency at the largest contact stiffness of a record, times the step, shape (record,) [rad]."""
     failures: dict[int, str]
     """A sentence for each record that is not possible or diverged, by its place among the scenarios."""
-    inputs: list[KernelInput | None]
-    """Kernel input of each record, None for a record that is not possible."""
     motions: list[Motion]
     """Course of shaft, cage and balls of each record."""
     truth: list[Truth]
@@ -161,16 +159,13 @@ def response_of(runs: Sequence[Run]) -> Response:
         if sentence:
             failures[place] = sentence
         acceleration[place] = np.nan if sentence else acceleration_of(run.own)
-    motions, inputs = [run.motion for run in runs], [run.given for run in runs]
-    truth = [truth_of(motion, axis, given) for motion, given in zip(motions, inputs, strict=True)]
-    if settings.twins:
-        truth = with_loaded_hits(truth, inputs, axis)
+    truth = [truth_of(run.motion, axis, run.given) for run in runs]
     twins = [
-        Twin(place, acceleration_of(run.twin), lines_of_faults(run.scenario, truth[place].orders))
+        Twin(place, acceleration_of(run.twin), lines_of_faults(truth[place]))
         for place, run in enumerate(runs)
         if place not in failures and run.twin is not None
     ]
-    return Response(acceleration, oversampling, phases, failures, inputs, motions, truth, twins)
+    return Response(acceleration, oversampling, phases, failures, [run.motion for run in runs], truth, twins)
 
 
 def _step_of(run: Run, fs: float) -> tuple[int, float, str | None]:

@@ -5,6 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.corpus.schema import Variable
+from gen.corpus.simulated import with_values
 from gen.physics.inputs import KernelInput
 from gen.physics.rotor import highest_angular_frequency, highest_damping_rate, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING
@@ -20,6 +22,12 @@ FINE_STEP, FOLLOWED_STEP, COARSEST_STEP = math.pi / ENOUGH, 0.75, 1.0
 PASSAGE_STEPS = 4  # in which a ball rolls over the narrowest spall at least; with fewer the edges of the spall fall between two steps
 _FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
 LARGEST_TURN = 0.7  # of the shaft per sample [rad]: its rate is constant within a sample
+
+LABELS = (
+    *with_values(oversampling=None),
+    Variable("step_phase", "f8", "rad", "provenance", "bound of the fastest angular frequency of the record times the step"),
+)  # fmt: skip
+"""Variables of the corpus, arrays of a :class:`gen.simulation.simulate.Response`."""
 
 
 def steps_per_sample(given: KernelInput, record: Operation, settings: Settings) -> int:

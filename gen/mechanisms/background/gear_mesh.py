@@ -28,7 +28,8 @@ class GearMesh(LockedSource):
 
     place, of_rig, of_record = "gear_mesh", Purpose.GEAR, Purpose.GEAR_PHASE
     labels = (
-        Variable("gear_mesh", "i4", "1", "latent", "teeth of the gear on the shaft, the order of its mesh line; 0 without a gear"),
+        Variable("gear_mesh", "i4", "1", "latent", "teeth of the gear on the shaft, the order of its mesh line; 0 without a gear",
+            lambda drawn: drawn["teeth"]),
     )  # fmt: skip
 
     probability: Probability
@@ -63,11 +64,6 @@ class GearMesh(LockedSource):
             "high_point": draws.angle(),
             "lead_point": draws.angle(),
         }
-
-    @staticmethod
-    def found(drawn: Drawn) -> dict[str, float]:
-        """Teeth of the gear."""
-        return {"gear_mesh": drawn["teeth"]}
 
     @staticmethod
     def vibrations(drawn: Drawn, angles: FloatArray, fs: float, rng: np.random.Generator) -> list[FloatArray]:  # noqa: ARG004

@@ -16,7 +16,7 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Drawn, Draws, Probability, Purpose, within
-from gen.mechanisms.background.machine_conditions import code_of
+from gen.mechanisms.background.machine_conditions import label_of
 from gen.mechanisms.background.source import FloatArray, LockedSource
 from gen.support.units import STANDARD_GRAVITY, decibel_to_ratio
 
@@ -26,10 +26,10 @@ class Looseness(LockedSource):
 
     place, of_rig, of_record = "looseness", Purpose.LOOSENESS, Purpose.LOOSENESS
     labels = (
-        Variable(
-            "looseness", "f8", "1", "latent", "force that lifts a loose machine over its weight, 0 on a firm support"
-        ),
-    )
+        Variable("looseness", "f8", "1", "latent", "force that lifts a loose machine over its weight, 0 on a firm support",
+            lambda drawn: drawn["lift"]),
+        label_of(lambda _: "looseness"),  # whatever else the machine has
+    )  # fmt: skip
 
     probability: Probability
     """Share of the rigs that stand loosely."""
@@ -47,11 +47,6 @@ class Looseness(LockedSource):
         """Ratio, resonance [Hz], damping ratio, level, and the angle at which the shaft lifts most [rad]."""
         drawn = draws.section(self)
         return drawn | {"level": decibel_to_ratio(drawn["level"]), "phase": draws.angle()}
-
-    @staticmethod
-    def found(drawn: Drawn) -> dict[str, float]:
-        """Ratio of the forces; the machine is loose, whatever else it has."""
-        return {"looseness": drawn["lift"], "machine_condition": code_of("looseness")}
 
     @staticmethod
     def vibrations(drawn: Drawn, angles: FloatArray, fs: float, rng: np.random.Generator) -> list[FloatArray]:  # noqa: ARG004

@@ -8,7 +8,7 @@ A burst is noise times ``exp(k (cos(n angle + start) - 1))``, a bell of the shaf
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Literal, get_args
 
 import numpy as np
@@ -25,9 +25,11 @@ MACHINE_CONDITIONS: Mapping[int, str] = {**dict(enumerate(("sound", *get_args(Ma
 """Classes of ``machine_condition``."""
 
 
-def code_of(kind: str) -> int:
-    """Code of a condition in ``machine_condition``."""
-    return 1 + get_args(MachineKind).index(kind)
+def label_of(kind: Callable[[Drawn], str]) -> Variable:
+    """The label ``machine_condition`` of a source, from the kind of condition that its drawn values stand for."""
+    meaning = "condition of the machine, whatever that of its bearing"
+    code = lambda drawn: 1 + get_args(MachineKind).index(kind(drawn))  # noqa: E731
+    return Variable("machine_condition", "i1", "1", "label", meaning, code, MACHINE_CONDITIONS)
 
 
 _PERIOD = 2**15  # samples of a table of one period: the 400th line is in it to 1e-3 of its amplitude
@@ -67,9 +69,7 @@ class MachineConditions(LockedSource):
     """Conditions of the machine other than those of its bearings, drawn per rig and the same for all classes of bearings."""
 
     place, of_rig, of_record = "machine_conditions", Purpose.MACHINE_CONDITION, Purpose.BURSTS
-    labels = (
-        Variable("machine_condition", "i1", "1", "label", "condition of the machine, whatever that of its bearing", MACHINE_CONDITIONS),
-    )  # fmt: skip
+    labels = (label_of(lambda drawn: drawn["kind"]),)
 
     probability: Probability
     """Share of the rigs whose machine has one of the conditions."""
@@ -90,11 +90,6 @@ class MachineConditions(LockedSource):
             bursts = draws.section(entry.bursts)
             bursts |= {"level": decibel_to_ratio(bursts["level"]), "start": draws.angle()}
         return {"kind": entry.kind, "order": drawn["order"], "lines": lines, "bursts": bursts}
-
-    @staticmethod
-    def found(drawn: Drawn) -> dict[str, float]:
-        """Code of the condition."""
-        return {"machine_condition": code_of(drawn["kind"])}
 
     @staticmethod
     def vibrations(drawn: Drawn, angles: FloatArray, fs: float, rng: np.random.Generator) -> list[FloatArray]:  # noqa: ARG004

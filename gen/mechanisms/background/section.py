@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gen.corpus.schema import Variable
 from gen.drawing import Drawn, Draws, Purpose, Section
 from gen.mechanisms.background.gear_mesh import GearMesh
 from gen.mechanisms.background.harmonics import Harmonics
@@ -28,10 +27,6 @@ SOURCES: tuple[type[BackgroundSource], ...] = (Harmonics, Tones, Impulses, Knock
 """Sources of the stream of a rig, in the order in which they are drawn."""
 LOCKED: tuple[type[LockedSource], ...] = (GearMesh, MachineConditions, Looseness)
 """Sources that follow from the angle of the shaft, in the order in which they are added."""
-LABELS: tuple[Variable, ...] = tuple(label for source in LOCKED for label in source.labels)
-"""Variables of the corpus that tell which sources a machine has, 0 for none."""
-
-
 if TYPE_CHECKING:
 
     class BackgroundSection(Noise):
@@ -78,5 +73,5 @@ def locked_of(background: Drawn) -> Iterator[tuple[type[LockedSource], Drawn]]:
 
 
 def labels_of(background: Drawn) -> dict[str, float]:
-    """Values of the labels of the sources that a drawn background has."""
-    return {name: value for source, drawn in locked_of(background) for name, value in source.found(drawn).items()}
+    """Values of the labels of the sources that a drawn background has; a later source may change a label of an earlier one."""
+    return {label.name: label.column([drawn])[0] for source, drawn in locked_of(background) for label in source.labels}

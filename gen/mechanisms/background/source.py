@@ -1,6 +1,5 @@
 """What a source of vibration in the machine is: a section of a recipe that draws itself for a rig."""
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -29,11 +28,6 @@ class LockedSource(BackgroundSource):
 
     of_rig: ClassVar[Purpose]
     of_record: ClassVar[Purpose]
-
-    @staticmethod
-    def found(drawn: Drawn) -> Mapping[str, float]:
-        """Values of its labels."""
-        raise NotImplementedError
 
     @staticmethod
     def vibrations(drawn: Drawn, angles: FloatArray, fs: float, rng: np.random.Generator) -> list[FloatArray]:

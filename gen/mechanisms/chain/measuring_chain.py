@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gen.corpus.schema import Variable
 from gen.drawing import Drawn, Draws, Section
 from gen.mechanisms.chain.drift import Drift
 from gen.mechanisms.chain.dropped_samples import DroppedSamples
@@ -34,10 +33,6 @@ CHAIN: tuple[type[SensorFault], ...] = (LooseMount, Drift, MainsHum, EmiBursts, 
 
 class _SensorFaults(Section):
     """Faults of the measuring chain, each with variables in the corpus; a fault that is left out does not occur."""
-
-
-LABELS: tuple[Variable, ...] = tuple(label for fault in CHAIN for label in fault.labels)
-"""Variables of the corpus that tell which faults a record has, 0 for none."""
 
 
 if TYPE_CHECKING:

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from gen.corpus import FAULTS, SPLITS
-from gen.generation.labels import part_dataset
+from gen.corpus import FAULTS, LIFE, SCHEMA, SIMULATED, SPLITS
+from gen.generation.labels import LABELS, part_dataset
 from gen.measurement.measure import measure
-from gen.mechanisms.chain.measuring_chain import LABELS
+from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.recipe import corpus_identity
 from gen.scenarios import draw_scenarios, read_scenario, settings_of
 from gen.simulation.timeline import timeline
@@ -174,6 +174,12 @@ def test_a_gear_is_labelled_by_its_teeth(labels_with):
     assert labels_with({})["gear_mesh"].values.tolist() == [0] * 24
 
 
+def test_two_stages_or_mechanisms_with_one_label_mean_the_same_by_it():
+    meanings = {}
+    for label in SCHEMA + SIMULATED + LIFE + LABELS:
+        assert meanings.setdefault(label.name, label)._replace(value=None) == label._replace(value=None)
+
+
 def test_every_label_of_the_measuring_chain_is_a_variable_and_0_without_faults(labels_with):
     found = labels_with({})
-    assert all((found[label.name].values == 0).all() for label in LABELS)
+    assert all((found[label.name].values == 0).all() for fault in CHAIN for label in fault.labels)

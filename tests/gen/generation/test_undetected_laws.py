@@ -182,8 +182,8 @@ def test_a_fault_that_adds_exactly_nothing_keeps_its_label_where_the_recipe_says
     assert made.measured.fault_snr.tolist() == [-np.inf, -np.inf]
     assert made.measured.fault_share.tolist() == [0.0, 0.0]
     assert made.measured.detectable.tolist() == [0, 0]
-    assert [truth.loaded_hits for truth in made.response.truth] == [0, 0]
     dataset = labelled(made)
+    assert dataset["loaded_hits"].values.tolist() == [0, 0]
     assert dataset["fault"].values.tolist() == [2, 2]
     assert dataset["detectable"].values.tolist() == [0, 0]
     assert (dataset["width"] > 0).all()

@@ -41,18 +41,18 @@ def test_clearance_narrows_the_load_zone(recipe_with):
 
 def test_an_outer_spall_is_hit_at_the_ball_pass_frequency_in_the_load_zone_and_never_outside(recipe_with):
     inside, outside = ({"kind": "outer", "width_mm": 0.5, "angle_deg": angle} for angle in (0, 150))
-    recipe, scenario, _ = first_of(recipe_with, inside)
-    found = truth(scenario, recipe)
+    _, scenario, _ = first_of(recipe_with, inside)
+    found = truth(scenario)
     assert found.loaded_hits == pytest.approx(found.true_bpfo * found.true_shaft_rate * 0.1, abs=0.51)
-    recipe, scenario, _ = first_of(recipe_with, outside)
-    assert truth(scenario, recipe).loaded_hits == 0
+    _, scenario, _ = first_of(recipe_with, outside)
+    assert truth(scenario).loaded_hits == 0
     assert felt_places([scenario]) == [False]
 
 
 def test_an_inner_spall_is_hit_during_the_part_of_a_turn_that_the_load_zone_takes(recipe_with):
     fault = {"kind": "inner", "width_mm": 0.5}
-    recipe, scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
-    found, zone = truth(scenario, recipe), load_zone(given)
+    _, scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
+    found, zone = truth(scenario), load_zone(given)
     every = found.true_bpfi * found.true_shaft_rate * 2.0
     assert found.loaded_hits == pytest.approx(every * zone.half / math.pi, abs=1)
     assert 0 < zone.half < math.pi
@@ -60,7 +60,7 @@ def test_an_inner_spall_is_hit_during_the_part_of_a_turn_that_the_load_zone_take
 
 def test_an_outer_spall_is_hit_if_its_nearer_edge_lies_in_the_load_zone(recipe_with):
     _, scenario, given = first_of(recipe_with, {"kind": "outer", "width_mm": 4})
-    orders, zone, spall = truth(scenario, recipe_with()).orders, load_zone(given), given.spalls[0]
+    orders, zone, spall = truth(scenario).orders, load_zone(given), given.spalls[0]
     reach = 0.002 / given.bearing.outer_radius
     for share, hit in ((0.9, True), (1.1, False)):
         for side in (-1, 1):
@@ -71,8 +71,8 @@ def test_an_outer_spall_is_hit_if_its_nearer_edge_lies_in_the_load_zone(recipe_w
 
 def test_a_spall_of_a_ball_is_hit_twice_in_each_turn_of_the_ball(recipe_with):
     fault = {"kind": "ball", "width_mm": 0.5}
-    recipe, scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
-    found, zone = truth(scenario, recipe), load_zone(given)
+    _, scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
+    found, zone = truth(scenario), load_zone(given)
     assert found.loaded_hits == pytest.approx(
         2 * found.true_bsf * found.true_shaft_rate * 2.0 * zone.half / math.pi, abs=1
     )
@@ -81,7 +81,7 @@ def test_a_spall_of_a_ball_is_hit_twice_in_each_turn_of_the_ball(recipe_with):
 def test_two_spalls_are_hit_twice_as_often(recipe_with):
     fault = {"kind": "outer", "width_mm": 0.5, "n_spalls": 2}
     _, scenario, given = first_of(recipe_with, fault)
-    orders = truth(scenario, recipe_with()).orders
+    orders = truth(scenario).orders
     one = loaded_hits(given._replace(spalls=given.spalls[:1]), orders, 100)
     assert loaded_hits(given, orders, 100) == pytest.approx(2 * one, abs=1)
 

@@ -159,7 +159,7 @@ def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, profi
     recipe = recipe_with(changes | {"operation.speed_profile": profile, "operation.slip_walk": walk})
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
     for scenario in draw_scenarios(recipe, 0, 3):
-        found = truth(scenario, recipe)
+        found = truth(scenario)
         angles = turned(input_of(scenario), 1 / FS, start + n)[0]
         shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
         assert shaft * FS / n == pytest.approx(found.true_shaft_rate, rel=2e-5)

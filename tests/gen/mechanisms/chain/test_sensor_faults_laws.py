@@ -15,7 +15,7 @@ from gen.mechanisms.chain.emi_bursts import EmiBursts
 from gen.mechanisms.chain.gain_steps import GainSteps
 from gen.mechanisms.chain.loose_mount import LooseMount, through_mount
 from gen.mechanisms.chain.mains_hum import MainsHum
-from gen.mechanisms.chain.measuring_chain import CHAIN, LABELS, disturb
+from gen.mechanisms.chain.measuring_chain import CHAIN, disturb
 from gen.mechanisms.chain.saturation import Saturation
 from gen.physics.rattle import rattling
 from gen.scenarios import Purpose, draw_scenarios
@@ -251,7 +251,6 @@ def test_the_streams_of_no_two_faults_are_the_same():
     for kind in ("rig_stream", "record_stream", "noise_stream"):
         numbers = [number for fault in CHAIN if (number := getattr(fault, kind)) is not None]
         assert sorted(numbers) == list(range(len(numbers)))
-    assert len({label.name for label in LABELS}) == len(LABELS)
 
 
 @pytest.mark.parametrize("names", [("mains_hum", "drift"), ("drift", "emi_bursts"), ("emi_bursts", "mains_hum")])
