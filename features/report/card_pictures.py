@@ -95,7 +95,7 @@ def _write_pictures(folder: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]
         CardPicture(
             name="content.png",
             title="Records by rig, and distributions",
-            caption="Records of each class, stacked; sizes of faults are of the records with a spall.",
+            caption="Records of each class, stacked; sizes of faults are of the records that have them.",
         )
     )
     fault, rig = (corpus[name].values for name in ("fault", "rig"))

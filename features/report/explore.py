@@ -51,6 +51,7 @@ from gen.corpus import (
     open_corpus,
     write_text_durably,
 )
+from gen.corpus.choice import per_record
 from gen.corpus.facts import extent
 from gen.corpus.fault_classes import COMBS, FUNDAMENTALS, LOOKS, SHAFT
 from gen.support.errors import CorpusError
@@ -81,7 +82,6 @@ FIELDS: Mapping[str, tuple[str, int]] = {
 """Arrays of a record by name, with their type and number of values. In a block, those of all its records follow each other."""
 SOUND_RATE, SOUND_S = 8000, 0.5  # Hz, s
 LONGEST_TEXT = 200
-AXES = ("shaft_rate", "load", "record"), ("width", "depth", "load", "record")  # at first: the first that varies
 READ = ("fault", "sample_rate", "shaft_rate", "first_shaft_rate", "last_shaft_rate", *Orders._fields)
 
 
@@ -245,13 +245,13 @@ def _sound(shown: DrawnRecord) -> np.ndarray:
 def _labels(corpus: xr.Dataset, places: np.ndarray) -> Iterator[ExplorerColumn]:
     """Number and variables of the chosen records, without scenario and identity."""
     yield ExplorerColumn("record", "", "number of the record in the corpus", "provenance", places.tolist())
-    for name, variable in corpus.variables.items():
-        role = variable.attrs.get("role")
-        if variable.dims != ("record",) or role not in ROLES or name in (DRAWS, IDENTITY):
+    for name in per_record(corpus):
+        variable = corpus[name].variable
+        if name in (DRAWS, IDENTITY) or (role := variable.attrs["role"]) not in ROLES:
             continue
         values, words = variable[places].values.tolist(), class_names(variable.attrs)
         told = [words.get(value, str(value)) for value in values] if words else _plain(values)
-        yield ExplorerColumn(str(name), _unit(variable.attrs), _text(variable.attrs.get("long_name", "")), role, told)
+        yield ExplorerColumn(name, _unit(variable.attrs), _text(variable.attrs.get("long_name", "")), role, told)
 
 
 def _features(
@@ -300,9 +300,13 @@ def _text(value: object) -> str:
 
 def _axes(known: Sequence[ExplorerColumn]) -> list[str]:
     """Names of the quantities on the axes at first: two combs of fault lines, or an operating condition and a severity."""
-    varying = {one.name for one in known if len(set(one.values)) > 1} | {"record"}
-    combs = [name for name in COMBS.values() if name in varying]
-    return combs[:2] if len(combs) > 1 else [next(n for n in axis if n in varying) for axis in AXES]
+    varying = [one for one in known if len(set(one.values)) > 1]
+    combs = [name for name in COMBS.values() if name in {one.name for one in varying}]
+    operating, labels = (
+        [one.name for one in varying if one.role == role and one.unit] for role in ("operating", "label")
+    )
+    across, *others = [*operating, "record"]
+    return combs[:2] if len(combs) > 1 else [across, [*labels, *others, "record"][0]]
 
 
 def _parts(

@@ -21,7 +21,6 @@ from features.report.pictures import picture
 from features.report.summaries import draw_content, draw_scores
 from features.report.templates import template
 from gen.corpus import (
-    FAULTS,
     SPLITS,
     UNITS,
     Manifest,
@@ -33,19 +32,14 @@ from gen.corpus import (
     unit_counts,
     write_text_durably,
 )
+from gen.corpus.choice import per_record
 from gen.corpus.fault_classes import HEALTHY, LOOKS
+from gen.corpus.schema import stored_unit
+from gen.support.units import READABLE, shown_unit
 
 LONGEST_TEXT = 300
 BARS, LEAST_IMPORTANCE = 15, 5e-4  # of the drawn quantities
-QUANTITIES = (
-    ("shaft_rate", "shaft speed [rpm]", 60.0),
-    ("load", "load [N]", 1.0),
-    ("width", "width of the fault [mm]", 1e3),
-    ("depth", "depth of the fault [µm]", 1e6),
-    ("angle", "angle of the fault [°]", 180 / np.pi),
-    ("snr", "signal over background [dB]", 1.0),
-    ("fault_snr", "fault over all else [dB]", 1.0),
-)
+LONGEST_NAME = 40
 
 
 def write_report(corpus: Path | str, results: Results, output: Path | str) -> Path:
@@ -102,16 +96,20 @@ def _content(corpus: xr.Dataset) -> dict[str, Any]:
 
 
 def quantities(corpus: xr.Dataset) -> dict[str, np.ndarray]:
-    """Quantities whose distributions are drawn, by label: speed, load, severities and levels."""
-    return {label: _of_faults(name, corpus) * factor for name, label, factor in QUANTITIES if name in corpus}
+    """Quantities whose distributions are drawn, by name and unit: operating conditions and labels with a unit, and levels.
 
-
-def _of_faults(name: str, corpus: xr.Dataset) -> np.ndarray:
-    """Values of a variable, shape (record,); if it describes a spall, NaN for records without one."""
-    values = corpus[name].values.astype(float)
-    describes_spall = corpus[name].attrs.get("role") == "label"
-    spalled = (corpus["fault"].values != FAULTS.index(HEALTHY)) & (corpus["width"].values != 0)
-    return np.where(spalled | (not describes_spall), values, np.nan)
+    A label is 0 in a record without what it describes; such a record is left out of its distribution, NaN in shape (record,).
+    """
+    drawn = dict[str, np.ndarray]()
+    for name in filter(str.isidentifier, per_record(corpus)):
+        role, unit = corpus[name].attrs["role"], stored_unit(corpus[name].attrs)
+        measured = unit in READABLE and role in ("operating", "label")
+        if corpus[name].dtype.kind == "f" and (measured or unit == "dB"):
+            shown, factor = shown_unit(name, unit)
+            values = corpus[name].values / factor
+            named = f"{name[:LONGEST_NAME].replace('_', ' ')} [{shown}]"
+            drawn[named] = np.where(values == 0, np.nan, values) if role == "label" else values
+    return drawn
 
 
 def _scores(results: Results) -> dict[str, Any]:

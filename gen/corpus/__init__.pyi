@@ -4,6 +4,7 @@ from .blocks import (
     read_channel as read_channel,
     read_columns as read_columns,
     read_texts as read_texts,
+    read_units as read_units,
     stored_blocks as stored_blocks,
     stored_columns as stored_columns,
 )

@@ -10,10 +10,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.layout import is_bare_dimension, is_text
+from gen.corpus.layout import is_bare_dimension, is_text, plain_attributes
 from gen.corpus.open_files import close, open_source, source_of
 from gen.corpus.part import inflate
-from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, operating_problems
+from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, operating_problems, stored_unit
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
@@ -105,6 +105,19 @@ def read_columns(
         columns = {name: _numbers(file.dataset(name), name, count, range(count)) for name in wanted}
     close([source])
     return columns
+
+
+def read_units(path: Path, role: str) -> dict[str, str]:
+    """Stored unit of each variable of a file that has a role and is in floating point, by name."""
+    source, units = source_of(path), dict[str, str]()
+    with open_source(source) as file:
+        for name in map(bytes.decode, file.handle.id):
+            stored = file.dataset(name)
+            # the role first: all attributes of all variables take twice as long
+            if stored.dtype.kind == "f" and np.asarray(stored.attrs.get("role", "")).astype(str) == role:
+                units[name] = stored_unit(plain_attributes(stored, name))
+    close([source])
+    return units
 
 
 def read_texts(path: Path, name: str, count: int) -> list[str]:

@@ -145,6 +145,16 @@ def variable_attributes(variable: Variable) -> dict[str, Any]:
     return attributes
 
 
+def stored_unit(attributes: Mapping[Any, Any]) -> str:
+    """Stored unit of a variable; that of a level in decibels is stored as 1, because CF has no unit for it.
+
+    >>> stored_unit({"units": "m"}), stored_unit({"units": "1", "long_name": "bearing over background in decibels re 1"})
+    ('m', 'dB')
+    """
+    in_decibels = "decibels" in str(attributes.get("long_name"))
+    return "dB" if in_decibels else str(attributes.get("units", "1"))
+
+
 def class_names(attributes: Mapping[Any, Any]) -> dict[int, str]:
     """Names of the values of a class by their codes, from the attributes of its variable; empty for other variables.
 

@@ -3,7 +3,7 @@
 They come from the manifest and from the per-record variables; no signal is read.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ from gen.corpus import (
     read_columns,
     read_manifest,
     read_texts,
+    read_units,
     split_counts,
     step_complaint,
     text_counts,
@@ -34,7 +35,7 @@ from gen.corpus import (
 from gen.corpus.facts import OF_FAULTS
 from gen.corpus.schema import operating_problems
 from gen.support.errors import CorpusError
-from gen.support.units import range_text
+from gen.support.units import READABLE, range_text
 from raceway.console import show
 
 Columns = Mapping[str, NDArray[Any]]
@@ -48,11 +49,7 @@ _SHOWN = [
     "recording",
     "shaft_rate",
     "load",
-    "width",
-    "depth",
 ]
-# severities of a fault with their stored units; the last three are variables of simulated corpora
-_SEVERITIES = {"width": "m", "depth": "m", "wear": "m", "pitch_error": "rad", "knock": "N"}
 
 
 def describe(directory: Path, where: str | None = None) -> dict[str, Any]:
@@ -82,9 +79,9 @@ def describe(directory: Path, where: str | None = None) -> dict[str, Any]:
     return facts
 
 
-def _labels(files: Mapping[Path, int]) -> Columns:
+def _labels(files: Mapping[Path, int], severities: Iterable[str]) -> Columns:
     """Numbers that ``info`` shows; ``files`` are those that hold them, with their numbers of records."""
-    known = (*_SEVERITIES.keys() - {*_SHOWN}, *OF_FAULTS, "event", "clipped", "step_error", "oversampling")
+    known = (*severities, *OF_FAULTS, "event", "clipped", "step_error", "oversampling")
     parts = [read_columns(file, records, _SHOWN, known) for file, records in files.items()]
     labels = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     for problem in operating_problems(labels):
@@ -99,7 +96,9 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
     parts = {directory / "parts" / row.name: row.records for row in manifest.parts} or {directory: manifest.records}
     whole = manifest.complete and directory.is_dir()
     files = {directory / INDEX_NAME: manifest.records} if whole else parts
-    labels, first = _labels(files), next(iter(parts))
+    measured = read_units(next(iter(files)), "label").items()
+    sizes = {name: unit for name, unit in measured if unit in READABLE}
+    labels, first = _labels(files, sizes), next(iter(parts))
     _, (_, channels, samples) = file_facts(first)
     fs = float(labels["sample_rate"][0])
     bearings = np.array([name for file, records in files.items() for name in read_texts(file, "bearing", records)])
@@ -122,7 +121,8 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
         "recordings": units.recordings,
         "shaft_rate": _range(labels["shaft_rate"]),
         "load": _range(labels["load"]),
-        "severities": _severities(labels),
+        "severities": _severities(labels, sizes),
+        "units": sizes,
         "warnings": [*manifest.warnings, *filter(None, [step_complaint(labels)])],
         "clipped": clipped_records(labels),
         "faults": None if (counts := fault_counts(labels)) is None else counts._asdict(),
@@ -148,11 +148,11 @@ def _lives(labels: Columns) -> dict[str, int] | None:
     return text_counts(names[int(event)] for event in labels["event"][first])
 
 
-def _severities(labels: Columns) -> dict[str, dict[str, list[float]]]:
-    """Smallest and largest value of each severity that is known and not 0, by class, in SI units."""
+def _severities(labels: Columns, names: Iterable[str]) -> dict[str, dict[str, list[float]]]:
+    """Smallest and largest value of each label with a unit that is known and not 0, by class, in SI units."""
     ranges = {
         fault: {name: ends for name, values in columns.items() if (ends := _range(values[values != 0])) is not None}
-        for fault, columns in by_class(labels, [name for name in _SEVERITIES if name in labels]).items()
+        for fault, columns in by_class(labels, names).items()
     }
     return {fault: known for fault, known in ranges.items() if known}
 
@@ -193,7 +193,7 @@ def _shown_content(facts: dict[str, Any]) -> dict[str, str]:
         "records": f"{facts['chosen']:,}{of_all} of {facts['duration']:g} s at {facts['sample_rate']:g} Hz",
         "channels": ", ".join(facts["channels"]),
         "classes": show.counts(facts["classes"]),
-        **{f"  {fault}": _shown_severities(ranges) for fault, ranges in facts["severities"].items()},
+        **{f"  {fault}": _shown_severities(ranges, facts["units"]) for fault, ranges in facts["severities"].items()},
         **({} if facts["faults"] is None else {"faults": _shown_faults(facts["faults"])}),
         "splits": show.counts(facts["splits"]),
         "bearings": show.counts(facts["bearings"]),
@@ -212,9 +212,9 @@ def _shown_faults(counts: dict[str, int]) -> str:
     return f"{judged}; {counts['redrawn_specimens']:,} specimens and {counts['redrawn_levels']:,} levels drawn again"
 
 
-def _shown_severities(ranges: dict[str, list[float]]) -> str:
+def _shown_severities(ranges: dict[str, list[float]], units: dict[str, str]) -> str:
     return ", ".join(
-        f"{name.replace('_', ' ')} {_shown_range(name, ends, _SEVERITIES[name])}" for name, ends in ranges.items()
+        f"{name.replace('_', ' ')} {_shown_range(name, ends, units[name])}" for name, ends in ranges.items()
     )
 
 

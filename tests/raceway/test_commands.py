@@ -223,7 +223,12 @@ def test_info_shows_the_range_of_the_severities_of_each_class(run, told, tiny_co
     with open_corpus(tiny_corpus) as corpus:
         widths = corpus["width"].values[corpus["fault"].values == FAULTS.index("outer")]
     assert found["outer"]["width"] == [widths.min(), widths.max()]
-    assert set(found["outer"]) == {"width", "depth"}  # severities that are 0 in all records are left out
+    assert set(found["outer"]) == {
+        "width",
+        "depth",
+        "angle",
+        "largest_drop",
+    }  # those that are 0 in all records are left out
     shown = run("info", tiny_corpus).stdout
     for factor, unit in ((1e3, "mm ("), (1, "m), depth ")):
         assert f"{factor * widths.min():.3g} to {factor * widths.max():.3g} {unit}" in shown

@@ -21,7 +21,7 @@ from gen.corpus.facts import (
 )
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.manifest import RECIPE_NAME, Manifest
-from gen.corpus.schema import ROLES, SIGNAL, SPLITS
+from gen.corpus.schema import ROLES, SIGNAL, SPLITS, stored_unit
 from gen.corpus.signals import counts_in_words
 
 MOST_NAMES = 12  # bearings named on the card; the others are counted
@@ -85,18 +85,12 @@ def ranges(corpus: xr.Dataset) -> dict[str, Any]:
     classes = by_class({"fault": corpus["fault"], **chosen}, chosen)
     vary, same = dict[str, tuple[str, ...]](), dict[str, str]()
     for name, values in chosen.items():
-        found, unit = extent(values), _unit(corpus[name].variable)
+        found, unit = extent(values), stored_unit(corpus[name].attrs)
         if found is not None and found[0] < found[2]:
             vary[name] = unit, *(_cell(extent(columns[name])) for columns in classes.values())
         elif found is not None and found[2]:
             same[name] = f"{found[2]:.6g} {unit}".removesuffix(" 1")
     return {"classes": list(classes), "vary": vary, "same": same}
-
-
-def _unit(variable: xr.Variable) -> str:
-    """Unit in a table; that of a level in decibels is stored as 1, because CF has no unit for it."""
-    in_decibels = "decibels" in str(variable.attrs.get("long_name"))
-    return "dB" if in_decibels else str(variable.attrs.get("units", ""))
 
 
 def _cell(found: tuple[float, ...] | None) -> str:

@@ -15,7 +15,7 @@ from features.baselines import ESTIMATORS, Model, benchmark, learning_curve
 from features.baselines.detection import detection
 from features.report import examples
 from features.report.curves import draw_curve, draw_detection, draw_reliability, draw_roc
-from features.report.page import QUANTITIES, _findings, _of_faults, write_report
+from features.report.page import _findings, quantities, write_report
 from features.report.pictures import (
     DrawnRecord,
     draw_record,
@@ -178,19 +178,23 @@ def test_all_classes_are_counted_drawn_and_scored_and_text_of_a_corpus_is_escape
 
 def test_a_histogram_of_widths_omits_the_records_without_a_spall(tmp_path):
     with open_corpus(write_corpus(tmp_path / "corpus", specimens=2 * len(FAULTS), classes=len(FAULTS))) as corpus:
-        widths = _of_faults("width", corpus)
-        np.testing.assert_array_equal(np.isnan(widths), np.isin(corpus["fault"].values, [0, 4]))
-        np.testing.assert_array_equal(_of_faults("load", corpus), corpus["load"].values)
+        drawn = quantities(corpus)
+        np.testing.assert_array_equal(np.isnan(drawn["width [mm]"]), np.isin(corpus["fault"].values, [0, 4]))
+        np.testing.assert_array_equal(drawn["load [N]"], corpus["load"].values)
 
 
-def test_quantities_are_drawn_in_the_unit_of_their_label():
-    units = {"[rpm]": 60, "[N]": 1, "[dB]": 1, "[mm]": 1e3, "[µm]": 1e6, "[°]": 180 / np.pi}
-    for _, label, factor in QUANTITIES:
-        assert factor == pytest.approx(units[label.split()[-1]])
-    shown = {name: label.split()[-1] for name, label, _ in QUANTITIES}
-    assert (shown["shaft_rate"], shown["load"], shown["width"], shown["depth"], shown["angle"]) == (
-        "[rpm]", "[N]", "[mm]", "[µm]", "[°]"
-    )  # fmt: skip
+def test_quantities_are_drawn_in_the_unit_in_which_people_read_them(corpus):
+    with open_corpus(corpus) as opened:
+        records = opened.load()
+    told = {"units": "1", "role": "latent", "long_name": "fault over all else in decibels re 1"}
+    records["level"] = "record", np.arange(records.sizes["record"], dtype=float), told
+    records["$x$"] = "record", records["level"].values, {"units": "m", "role": "label", "long_name": "no name"}
+    drawn = quantities(records)
+    for name, unit, factor in (("shaft_rate", "rpm", 60), ("width", "mm", 1e3), ("angle", "deg", 180 / np.pi)):
+        values = np.where(records[name] == 0, np.nan, records[name]) if name != "shaft_rate" else records[name].values
+        np.testing.assert_allclose(drawn[f"{name.replace('_', ' ')} [{unit}]"], factor * values)
+    assert {"load [N]", "depth [um]", "level [dB]"} <= set(drawn)
+    assert not {"ftf [1]", "$x$ [um]"} & set(drawn)
 
 
 @pytest.mark.usefixtures("unpainted")
