@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from scipy.signal import butter, hilbert, sosfiltfilt
 
 from gen.generation.undetected import make_records
-from gen.measurement.judging import FALSE_ALARM, Parts, judges_of
+from gen.measurement.judging import FALSE_ALARM, judges_of
 from gen.measurement.measure import measure
+from gen.measurement.mixing import Parts, Products
 from gen.measurement.rig import rig_filters
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Gains, Purpose, Scenario, stream
@@ -98,10 +99,12 @@ def rule_alarms(case: Case, fs: float) -> bool:
     """Whether the rule takes the noise of another recording of a healthy machine for a fault."""
     angles = 2 * np.pi * case.shaft_rate / fs * np.arange(len(case.twin))
     twin, again = (signal[None].astype(np.float32) for signal in (case.twin, case.again))
-    (judge,) = judges_of(
-        [Parts(again - twin, np.zeros_like(twin), twin, case.impulses, case.orders, angles, steady=True)]
-    )
-    return judge.sees(Gains(1.0, 1.0))
+    signals, products = (
+        np.stack([twin, np.zeros_like(twin), again - twin]),
+        Products(*np.zeros(6)),
+    )  # not needed for lines
+    (sees,) = judges_of([Parts(signals, products, case.impulses, case.orders, angles, steady=True)])
+    return sees(Gains(1.0, 1.0))
 
 
 class Line(NamedTuple):

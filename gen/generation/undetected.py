@@ -6,7 +6,7 @@ operating conditions of a class do not depend on what can be seen in them. All r
 another part, so that every part finds the same fault.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gen.measurement.lives import with_ends
 from gen.measurement.measure import Measured, measure
 from gen.recipe import Recipe
-from gen.scenarios import Scenario, common_settings, draw_scenarios, settings_of, simulation_errors, with_level
+from gen.scenarios import Scenario, common_settings, draw_scenarios, further_ratios, settings_of, simulation_errors
 from gen.simulation.batches import integrate_all
 from gen.simulation.hits import felt_places
 from gen.simulation.simulate import Response, Run, open_integrations, response_of, runs_of
@@ -98,7 +98,7 @@ class Drawing:
 
     def judge(self, runs: list[Run]) -> tuple[MadeRecords, list[Run]]:
         """Records of integrated runs, and the runs of specimens whose fault is drawn again."""
-        made = made_of(runs, self._other_levels)
+        made = made_of(runs, self._further_ratios([run.scenario for run in runs]))
         if self.recipe.life is not None:
             measured, behind = with_ends(made.measured, self.recipe.life.end)
             made = replace(made, measured=measured)
@@ -123,10 +123,14 @@ class Drawing:
         }
         return made, runs_of(self._with_hits(self._redrawn(again)), known)
 
-    def _other_levels(self, scenario: Scenario) -> Iterator[Scenario]:
-        """The same record with its further levels, one after the other."""
-        tries = LEVEL_TRIES if self._redraws and self.recipe.level.kind == "snr" else 1
-        return (with_level(scenario, self.recipe, level_try) for level_try in range(1, tries))
+    def _further_ratios(self, scenarios: list[Scenario]) -> dict[int, list[float]]:
+        """Ratios of the further tries of the level of records with a fault, by their place."""
+        if not (self._redraws and self.recipe.level.kind == "snr"):
+            return {}
+        return {
+            place: further_ratios(self.recipe, scenarios[place], LEVEL_TRIES - 1)
+            for place in _largest_places(scenarios)
+        }
 
     def _redrawn(self, specimens: Iterable[int]) -> list[Scenario]:
         """Scenarios of all records of some specimens with their next fault."""
@@ -162,11 +166,10 @@ def made_from(scenarios: list[Scenario]) -> MadeRecords:
         return made_of(runs)
 
 
-def made_of(runs: list[Run], other_levels: Callable[[Scenario], Iterable[Scenario]] = lambda _: ()) -> MadeRecords:
-    """Records of scenarios that have been integrated; ``other_levels`` as for :func:`gen.measurement.measure.measure`."""
+def made_of(runs: list[Run], ratios: Mapping[int, Sequence[float]] = {}) -> MadeRecords:
+    """Records of scenarios that have been integrated; ``ratios`` as for :func:`gen.measurement.measure.measure`."""
     response, scenarios = response_of(runs), [run.scenario for run in runs]
-    options = {"motions": response.motions, "other_levels": other_levels}
-    measured = measure(response.acceleration, scenarios, response.twins, **options)
+    measured = measure(response.acceleration, scenarios, response.twins, motions=response.motions, ratios=ratios)
     return MadeRecords(replace(response, twins=[]), measured)
 
 

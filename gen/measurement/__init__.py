@@ -3,12 +3,13 @@
 ================= ======================================================================
 module            responsibility
 ================= ======================================================================
+measure           the steps: signal, path, background, level, chain, converter, and whether the fault can be seen
 rig               transfer paths and machine background of a rig
-mixing            bearing and background of a record put together, compiled
-background        noise, lines and impulses of the machine in one record
+path              bearing of a record behind its transfer paths
+background        noise, lines and impulses of the machine in a record
+mixing            modulation by the shaft and lines of the machine, compiled
 levels            gains of bearing and background
 judging           whether the fault of a record can be seen in it
-measure           path, modulation, background, level and converter, record by record
 lives             ends of lives that are seen in the records
 ================= ======================================================================
 """

@@ -11,78 +11,71 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
-from gen.measurement.mixing import Lines
-from gen.measurement.rig import RigFilters
+from gen.measurement.mixing import Lines, Parts, Products, mix
+from gen.measurement.path import Vibration
 from gen.mechanisms.background.impulses import add_impulses
 from gen.mechanisms.background.knocks import add_knocks
+from gen.mechanisms.background.section import locked_of
 from gen.physics.elementary import power
 from gen.physics.profile import share_at
-from gen.scenarios import Scenario
+from gen.scenarios import Purpose
 from gen.simulation.timeline import Timeline
 
 FloatArray = NDArray[np.floating]
-Float32Array = NDArray[np.float32]
-NO_SIGNAL, _NO_GROWTH = np.empty((0, 0), np.float32), np.empty(0)
+ComplexArray = NDArray[np.complexfloating]
 
 
-def noise_of(filters: Sequence[RigFilters], n_channels: int, rngs: Sequence[np.random.Generator]) -> Float32Array:
-    """Noise of unit rms, drawn as its spectrum, shape (record, channel, time) [1]; a part of it is common to all channels."""
-    n = filters[0].n
-    drawn = np.empty((len(filters), n_channels, 2 * (n // 2 + 1)), np.float32)
-    for row, row_filters, rng in zip(drawn, filters, rngs, strict=True):
-        rng.standard_normal(out=row, dtype=np.float32)
-        if row_filters.common_noise > 0 and n_channels > 1:
-            row *= np.float32(math.sqrt(1 - row_filters.common_noise))
-            row += np.float32(math.sqrt(row_filters.common_noise)) * rng.standard_normal(row.shape[1], dtype=np.float32)
-    spectra = drawn.view(np.complex64)
-    for spectrum, row_filters in zip(spectra, filters, strict=True):
-        spectrum *= row_filters.noise
-    return irfft(spectra, n)
+def with_background(vibrations: Sequence[Vibration], axis: Timeline) -> list[Parts]:
+    """Bearings behind their paths, modulated by the shaft, and the backgrounds of their machines."""
+    n, parts = vibrations[0].filters.n, []
+    rngs = [one.scenario.rng(Purpose.NOISE) for one in vibrations]
+    lines = [_lines(one, rng, axis) for one, rng in zip(vibrations, rngs, strict=True)]
+    noises = irfft(np.stack([_noise(one, rng) for one, rng in zip(vibrations, rngs, strict=True)]), n)
+    others = np.stack([_others(one, rng) for one, rng in zip(vibrations, rngs, strict=True)])
+    others = irfft(others, n) if others.any() else np.zeros_like(noises)
+    for one, noise, other, of_record in zip(vibrations, noises, others, lines, strict=True):
+        signals = np.concatenate([noise[None, :, : axis.returned], one.bearing[..., : axis.returned]])
+        products = Products(*mix(signals, other, one.angles, of_record, axis.kept))
+        steady, kept = one.scenario.record.speed_profile is None, signals[..., axis.kept]
+        parts.append(Parts(kept, products, one.filters.impulse_lines, one.orders, one.angles[axis.kept], steady))
+    return parts
 
 
-def lines_of(filters: RigFilters, scenario: Scenario, rng: np.random.Generator, axis: Timeline) -> Lines:
+def _lines(one: Vibration, rng: np.random.Generator, axis: Timeline) -> Lines:
     """Lines and modulations of a record: only tones, which are not locked to the shaft, have phases of their own in each record."""
-    record, steps = scenario.record, filters.tones[:, 0]
-    n_orders = len(filters.harmonics)
-    phases = 2 * np.pi * rng.random(len(steps))
+    record, filters = one.scenario.record, one.filters
+    n_orders = len(filters.amplitudes) - len(filters.steps)
     rates = record.conditions.shaft_rate * np.arange(1, n_orders + 1)
-    motion = np.concatenate([filters.harmonic_motion, filters.tone_motion], axis=1)
-    amplitudes = np.concatenate([filters.harmonics, filters.tones[:, 1]])
-    lines = filters.in_channels(motion, amplitudes, np.concatenate([rates, steps * axis.fs / (2 * np.pi)]))
-    parts = np.stack([lines.real, lines.imag], axis=2)
-    growth = _NO_GROWTH
-    exponent = filters.background["growth"]
+    phases = 2 * np.pi * rng.random(len(filters.steps))
+    amplitudes = filters.in_channels(np.concatenate([rates, filters.steps * axis.fs / (2 * np.pi)]))
+    growth, exponent = np.empty(0), filters.background["growth"]
     if record.speed_profile is not None and exponent > 0 and n_orders:
         growth = power(share_at(record.speed_profile, axis.response_times()), exponent)
-    return Lines(
-        modulations=filters.modulations,
-        harmonics=parts[:, :n_orders],
-        growth=growth,
-        tones=np.stack([steps, phases, filters.tones[:, 2], filters.tones[:, 3]], axis=1),
-        tone_parts=parts[:, n_orders:],
-    )
+    return Lines(filters.modulations, amplitudes, growth, filters.steps, phases, filters.tone_modulations)
 
 
-def impulses_of(
-    filters: Sequence[RigFilters], angles: Sequence[FloatArray], rngs: Sequence[np.random.Generator]
-) -> list[Float32Array]:
-    """Impulses at random times, and knocks locked to the shaft, behind the paths: shape (channel, time) each, or (0, 0) for none [1]."""
-    signals = [NO_SIGNAL] * len(filters)
-    rows = [row for row, some in enumerate(filters) if some.background["impulses"] or some.background["knocks"]]
-    if rows:
-        hits = np.stack([_hits(filters[row], angles[row], rngs[row]) for row in rows])
-        paths = np.stack([filters[row].impulse_paths for row in rows])
-        spectra = rfft(hits, filters[0].n)[:, None] * paths
-        for row, filtered in zip(rows, irfft(spectra, filters[0].n), strict=True):
-            signals[row] = filtered
-    return signals
+def _noise(one: Vibration, rng: np.random.Generator) -> ComplexArray:
+    """Spectrum of noise of unit rms, shape (channel, frequency) [1]; a part of it is common to all channels."""
+    (n_channels, n_lines), common = one.filters.paths.shape, math.sqrt(one.filters.background["coherence"])
+    drawn = rng.standard_normal((n_channels, 2 * n_lines), dtype=np.float32)
+    if common > 0 and n_channels > 1:
+        drawn *= np.float32(math.sqrt(1 - common))
+        drawn += np.float32(math.sqrt(common)) * rng.standard_normal(2 * n_lines, dtype=np.float32)
+    return drawn.view(np.complex64) * one.filters.noise
 
 
-def _hits(filters: RigFilters, angles: FloatArray, rng: np.random.Generator) -> Float32Array:
-    """Strength of impulses and knocks at the samples where they start, shape (time,) [1]."""
-    hits, background = np.zeros(len(angles), np.float32), filters.background
-    if background["impulses"]:
-        add_impulses(hits, background["impulses"], filters.fs, rng)
-    if background["knocks"]:
-        add_knocks(hits, background["knocks"], filters.knock_phase, angles, rng)
-    return hits
+def _others(one: Vibration, rng: np.random.Generator) -> ComplexArray:
+    """Spectrum behind the paths of impulses at random times and of sources locked to the shaft, shape (channel, frequency) [1]."""
+    filters, spectrum = one.filters, np.zeros(one.filters.paths.shape, np.complex64)
+    impulses, knocks = filters.background["impulses"], filters.background["knocks"]
+    if impulses or knocks:
+        hits = np.zeros(len(one.angles), np.float32)  # strength at the samples where they start
+        if impulses:
+            add_impulses(hits, impulses, filters.fs, rng)
+        if knocks:
+            add_knocks(hits, knocks, filters.knock_phase, one.angles, rng)
+        spectrum += rfft(hits, filters.n) * filters.impulse_paths
+    for source, drawn in locked_of(filters.background):
+        for vibration in source.vibrations(drawn, one.angles, filters.fs, one.scenario.rng(source.of_record)):
+            spectrum += filters.source_in_channels(vibration)
+    return spectrum

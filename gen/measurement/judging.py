@@ -14,20 +14,22 @@ random times may be many in one recording and none in another, so their mean squ
    non-white vibration signals, Mechanical Systems and Signal Processing 40 (2013) 38-55.
 """
 
+import functools
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import ifft, next_fast_len, rfft
 
+from gen.measurement.levels import rms_of
+from gen.measurement.mixing import Parts
 from gen.physics.kernel.compiling import compiled_to_disk
 from gen.scenarios import Gains
 
 FloatArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
-Float32Array = NDArray[np.float32]
+Complex64Array = NDArray[np.complex64]
 
 FALSE_ALARM = 1e-3
 BANDS = 4  # of equal width up to half the sample rate, searched beside the whole
@@ -36,118 +38,62 @@ TOLERANCE = 0.01  # of a fault order, beyond one line of the spectrum: slip and 
 LOWEST = 2  # lines of a Hann window beside that of the mean
 WINDOW_RMS = math.sqrt(3 / 8)  # of a Hann window
 AROUND = 32  # lines on either side of a searched window that tell its floor
+SIGNIFICANT_RISE = 1.25  # of the rms by a fault without lines: ISO 20816-1:2016, criterion II
 _LEAST_SAMPLES = 16  # of a band
-
-
-class Parts(NamedTuple):
-    """Parts of one record before their gains."""
-
-    fault: Float32Array
-    """What the fault adds, shape (channel, time), as the next two; (0, 0) if there is no fault or it is not known [m s-2]."""
-    healthy: Float32Array
-    """The bearing without it, or the whole bearing [m s-2]."""
-    background: Float32Array
-    """[1]."""
-    impulses: Float32Array
-    """Rms of the lines that its impulses at random times make in squared envelopes, by the frequency of the impulses from 0 to half the
-    sample rate, shape (channel, frequency) [1].
-    """
-    orders: tuple[float, ...]
-    """Order of the shaft at which the fault of each damaged part repeats [1]."""
-    angles: FloatArray
-    """Angle of the shaft, shape (time,) [rad]."""
-    steady: bool
-    """True if the speed is nearly constant, so that lines in frequency are lines in order."""
-
-
-class Window(NamedTuple):
-    """Lines of a spectrum, in cycles per record, that are searched for one harmonic of a damaged part."""
-
-    part: int
-    first: int
-    stop: int
-
-    @property
-    def around(self) -> slice:
-        """Lines that tell the floor."""
-        return slice(max(LOWEST, self.first - AROUND), self.stop + AROUND)
-
-
-class Judge:
-    """Tells for any gains whether the fault of a record can be seen; a band is transformed once, when it is needed."""
-
-    def __init__(self, record: Parts, spectra: ComplexArray) -> None:
-        n = record.fault.shape[1]
-        turns = (record.angles[-1] - record.angles[0]) / (2 * math.pi) * n / (n - 1)
-        self._record, self._spectra = record, spectra
-        windows = [
-            _window(part, harmonic * order * turns)
-            for part, order in enumerate(record.orders)
-            for harmonic in range(1, HARMONICS + 1)
-        ]
-        self._searched = [
-            (band, [one for one in windows if one.first < one.stop <= _lines_in(band)]) for band in bands_of(n)
-        ]
-        searched = len(record.fault) * sum(one.stop - one.first for _, some in self._searched for one in some)
-        self._margin = math.sqrt(2 * math.log(max(searched, 1) / FALSE_ALARM))
-        self._bands: list[tuple[list[tuple[Window, ComplexArray]], FloatArray]] = []
-
-    def sees(self, gains: Gains) -> bool:
-        """Whether every damaged part can be seen in some band of some channel."""
-        seen: set[int] = set()
-        for place, (frequencies, windows) in enumerate(self._searched):
-            if place == len(self._bands):
-                self._bands.append(self._band(frequencies, windows))
-            of_windows, impulses = self._bands[place]
-            for window, lines in of_windows:
-                first = window.first - window.around.start
-                searched = first, first + window.stop - window.first
-                if window.part not in seen and _stands_out(
-                    lines, *searched, gains.bearing, gains.background, self._margin, impulses
-                ):
-                    seen.add(window.part)
-            if len(seen) == len(self._record.orders):
-                return True
-        return False
-
-    def _band(
-        self, band: tuple[int, int], windows: Sequence[Window]
-    ) -> tuple[list[tuple[Window, ComplexArray]], FloatArray]:
-        """Lines of the squared envelope of a band around each window, before the gains, and rms of the lines of its impulses.
-
-        Shapes (product, channel, line), of the products of :func:`_products`, and (channel,).
-        """
-        if not windows:
-            return [], np.empty(0)
-        n, impulses = self._record.fault.shape[1], self._record.impulses
-        products = _products(self._spectra[..., slice(*band)])
-        if not self._record.steady:
-            products = _over_angle(products, self._record.angles)
-        # the window takes out the step from the end of a record to its start, which the transforms join
-        lines = rfft(products * np.hanning(products.shape[-1]).astype(products.dtype))
-        share = n / 2 / (impulses.shape[1] - 1)  # of the frequencies of the record in those of the impulses
-        places = slice(round(band[0] / share), round(band[1] / share))
-        of_impulses = WINDOW_RMS * products.shape[-1] * share**1.5 * impulses[:, places].sum(axis=1)
-        # of one type, for which the comparison is compiled once
-        kept: list[tuple[Window, ComplexArray]] = [
-            (window, lines[..., window.around].astype(np.complex128)) for window in windows
-        ]
-        return kept, of_impulses.astype(np.float64)
-
-
-def compile_judging() -> None:
-    """Compile the comparison of lines, or fetch it from numba's cache on disk."""
-    _stands_out(np.zeros((5, 1, 1), np.complex128), 0, 1, 1.0, 1.0, 1.0, np.zeros(1))
+Judge = Callable[[Gains], bool]
+"""Tells for any gains whether the fault of a record can be seen."""
 
 
 def judges_of(records: Sequence[Parts]) -> list[Judge]:
-    """Judges of records of one length; they are transformed side by side, which takes a third of the time."""
-    if not records:
-        return []
-    transformed = rfft(
-        np.stack([part for record in records for part in (record.fault, record.healthy, record.background)])
-    )
-    return [Judge(record, transformed[3 * place : 3 * place + 3]) for place, record in enumerate(records)]
+    """Judges of records of one length; they are transformed side by side, which takes a third of the time.
+
+    A fault without lines can be seen if it raises the rms significantly.
+    """
+    lined = [parts for parts in records if parts.orders]
+    spectra = iter(rfft(np.stack([parts.signals for parts in lined])) if lined else ())
+    return [_judge_of_lines(parts, next(spectra)) if parts.orders else _judge_of_rise(parts) for parts in records]
+
+
+def _judge_of_rise(parts: Parts) -> Judge:
+    def sees(gains: Gains) -> bool:
+        rest, bearing = rms_of(parts.products, 0.0, gains.bearing, gains.background), gains.bearing
+        return rms_of(parts.products, bearing, bearing, gains.background) >= SIGNIFICANT_RISE * rest
+
+    return sees
+
+
+def _judge_of_lines(parts: Parts, spectra: ComplexArray) -> Judge:
+    """Judge that looks for every damaged part in each band of each channel; a band is transformed once, when it is needed.
+
+    ``spectra`` are those of the ``signals``, shape (part, channel, frequency).
+    """
+    n = parts.signals.shape[2]
+    turns = (parts.angles[-1] - parts.angles[0]) / (2 * math.pi) * n / (n - 1)
+    searched = [
+        (band, part, first, stop)
+        for band in bands_of(n)
+        for part, order in enumerate(parts.orders)
+        for first, stop in (_window(harmonic * order * turns) for harmonic in range(1, HARMONICS + 1))
+        if first < stop <= (band[1] - band[0]) // 2 + 1  # lines of the squared envelope of the band, that at 0 included
+    ]
+    n_lines = parts.signals.shape[1] * sum(stop - first for *_, first, stop in searched)
+    margin = math.sqrt(2 * math.log(max(n_lines, 1) / FALSE_ALARM))
+    lines_of = functools.cache(lambda band: _lines(parts, spectra[..., slice(*band)], band))
+
+    def sees(gains: Gains) -> bool:
+        seen: set[int] = set()
+        for band, part, *window in searched:
+            if part not in seen and _stands_out(*lines_of(band), *window, gains.bearing, gains.background, margin):
+                seen.add(part)
+        return len(seen) == len(parts.orders)
+
+    return sees
+
+
+def _window(middle: float) -> tuple[int, int]:
+    """First line within the tolerance of ``middle`` cycles per record, and the line after the last one."""
+    reach = 1 + TOLERANCE * middle
+    return max(LOWEST, math.ceil(middle - reach)), math.floor(middle + reach) + 1
 
 
 def bands_of(n: int) -> list[tuple[int, int]]:
@@ -157,15 +103,26 @@ def bands_of(n: int) -> list[tuple[int, int]]:
     return [(low, high) for low, high in every if high - low >= _LEAST_SAMPLES]
 
 
-def _window(part: int, middle: float) -> Window:
-    """Lines within the tolerance of ``middle`` cycles per record."""
-    reach = 1 + TOLERANCE * middle
-    return Window(part, max(LOWEST, math.ceil(middle - reach)), math.floor(middle + reach) + 1)
+def _lines(parts: Parts, spectra: ComplexArray, band: tuple[int, int]) -> tuple[Complex64Array, FloatArray]:
+    """Lines of the squared envelope of a band before the gains, and rms of the lines of impulses at random times.
+
+    Shapes (product, channel, line), of the products of :func:`_products`, and (channel,).
+    """
+    products = _products(spectra)
+    if not parts.steady:
+        products = _over_angle(products, parts.angles)
+    # the window takes out the step from the end of a record to its start, which the transforms join
+    lines = rfft(products * _hann(products.shape[-1]))
+    # step in frequency of ``impulses`` over that of the record
+    share = parts.signals.shape[2] / 2 / (parts.impulses.shape[1] - 1)
+    impulses = parts.impulses[:, round(band[0] / share) : round(band[1] / share)].sum(axis=1)
+    # of one type each, for which the comparison is compiled once
+    return lines.astype(np.complex64), (WINDOW_RMS * products.shape[-1] * share**1.5 * impulses).astype(np.float64)
 
 
-def _lines_in(band: tuple[int, int]) -> int:
-    """Number of lines that the squared envelope of a band has, that at 0 included."""
-    return (band[1] - band[0]) // 2 + 1
+@functools.lru_cache(maxsize=16)
+def _hann(size: int) -> FloatArray:
+    return np.hanning(size).astype(np.float32)
 
 
 def _products(spectra: ComplexArray) -> FloatArray:
@@ -174,7 +131,7 @@ def _products(spectra: ComplexArray) -> FloatArray:
     With bearing ``b`` and background ``n``, ``|b + n|^2 = |b|^2 + 2 Re(b n*) + |n|^2``. The products are ``|b|^2`` with and without
     the fault, ``2 Re(b n*)`` with and without it, and ``|n|^2``.
     """
-    fault, healthy, background = ifft(spectra, next_fast_len(spectra.shape[-1]), norm="forward")
+    background, healthy, fault = ifft(spectra, next_fast_len(spectra.shape[-1]), norm="forward")
     bearing = np.stack([fault + healthy, healthy])
     return np.concatenate([_squared(bearing), 2 * (bearing * np.conj(background)).real, _squared(background)[None]])
 
@@ -185,29 +142,34 @@ def _squared(signal: ComplexArray) -> FloatArray:
 
 @compiled_to_disk
 def _stands_out(
-    lines: ComplexArray, first: int, stop: int, bearing: float, background: float, margin: float, impulses: FloatArray
+    lines: Complex64Array, impulses: FloatArray, first: int, stop: int, b: float, n: float, margin: float
 ) -> bool:
     """Whether, in some channel, the largest searched line of the record exceeds that of the twin by ``margin`` times the rms of noise.
 
-    ``lines`` has the shape (product, channel, line), those from ``first`` to ``stop`` are searched, and ``bearing`` and ``background`` are
-    gains.
+    ``lines`` has the shape (product, channel, line), those from ``first`` to ``stop`` are searched, and ``b`` and ``n`` are the gains of
+    bearing and background.
     """
-    _, n_channels, n_lines = lines.shape
-    twin = np.empty(n_lines)
-    for channel in range(n_channels):
+    around = max(LOWEST, first - AROUND), min(lines.shape[2], stop + AROUND)
+    twin = np.empty(around[1] - around[0])
+    for channel in range(lines.shape[1]):
         highest = highest_of_twin = 0.0
-        for line in range(n_lines):
-            noise = background * background * lines[4, channel, line]
-            healthy = bearing * (bearing * lines[1, channel, line] + background * lines[3, channel, line]) + noise
-            twin[line] = abs(healthy)
+        for line in range(around[0], around[1]):
+            noise = n * n * lines[4, channel, line]
+            healthy = abs(b * (b * lines[1, channel, line] + n * lines[3, channel, line]) + noise)
+            twin[line - around[0]] = healthy
             if first <= line < stop:
-                faulty = bearing * (bearing * lines[0, channel, line] + background * lines[2, channel, line]) + noise
-                highest, highest_of_twin = max(highest, abs(faulty)), max(highest_of_twin, twin[line])
+                faulty = abs(b * (b * lines[0, channel, line] + n * lines[2, channel, line]) + noise)
+                highest, highest_of_twin = max(highest, faulty), max(highest_of_twin, healthy)
         # the square of a line of noise has an exponential distribution, whose median is ln 2 of its mean
-        floor = np.partition(twin, n_lines // 2)[n_lines // 2] / math.sqrt(math.log(2))
-        if highest - highest_of_twin > margin * math.hypot(floor, background * background * impulses[channel]):
+        floor = np.partition(twin, len(twin) // 2)[len(twin) // 2] / math.sqrt(math.log(2))
+        if highest - highest_of_twin > margin * math.hypot(floor, n * n * impulses[channel]):
             return True
     return False
+
+
+def compile_judging() -> None:
+    """Compile the comparison of lines, or fetch it from numba's cache on disk."""
+    _stands_out(np.zeros((5, 1, 4), np.complex64), np.zeros(1), 2, 3, 1.0, 1.0, 1.0)
 
 
 def _over_angle(signals: FloatArray, angles: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Gains of bearing and background of a record, from the drawn level and the mean products of its parts.
+"""Gains of bearing and background of a record from its drawn level, and levels from the gains, by the mean products of its parts.
 
 The products are exact: parts that are correlated over a short record neither raise nor lower its rms.
 """
@@ -9,7 +9,7 @@ from gen.corpus.schema import Variable
 from gen.corpus.simulated import with_values
 from gen.measurement.mixing import Products
 from gen.physics.elementary import decibels
-from gen.scenarios import Gains, Scenario
+from gen.scenarios import Gains
 
 SILENCE = 1e-30  # m s-2; a smaller rms counts as no signal
 
@@ -25,47 +25,33 @@ LABELS = (
 """Variables of the corpus, arrays of a :class:`gen.measurement.measure.Measured`."""
 
 
-def gains_of(scenario: Scenario, products: Products) -> Gains:
-    """Gains that a record has already, or that give it its drawn level.
+def gains_of(products: Products, ratio: float, rms: float) -> Gains:
+    """Gains that give a record its drawn ratio [dB] and rms [m s-2].
 
-    With ``level.kind: snr``, the drawn ratio is that of the fault (d) over all else, which is the healthy bearing (h) and the background
-    (n): with the bearing ``q`` times as strong as the background, ``q^2 dd = r^2 (q^2 hh + 2 q hn + nn)``. A record without a fault, or
-    of which the fault's own part is not known, has the ratio of the bearing over the background.
+    The ratio is that of the fault (d) over all else, which is the healthy bearing (h) and the background (n): with the bearing ``q``
+    times as strong as the background, ``q^2 dd = r^2 (q^2 hh + 2 q hn + nn)``. A record without a fault, or of which the fault's own
+    part is not known, has the ratio of the bearing over the background.
     """
-    rig, record = scenario.rig, scenario.record
-    if record.gains is not None:
-        return record.gains
-    if record.snr is None or record.rms is None:
-        return Gains(rig.gain, rig.gain * rig.background_rms)
-    square = 10 ** (record.snr / 10)
-    least = SILENCE**2
-    nn = max(products.nn, least)
-    bearing_alone = math.sqrt(square * nn / max(products.hh, least))
-    gains = Gains(bearing_alone if products.dd <= least else _ratio_of_fault(products, square, nn), 1.0)
-    whole = math.sqrt(max(mean_square(products, gains), least))
-    return Gains(gains.bearing * record.rms / whole, gains.background * record.rms / whole)
-
-
-def _ratio_of_fault(products: Products, square: float, nn: float) -> float:
-    """Gain of the bearing over that of the background, for a drawn ratio with the given square.
-
-    No gain is enough if the fault is too weak beside the healthy bearing. Then both the bearing without its fault and the background have
-    the same rms.
-    """
+    square, least = 10 ** (ratio / 10), SILENCE**2
+    nn, hh = max(products.nn, least), max(products.hh, least)
     left = products.dd - square * products.hh
-    if left <= 0.01 * products.dd:
-        return math.sqrt(nn / max(products.hh, SILENCE**2))
-    half = square * products.hn
-    return (half + math.sqrt(half**2 + left * square * nn)) / left
+    if products.dd <= least:
+        q = math.sqrt(square * nn / hh)
+    elif left <= 0.01 * products.dd:
+        # No gain is enough for a fault that is too weak beside its healthy bearing: bearing and background get the same rms.
+        q = math.sqrt(nn / hh)
+    else:
+        half = square * products.hn
+        q = (half + math.sqrt(half**2 + left * square * nn)) / left
+    scale = rms / max(rms_of(products, q, q, 1.0), SILENCE)
+    return Gains(q * scale, scale)
 
 
-def mean_square(products: Products, gains: Gains, *, fault: bool = True) -> float:
-    """Mean square of a record, with or without what the fault adds [m2 s-4]."""
-    b, n = gains.bearing, gains.background
-    rest = b * b * products.hh + 2 * b * n * products.hn + n * n * products.nn
-    if not fault:
-        return rest
-    return rest + b * b * products.dd + 2 * b * b * products.dh + 2 * b * n * products.dn
+def rms_of(products: Products, fault: float, healthy: float, background: float) -> float:
+    """Rms of the sum of three parts with these gains [m s-2]."""
+    nn, hn, hh, dn, dh, dd = products
+    d, h, n = fault, healthy, background
+    return math.sqrt(max(h * h * hh + 2 * h * n * hn + n * n * nn + d * d * dd + 2 * d * h * dh + 2 * d * n * dn, 0.0))
 
 
 def bearing_over_background(products: Products, gains: Gains, rounding: float) -> float:
@@ -73,16 +59,15 @@ def bearing_over_background(products: Products, gains: Gains, rounding: float) -
 
     NaN if either is silent or not finite.
     """
-    bearing = gains.bearing * math.sqrt(max(products.dd + 2 * products.dh + products.hh, 0.0))
-    if bearing <= SILENCE:
-        return math.nan
-    return level_of_ratio(bearing, max(gains.background * math.sqrt(max(products.nn, 0.0)), rounding))
+    bearing = rms_of(products, gains.bearing, gains.bearing, 0.0)
+    level = level_of_ratio(bearing, max(rms_of(products, 0.0, 0.0, gains.background), rounding))
+    return level if level > -math.inf else math.nan
 
 
 def fault_over_rest(products: Products, gains: Gains, rounding: float) -> tuple[float, float]:
     """Rms of what the fault adds over that of all else [dB], and its share of the sum of both powers [1]; NaN where they are silent."""
-    fault = gains.bearing * math.sqrt(max(products.dd, 0.0))
-    rest = max(math.sqrt(max(mean_square(products, gains, fault=False), 0.0)), rounding)
+    fault = rms_of(products, gains.bearing, 0.0, 0.0)
+    rest = max(rms_of(products, 0.0, gains.bearing, gains.background), rounding)
     whole = fault**2 + rest**2
     return level_of_ratio(fault, rest), fault**2 / whole if 0 < whole < math.inf else math.nan
 

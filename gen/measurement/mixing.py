@@ -15,167 +15,173 @@ from gen.physics.kernel.compiling import INLINE, compiled_to_disk, cosine, sine
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
+ComplexArray = NDArray[np.complexfloating]
+Complex64Array = NDArray[np.complex64]
 
 BLOCK = 256  # samples; all work arrays of a block fit the first-level cache
 
 
 class Lines(NamedTuple):
-    """Modulations and spectral lines of one record. A line is ``c cos(angle) - s sin(angle)``, given by its parts ``c`` and ``s``."""
+    """Modulations and spectral lines of one record. A line of the complex amplitude ``c`` is ``Re(c exp(i angle))``."""
 
-    modulations: FloatArray
-    """Parts of the modulation once and twice per turn, of the noise and of each path, shape (1 + channel, 4)."""
-    harmonics: FloatArray
-    """Parts of each multiple of the shaft angle, shape (channel, order, 2)."""
+    modulations: ComplexArray
+    """Modulation of the noise and of each path once and twice per turn of the shaft, shape (1 + channel, 2) [1]."""
+    amplitudes: ComplexArray
+    """Of the harmonics of the shaft from the first on, then of the tones, shape (channel, line)."""
     growth: FloatArray
     """Factor of the harmonics at each sample, shape (time,); empty if it is 1 throughout."""
-    tones: FloatArray
-    """Angle per sample and at the first sample, and parts of the modulation by the shaft, shape (tone, 4)."""
-    tone_parts: FloatArray
-    """Parts of each tone, shape (channel, tone, 2)."""
+    steps: FloatArray
+    """Angle per sample of each tone, shape (tone,) [rad]."""
+    phases: FloatArray
+    """Angle of each tone at the first sample, shape (tone,) [rad]."""
+    tone_modulations: ComplexArray
+    """Modulation of each tone once per turn of the shaft, shape (tone,) [1]."""
 
 
 class Products(NamedTuple):
-    """Mean products over a record, all channels together, of fault (d), healthy bearing (h) and background (n)."""
+    """Mean products over a record, all channels together, of background (n), healthy bearing (h) and fault (d)."""
 
-    dd: float
-    hh: float
     nn: float
-    dh: float
-    dn: float
     hn: float
+    hh: float
+    dn: float
+    dh: float
+    dd: float
+
+
+class Parts(NamedTuple):
+    """Background and bearing of one record before their gains."""
+
+    signals: Float32Array
+    """Background [1], vibration of the bearing without the fault, and what the fault adds if that is known [m s-2], shape (part, channel,
+    time).
+    """
+    products: Products
+    impulses: Float32Array
+    """Rms of the lines that impulses at random times make in squared envelopes, by the frequency of the impulses from 0 to half the sample
+    rate, shape (channel, frequency) [1].
+    """
+    orders: tuple[float, ...]
+    """Order of the shaft at which the fault of each damaged part repeats [1]; empty for faults without lines."""
+    angles: FloatArray
+    """Angle of the shaft, shape (time,) [rad]."""
+    steady: bool
+    """True if the speed is nearly constant, so that lines in frequency are lines in order."""
 
 
 @compiled_to_disk
-def mix(
-    fault: Float32Array,
-    healthy: Float32Array,
-    background: Float32Array,
-    impulses: Float32Array,
-    angles: FloatArray,
-    lines: Lines,
-    first: int,
-    stop: int,
-) -> Products:
-    """Modulate bearing and noise, and add impulses and lines to the noise, all in place; return the mean products of the three.
+def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: Lines, kept: slice) -> Products:
+    """Modulate noise and bearing, and add the other sources and the lines to the noise, in place; return the mean products of the parts.
 
     Parameters
     ----------
-    fault : array, shape (channel, time), or (0, 0) for none
-        What the fault adds to the vibration of the bearing behind the path [m s-2].
-    healthy, background : array, shape (channel, time)
-        Vibration of the bearing without the fault [m s-2], and noise of the machine [1]. All are changed from sample ``first`` to ``stop``.
-    impulses : array, shape (channel, time) or (0, 0)
-        Impulses and knocks of the machine behind the path, if there are any [1].
+    signals : array, shape (part, channel, time)
+        Noise of the machine [1], and vibration of the bearing behind the path without the fault, then what the fault adds if that is known
+        [m s-2]. They are changed in the samples ``kept`` alone.
+    others : array, shape (channel, time)
+        Other sources in the machine behind the path, which are not modulated [1].
     angles : array, shape (time,)
         Angle of the shaft [rad].
     lines : Lines
         What the machine adds, and its modulations.
+    kept : slice
+        Samples of the record, behind the lead.
     """
-    turn = np.empty((2, BLOCK), np.float32)  # cosine and sine of the shaft angle
-    tables = np.empty((len(lines.tones), 2, BLOCK), np.float32)
-    for tone in range(len(lines.tones)):
-        _advance(lines.tones[tone, 0], tables[tone])
-    modulations = lines.modulations.astype(np.float32)
-    real, imaginary, gain = np.empty(BLOCK, np.float32), np.empty(BLOCK, np.float32), np.empty(BLOCK, np.float32)
-    sums = np.zeros((6, BLOCK), np.float32)
-    for start in range(first, stop, BLOCK):
-        size = min(BLOCK, stop - start)
-        _turn_block(angles, start, size, turn)
-        for channel in range(len(healthy)):
-            _sum_harmonics(lines, channel, start, size, turn, real, imaginary)
-            _add_tones(lines, channel, tables, start, size, turn, real)
-            if len(impulses) > 0:
-                for j in range(size):
-                    real[j] += impulses[channel, start + j]
-            _modulation(turn, modulations[0], gain)
-            for j in range(size):
-                background[channel, start + j] = background[channel, start + j] * gain[j] + real[j]
-            _modulation(turn, modulations[1 + channel], gain)
-            for j in range(size):
-                h, n = healthy[channel, start + j] * gain[j], background[channel, start + j]
-                healthy[channel, start + j] = h
-                sums[1, j] += h * h
-                sums[2, j] += n * n
-                sums[5, j] += h * n
-            if len(fault) > 0:
-                for j in range(size):
-                    h, n = healthy[channel, start + j], background[channel, start + j]
-                    d = fault[channel, start + j] * gain[j]
-                    fault[channel, start + j] = d
-                    sums[0, j] += d * d
-                    sums[3, j] += d * h
-                    sums[4, j] += d * n
+    turn, wave = np.zeros((2, BLOCK), np.complex64)
+    machine, sums = np.empty(BLOCK, np.float32), np.zeros((6, BLOCK), np.float32)
+    n_orders = lines.amplitudes.shape[1] - len(lines.steps)
+    tables = np.empty((len(lines.steps), BLOCK), np.complex64)
+    for tone, step in enumerate(lines.steps):
+        _advance(step, tables[tone])
+    for start in range(kept.start, kept.stop, BLOCK):
+        stop = min(start + BLOCK, kept.stop)
+        _turn_block(angles[start:stop], turn)
+        for channel in range(signals.shape[1]):
+            amplitudes = lines.amplitudes[channel]
+            _sum_harmonics(amplitudes[:n_orders], turn, wave)
+            for j in range(stop - start):
+                growth = np.float32(lines.growth[start + j]) if len(lines.growth) > 0 else np.float32(1)
+                machine[j] = wave[j].real * growth
+            _add_tones(lines, amplitudes[n_orders:], start, turn, tables, machine)
+            for part in range(len(signals)):
+                _modulate(lines.modulations[1 + channel if part > 0 else 0], turn, signals[part, channel, start:stop])
+            _add(machine, others[channel, start:stop], signals[0, channel, start:stop])
+            row = 0
+            for one in range(len(signals)):
+                for other in range(one + 1):
+                    _add_product(signals[one, channel, start:stop], signals[other, channel, start:stop], sums[row])
+                    row += 1
     means = np.zeros(6)
     for row in range(6):
         for j in range(BLOCK):
             means[row] += sums[row, j]
-    means /= len(healthy) * (stop - first)
+    means /= signals.shape[1] * (kept.stop - kept.start)
     return Products(means[0], means[1], means[2], means[3], means[4], means[5])
 
 
 @njit(**INLINE)
-def _turn_block(angles: FloatArray, start: int, size: int, turn: Float32Array) -> None:
-    """Cosine and sine of the shaft angle for the block from sample ``start`` on, into ``turn``, shape (2, BLOCK).
+def _turn_block(angles: FloatArray, turn: Complex64Array) -> None:
+    """``exp(i angle)`` of the shaft at the samples of a block, into ``turn``, shape (BLOCK,).
 
-    From those of half the angle, less whole turns, because the series of :func:`cosine` is for angles up to a quarter of a turn.
+    From half the angle, less whole turns, because the series of :func:`cosine` is for angles up to a quarter of a turn.
     """
-    for j in range(size):
-        x = angles[start + j]
-        half = 0.5 * (x - 2 * math.pi * math.floor(x * (0.5 / math.pi) + 0.5))
-        c, s = cosine(half), sine(half)
-        turn[0, j], turn[1, j] = c * c - s * s, 2 * c * s
+    for j in range(len(angles)):
+        half = 0.5 * (angles[j] - 2 * math.pi * math.floor(angles[j] * (0.5 / math.pi) + 0.5))
+        turn[j] = complex(cosine(half), sine(half)) ** 2
 
 
 @njit(**INLINE)
-def _sum_harmonics(
-    lines: Lines, channel: int, start: int, size: int, turn: Float32Array, real: Float32Array, imaginary: Float32Array
-) -> None:
-    """Sum of the harmonics of the shaft in a block, into ``real``, by Horner's rule in ``exp(i angle)``."""
-    real[:] = 0.0
-    imaginary[:] = 0.0
-    for order in range(lines.harmonics.shape[1] - 1, -1, -1):
-        a, b = np.float32(lines.harmonics[channel, order, 0]), np.float32(lines.harmonics[channel, order, 1])
-        for j in range(size):
-            x, y = real[j] + a, imaginary[j] + b
-            real[j] = x * turn[0, j] - y * turn[1, j]
-            imaginary[j] = x * turn[1, j] + y * turn[0, j]
-    if len(lines.growth) > 0:
-        for j in range(size):
-            real[j] *= np.float32(lines.growth[start + j])
+def _sum_harmonics(amplitudes: ComplexArray, turn: Complex64Array, wave: Complex64Array) -> None:
+    """Sum of the harmonics of the shaft, ``sum_k c_k exp(i k angle)`` for ``k`` from 1 on, into ``wave``, by Horner's rule."""
+    wave[:] = 0.0
+    for order in range(len(amplitudes) - 1, -1, -1):
+        amplitude = np.complex64(amplitudes[order])
+        for j in range(BLOCK):
+            wave[j] = (wave[j] + amplitude) * turn[j]
 
 
 @njit(**INLINE)
 def _add_tones(
-    lines: Lines, channel: int, tables: Float32Array, start: int, size: int, turn: Float32Array, real: Float32Array
+    lines: Lines,
+    amplitudes: ComplexArray,
+    start: int,
+    turn: Complex64Array,
+    tables: Complex64Array,
+    machine: Float32Array,
 ) -> None:
-    """Add the tones of the machine, modulated by the shaft, to ``real``."""
-    for tone in range(len(lines.tones)):
-        step, at_first, once_c, once_s = lines.tones[tone]
-        x, y = lines.tone_parts[channel, tone]
-        angle = at_first + start * step
-        c, s = math.cos(angle), math.sin(angle)
-        p, q = np.float32(x * c - y * s), np.float32(x * s + y * c)
-        a, b = np.float32(once_c), np.float32(once_s)
-        for j in range(size):
-            wave = p * tables[tone, 0, j] - q * tables[tone, 1, j]
-            real[j] += wave * (np.float32(1) + a * turn[0, j] - b * turn[1, j])
+    """Add the tones of the machine, modulated by the shaft, to ``machine``, shape (BLOCK,)."""
+    for tone, step in enumerate(lines.steps):
+        angle = lines.phases[tone] + start * step
+        amplitude = np.complex64(amplitudes[tone] * complex(math.cos(angle), math.sin(angle)))
+        depth = np.complex64(lines.tone_modulations[tone])
+        for j in range(BLOCK):
+            machine[j] += (amplitude * tables[tone, j]).real * (np.float32(1) + (depth * turn[j]).real)
 
 
 @njit(**INLINE)
-def _advance(step: float, table: Float32Array) -> None:
-    """Cosine and sine of ``step`` times 0, 1, ..., into ``table``, shape (2, BLOCK)."""
-    c, s = math.cos(step), math.sin(step)
-    x, y = 1.0, 0.0
+def _advance(step: float, table: Complex64Array) -> None:
+    """``exp(i step k)`` for ``k`` = 0, 1, ..., into ``table``, shape (BLOCK,)."""
+    turned, turn = complex(1.0, 0.0), complex(math.cos(step), math.sin(step))
     for j in range(BLOCK):
-        table[0, j], table[1, j] = x, y
-        x, y = x * c - y * s, x * s + y * c
+        table[j] = turned
+        turned *= turn
 
 
 @njit(**INLINE)
-def _modulation(turn: Float32Array, parts: Float32Array, gain: Float32Array) -> None:
-    """Gain with modulation once and twice per turn of the shaft, into ``gain``, shape (BLOCK,) [1]."""
-    for j in range(BLOCK):
-        c, s = turn[0, j], turn[1, j]
-        once = parts[0] * c - parts[1] * s
-        twice = parts[2] * (c * c - s * s) - parts[3] * (c * s + c * s)
-        gain[j] = np.float32(1) + once + twice
+def _modulate(depths: ComplexArray, turn: Complex64Array, signal: Float32Array) -> None:
+    """Modulate a signal once and twice per turn of the shaft, in place."""
+    once, twice = np.complex64(depths[0]), np.complex64(depths[1])
+    for j in range(len(signal)):
+        signal[j] *= np.float32(1) + (once * turn[j]).real + (twice * (turn[j] * turn[j])).real
+
+
+@njit(**INLINE)
+def _add(machine: Float32Array, others: Float32Array, background: Float32Array) -> None:
+    for j in range(len(background)):
+        background[j] += machine[j] + others[j]
+
+
+@njit(**INLINE)
+def _add_product(one: Float32Array, other: Float32Array, sums: Float32Array) -> None:
+    for j in range(len(one)):
+        sums[j] += one[j] * other[j]

@@ -33,7 +33,7 @@ from gen.scenarios.model import (
     Specimen,
     stream,
 )
-from gen.scenarios.records import with_level
+from gen.scenarios.records import further_ratios
 from gen.scenarios.settings import common_settings, settings_of
 from gen.scenarios.stored import read_scenario, read_scenarios, scenario_texts
 
@@ -53,11 +53,11 @@ __all__ = [
     "fault_of_each_specimen",
     "first_records",
     "first_specimens",
+    "further_ratios",
     "read_scenario",
     "read_scenarios",
     "scenario_texts",
     "settings_of",
     "simulation_errors",
     "stream",
-    "with_level",
 ]

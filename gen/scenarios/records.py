@@ -170,11 +170,10 @@ def _ratio(recipe: Recipe, entry: Fault) -> Any:
     return changes.get(key, getattr(recipe.level, key))
 
 
-def with_level(scenario: Scenario, recipe: Recipe, level_try: int) -> Scenario:
-    """The same record with the level of a later try; the first one is drawn with the record."""
-    u = float(scenario.rng(Purpose.LEVEL).random(level_try)[-1])
-    snr = _ratio(recipe, recipe.faults[scenario.specimen.entry]).draw(u)
-    return replace(scenario, record=replace(scenario.record, snr=snr, level_try=level_try))
+def further_ratios(recipe: Recipe, scenario: Scenario, count: int) -> list[float]:
+    """Signal-to-noise ratios of the later tries of a level [dB]; the first one is drawn with the record."""
+    ratio = _ratio(recipe, recipe.faults[scenario.specimen.entry])
+    return [ratio.draw(float(u)) for u in scenario.rng(Purpose.LEVEL).random(count)]
 
 
 def _draw_profile(draws: Draws, profile: ProfileSection | None, duration: float) -> Profile | None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.signal import welch
 
 from gen.measurement.measure import measure
-from gen.scenarios import draw_scenarios, settings_of, with_level
+from gen.scenarios import draw_scenarios, further_ratios, settings_of
 from gen.simulation.simulate import Twin
 from gen.simulation.timeline import timeline
 from tests.measuring import (
@@ -39,14 +39,26 @@ def levelled(recipe_with):
 
 def test_every_try_of_a_level_is_a_draw_of_its_own_and_moves_nothing_else(levelled):
     recipe, scenarios = levelled
-    faulty = next(scenario for scenario in scenarios if scenario.specimen.fault != "healthy")
-    tries = [faulty, *(with_level(faulty, recipe, level_try) for level_try in range(1, 8))]
-    ratios = [one.record.snr for one in tries]
+    faulty = next(place for place, scenario in enumerate(scenarios) if scenario.specimen.fault != "healthy")
+    ratios = [scenarios[faulty].record.snr, *further_ratios(recipe, scenarios[faulty], 7)]
     assert len(set(ratios)) == 8
     assert -10 <= min(ratios) < max(ratios) <= 25
-    assert tries == [
-        replace(faulty, record=replace(faulty.record, snr=snr, level_try=n)) for n, snr in enumerate(ratios)
-    ]
+    assert further_ratios(recipe, scenarios[faulty], 3) == ratios[1:4]
+
+
+@pytest.mark.parametrize(("rise", "tries"), [(1.1, 2), (1e-9, 0)])
+def test_the_first_ratio_at_which_the_fault_is_seen_is_taken_and_nothing_else_moves(levelled, rise, tries):
+    """A fault that raises the rms is seen above some ratio; one that adds nothing is seen at none, and the drawn ratio stays."""
+    recipe, scenarios = levelled
+    place = next(place for place, scenario in enumerate(scenarios) if scenario.specimen.fault != "healthy")
+    scenario = replace(scenarios[place], record=replace(scenarios[place].record, snr=-30.0))
+    bearing = np.float32(hiss(recipe, 1)[0])
+    twin = Twin(0, np.float32(1e-3) * bearing, ())
+    whole = twin.acceleration + np.float32(rise) * bearing[:, ::-1]
+    measured = measure(whole[None], [scenario], [twin], ratios={0: [-20.0, 10.0, 20.0]})
+    ratio = (-30.0, -20.0, 10.0)[tries]
+    assert measured.detectable.tolist() == [int(tries > 0)]
+    assert measured.scenarios == [replace(scenario, record=replace(scenario.record, snr=ratio, level_try=tries))]
 
 
 def test_the_gain_of_the_sensor_scales_bearing_and_background_alike(recipe_with):
