@@ -20,6 +20,7 @@ from features.signal.spectra import band_energies, fourier_coefficients, psd
 from features.table.band import DEFAULT_BAND
 from features.table.definitions import FITTED, LINES, RAW, RIVALS, SHAPES, VIEWS, Feature, define_features
 from features.table.indicators import Orders, bands_of, levels_and_shape
+from gen.support.units import from_si
 
 _TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 _HEADER = ("feature", "unit", "range", "meaning", "formula", "depends on", "source")
@@ -111,10 +112,13 @@ def _draw_energies(axes: Axes, frequencies: np.ndarray, density: np.ndarray) -> 
     """Draw a power spectral density with its mean in each band."""
     edges = np.array(DEFAULT_BAND.energy_edges)
     means = band_energies(density, frequencies, edges)[0] / np.diff(edges)
-    axes.plot(frequencies / 1e3, 10 * np.log10(density[0]), color=FAINT, linewidth=0.7)
-    axes.stairs(10 * np.log10(means), edges / 1e3, baseline=None, color=BLUE, linewidth=1.5)
+    axes.plot(from_si(frequencies, "khz"), 10 * np.log10(density[0]), color=FAINT, linewidth=0.7)
+    axes.stairs(10 * np.log10(means), from_si(edges, "khz"), baseline=None, color=BLUE, linewidth=1.5)
     axes.set(
-        title="bands: mean power in each band", xlabel="frequency [kHz]", ylabel="PSD [dB]", xlim=(0, edges[-1] / 1e3)
+        title="bands: mean power in each band",
+        xlabel="frequency [kHz]",
+        ylabel="PSD [dB]",
+        xlim=(0, from_si(edges[-1], "khz")),
     )
 
 

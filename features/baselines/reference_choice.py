@@ -17,6 +17,7 @@ from features.table.recording_speeds import recording_numbers
 from features.table.recordings import recording_table
 from gen.corpus import UNKNOWN_CODE, corpus_name, open_corpus
 from gen.support.errors import CorpusError
+from gen.support.units import from_si
 
 FILE = "recording_file"  # attribute of the table of a reference recording
 SAME_BEARING = 0.02  # relative: orders within it are those of one bearing
@@ -153,7 +154,7 @@ def recording_reference(
         raise CorpusError(message)
     if shaft_rate is None and np.ptp(rates) > SAME_SPEED * rates.min():
         message = (
-            f"{file}: the speeds of {corpus} go from {60 * rates.min():.5g} to {60 * rates.max():.5g} rpm; "
+            f"{file}: the speeds of {corpus} go from {from_si(rates.min(), 'rpm'):.5g} to {from_si(rates.max(), 'rpm'):.5g} rpm; "
             "give the speed of the reference (--reference-rpm)."
         )
         raise CorpusError(message)

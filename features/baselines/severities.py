@@ -11,6 +11,7 @@ import numpy as np
 
 from features.baselines.records import FloatArray, IntArray, Records
 from gen.corpus import FAULTS
+from gen.support.units import from_si
 
 Intervals = tuple[tuple[float, float], ...]
 
@@ -62,7 +63,7 @@ def severity_warning(uncovered: Mapping[str, tuple[float, ...]]) -> str:
 
 
 def _span(widths: tuple[float, ...]) -> str:
-    ends = dict.fromkeys(f"{1e3 * width:.3g}" for width in (widths[0], widths[-1]))
+    ends = dict.fromkeys(f"{from_si(width, 'mm'):.3g}" for width in (widths[0], widths[-1]))
     return " to ".join(ends)
 
 

@@ -12,7 +12,7 @@ from features.diagnosis.result import Diagnosis, Recorded
 from features.diagnosis.search import ANY_RATE, Given
 from features.signal.door import fault_orders, rows
 from features.table.indicators import Orders
-from gen.support.units import rpm_to_hertz
+from gen.support.units import from_si, rpm_to_hertz
 
 
 def diagnose(
@@ -48,7 +48,7 @@ def diagnose(
     CorpusError
         If the model cannot take the features of the recording or the healthy recording.
     """
-    low, high = (60 * rate for rate in ANY_RATE) if rpm is None else np.broadcast_to(rpm, 2).tolist()
+    low, high = (from_si(rate, "rpm") for rate in ANY_RATE) if rpm is None else np.broadcast_to(rpm, 2).tolist()
     if not (0 < fs < np.inf and 0 < low <= high < np.inf):
         raise ValueError(f"fs and rpm: {fs} and {rpm} are not positive numbers; give Hz, and revolutions per minute.")
     bearings = orders if isinstance(orders, Mapping) else {"the bearing": orders}

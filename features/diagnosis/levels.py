@@ -9,6 +9,7 @@ import numpy as np
 
 from features.signal.motion import velocity_rms
 from features.signal.rows import FloatArray
+from gen.support.units import from_si
 
 ACCELERATION = "m/s²"
 
@@ -52,6 +53,8 @@ def levels_of(x: FloatArray, fs: float, recording: str, channel: str, unit: str,
     crest = np.nan if constant else peak / rms
     kurtosis = np.nan if constant else float(np.mean((centred / rms) ** 4))
     velocity = (
-        1e3 * float(velocity_rms(centred[None], fs, np.array([shaft_rate]))[0]) if unit == ACCELERATION else np.nan
+        from_si(float(velocity_rms(centred[None], fs, np.array([shaft_rate]))[0]), "mm_s")
+        if unit == ACCELERATION
+        else np.nan
     )
     return Levels(recording, channel, unit, mean, rms, peak, crest, kurtosis, velocity)

@@ -8,6 +8,7 @@ import numpy as np
 from features.signal.rows import FloatArray
 from features.table.band import DEFAULT_BAND
 from features.table.indicators import LOWEST_RATE, SHORTEST, Orders
+from gen.support.units import from_si
 
 CLIPPED_SHARE = 1e-3  # of the samples at the highest or lowest value, from which a signal counts as clipped
 CLIPPED_SAMPLES = 5  # at least so many of them
@@ -56,7 +57,10 @@ def _useless(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> tup
         return reason, "record at 10,000 Hz or more"
     highest, top = shaft_rate * max(orders.bpfo, orders.bpfi, 2 * orders.bsf), min(DEFAULT_BAND.high, fs / 2)
     if highest > top:
-        reason = f"at {60 * shaft_rate:,.0f} rpm a fault line lies at {highest:,.0f} Hz, and the signal is used up to {top:,.0f} Hz"
+        speed = from_si(shaft_rate, "rpm")
+        reason = (
+            f"at {speed:,.0f} rpm a fault line lies at {highest:,.0f} Hz, and the signal is used up to {top:,.0f} Hz"
+        )
         return reason, "check speed and sample rate"
     return "", ""
 

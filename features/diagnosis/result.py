@@ -14,6 +14,7 @@ from features.diagnosis.wording import candidates
 from features.signal.rows import FloatArray
 from features.table.indicators import Orders
 from gen.support.shown import Shown
+from gen.support.units import from_si
 
 LONGEST = 60.0  # s; of a longer recording the beginning is used
 
@@ -98,7 +99,7 @@ class Diagnosis(Shown):
             "why": self.sentence,
             "probabilities": candidates(self.probabilities),
             "bearing": self.bearing,
-            "speed": f"{60 * self.shaft_rate:,.4g} rpm",
+            "speed": f"{from_si(self.shaft_rate, 'rpm'):,.4g} rpm",
             "lines": "; ".join(lines),
             "advice": " ".join(self.advice),
             "warnings": " ".join(self.warnings),

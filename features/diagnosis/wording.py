@@ -7,6 +7,7 @@ from features.diagnosis.evidence import LEAST_LEVEL, Line
 from features.diagnosis.search import STRONG_COMB, Given, Pair
 from features.signal.speed import DISAGREEMENT
 from gen.corpus.fault_classes import CLASSES, HEALTHY, SIDES
+from gen.support.units import from_si
 
 AT_END = 0.002  # distance of a speed from the end of the search, relative
 MISSED = ((0.5, (15, 86), (1, 288)), (2.0, (12, 86), (0, 288)), (10.0, (10, 86), (0, 288)))
@@ -107,28 +108,28 @@ def pair_in_words(pair: Pair, given: Given, others: Sequence[Pair]) -> str:
 
 def _pair(pair: Pair, given: Given) -> str:
     bearing = "" if len(given.bearings) == 1 else f"bearing {_bearing(pair)} as found, "
-    low, high = (f"{60 * rate:,.0f}" for rate in given.rates)
+    low, high = (f"{from_si(rate, 'rpm'):,.0f}" for rate in given.rates)
     if low != high:
-        return f"{bearing}shaft {60 * pair.rate:,.0f} rpm as found between {low} and {high} rpm"
+        return f"{bearing}shaft {from_si(pair.rate, 'rpm'):,.0f} rpm as found between {low} and {high} rpm"
     if pair.rate != given.rates[0]:
-        return f"{bearing}shaft {60 * pair.rate:,.0f} rpm as found, {low} rpm as labelled"
+        return f"{bearing}shaft {from_si(pair.rate, 'rpm'):,.0f} rpm as found, {low} rpm as labelled"
     return f"{bearing}shaft {low} rpm as labelled"
 
 
 def speed_warning(pair: Pair, given: Given) -> tuple[str, ...]:
     """Sentences on a speed at the end of the search, and on a label that does not fit the lines."""
-    (low, high), uncertainty, ends = given.rates, 60 * pair.uncertainty, given.searched
+    (low, high), uncertainty, ends = given.rates, from_si(pair.uncertainty, "rpm"), given.searched
     sentences = ()
     if pair.strength > STRONG_COMB and not ends[0] * (1 + AT_END) < pair.rate < ends[1] * (1 - AT_END):
-        first, last = (f"{60 * end:,.0f}" for end in ends)
+        first, last = (f"{from_si(end, 'rpm'):,.0f}" for end in ends)
         sentences = (
             f"The speed found is at the end of the search of {first} to {last} rpm, as with a wrong speed or sample rate; check both.",
         )
     if low != high or abs(pair.rate - low) <= DISAGREEMENT * pair.uncertainty:
         return sentences
     sentence = (
-        f"The labelled speed of {60 * low:,.0f} rpm does not fit the lines of this recording; they fit {60 * pair.rate:,.0f} rpm "
-        f"(± {uncertainty:.0f}), {100 * (pair.rate / low - 1):+.1f} %."
+        f"The labelled speed of {from_si(low, 'rpm'):,.0f} rpm does not fit the lines of this recording; they fit "
+        f"{from_si(pair.rate, 'rpm'):,.0f} rpm (± {uncertainty:.0f}), {100 * (pair.rate / low - 1):+.1f} %."
     )
     return (sentence, *sentences)
 
@@ -151,7 +152,7 @@ def unexplained(pair: Pair, elsewhere: Sequence[Pair], strange: float | None) ->
 
 
 def _place(pair: Pair) -> str:
-    return f"{_bearing(pair)} at {60 * pair.rate:,.0f} rpm"
+    return f"{_bearing(pair)} at {from_si(pair.rate, 'rpm'):,.0f} rpm"
 
 
 def _bearing(pair: Pair) -> str:

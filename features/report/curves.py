@@ -11,6 +11,7 @@ from matplotlib.ticker import NullLocator
 from features.baselines import CurvePoint, Scores
 from features.baselines.detection import Roc, WidthBin
 from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
+from gen.support.units import from_si
 
 PANEL = (2.6, 2.4)  # inches, of a figure that stands beside others
 DASHED = (0, (4, 3))
@@ -20,7 +21,7 @@ DASHED = (0, (4, 3))
 def draw_detection(bins: Sequence[WidthBin], false_alarms: float | None) -> Figure:
     """Share of detected faults by their width, with intervals; and the share of false alarms."""
     figure, axes = _panel()
-    width = [1e3 * one.width for one in bins]
+    width = [from_si(one.width, "mm") for one in bins]
     axes.vlines(width, [one.low for one in bins], [one.high for one in bins], color=BLUE, linewidth=1.2)
     axes.scatter(
         width, [one.detected for one in bins], _areas([one.records for one in bins]), INK, linewidth=0, zorder=3

@@ -30,6 +30,7 @@ from features.signal.rows import FloatArray
 from features.table.band import DEFAULT_BAND, Band
 from gen.corpus import check_result, write_text_durably
 from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT
+from gen.support.units import from_si
 
 LOWEST_DB, MARGIN_DB = -5.0, 4.0  # ends of the axis of levels: below the floor, and above the highest
 DRAWN_HARMONICS = 3  # of each family
@@ -167,7 +168,7 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
         ylim=(LOWEST_DB, highest + MARGIN_DB),
     )
     name_lines(axes, {}, names, INK, top)
-    low, high = (f"{edge / 1e3:.3g}" for edge in spectrum.band)
+    low, high = (f"{from_si(edge, 'khz'):.3g}" for edge in spectrum.band)
     axes.set_title(f"Envelope spectrum of {low}-{high} kHz over its floor; dots mark the evidence", pad=30)
 
 

@@ -18,6 +18,7 @@ from features.report.shown import can_be_drawn, shown_of
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULT_NAMES
 from gen.corpus.fault_classes import COMBS, LOOKS
+from gen.support.units import from_si
 
 CANDIDATES = 15  # records of a class among which its example is chosen
 
@@ -71,12 +72,12 @@ def _conditions(record: xr.Dataset) -> str:
     """Specimen, speed, load if known, and width of the spall if there is one."""
     known = [
         f"Specimen {int(record['specimen'])} of rig {int(record['rig'])}",
-        f"{60 * float(record['shaft_rate']):.0f} rpm",
+        f"{from_si(float(record['shaft_rate']), 'rpm'):.0f} rpm",
     ]
     if np.isfinite(record["load"]):
         known.append(f"{float(record['load']):.0f} N")
     if float(record["width"]) > 0:
-        known.append(f"fault {1e3 * float(record['width']):.2g} mm wide")
+        known.append(f"fault {from_si(float(record['width']), 'mm'):.2g} mm wide")
     return ", ".join(known)
 
 

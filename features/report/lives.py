@@ -15,8 +15,7 @@ from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 from gen.corpus import SIGNAL, open_corpus
 from gen.support.errors import CorpusError
-
-_HOUR = 3600
+from gen.support.units import from_si
 
 
 @rc_context(STYLE)
@@ -42,17 +41,17 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
         signal, fs = _signal(life), float(life["sample_rate"][0])
         figure = Figure(figsize=(WIDTH, 6.5 if like is None else 8.5), layout="constrained")
         panels = figure.subplots(3 if like is None else 4, 1, height_ratios=[2, 1, 1, *([] if like is None else [1.5])])
-        age = life["age"].values / _HOUR
+        age = from_si(life["age"].values, "h")
         _draw_spectra(panels[0], age, signal, fs, str(life["bearing"].values[0]))
         rms = _rms(signal)
         panels[1].semilogy(age, rms / np.median(rms[:FIRST]), color=BLUE, linewidth=1)
         panels[1].set_ylabel("rms over\nits start")
-        panels[2].plot(age, 1e3 * life["spall_length"].values, color=VERMILION, linewidth=1)
+        panels[2].plot(age, from_si(life["spall_length"].values, "mm"), color=VERMILION, linewidth=1)
         panels[2].set(ylabel="spall [mm]", xlabel="age [h]")
         for axes in panels[:3]:
             axes.set_xlim(age[0], max(age[-1], age[0] + 1e-6))
         for name, style in (("initiation_time", ":"), ("first_detectable_time", "--")):
-            at = float(life[name].values[0]) / _HOUR
+            at = from_si(float(life[name].values[0]), "h")
             if at <= age[-1]:
                 for axes in panels[1:3]:
                     axes.axvline(at, color=INK, linestyle=style, linewidth=0.8, label=name.replace("_", " "))
@@ -66,7 +65,9 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
 def _draw_spectra(axes: Any, age: FloatArray, signal: FloatArray, fs: float, title: str) -> None:
     frequency, density = psd(signal, fs, min(256 / fs, signal.shape[-1] / fs))
     level = 10 * np.log10(np.maximum(density.T, 1e-30))
-    mesh = axes.pcolormesh(age, frequency / 1e3, level, vmin=np.quantile(level, 0.02), cmap="viridis", rasterized=True)
+    mesh = axes.pcolormesh(
+        age, from_si(frequency, "khz"), level, vmin=np.quantile(level, 0.02), cmap="viridis", rasterized=True
+    )
     axes.figure.colorbar(mesh, ax=axes, label="dB re 1 (m/s²)²/Hz", pad=0.01)
     axes.set(ylabel="frequency [kHz]", title=f"{title}: power spectral density over its life")
 

@@ -14,6 +14,7 @@ from features.signal.cyclic import Coherence
 from features.signal.impulsive import BandTree
 from features.signal.orders import OrderMap
 from features.signal.rows import FloatArray
+from gen.support.units import from_si
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,14 +71,14 @@ def _draw_bands(axes: Axes, tree: BandTree, score: FloatArray) -> None:
     mesh: Any = None
     for row, division in enumerate(divisions):
         chosen = levels == division
-        across = np.append(edges[chosen, 0], edges[chosen, 1][-1]) / 1e3
+        across = from_si(np.append(edges[chosen, 0], edges[chosen, 1][-1]), "khz")
         mesh = axes.pcolormesh(across, [row - 0.5, row + 0.5], score[chosen][None], rasterized=True, **limits)
     best = int(np.argmax(score))
-    low, high = edges[best] / 1e3
+    low, high = from_si(edges[best], "khz")
     row = int(np.searchsorted(divisions, levels[best]))
     axes.plot([low, high, high, low, low], row + np.array([-0.5, -0.5, 0.5, 0.5, -0.5]), color=VERMILION)
     axes.set_yticks(range(len(divisions)), [f"{division}" for division in divisions])
-    axes.set(xlabel="frequency [kHz]", ylabel="number of bands", xlim=(0, edges.max() / 1e3))
+    axes.set(xlabel="frequency [kHz]", ylabel="number of bands", xlim=(0, from_si(edges.max(), "khz")))
     axes.invert_yaxis()
     axes.figure.colorbar(mesh, ax=axes, label=quantity, pad=0.01)
     axes.set_title(f"Highest {quantity}: {score[best]:.3g}, in {low:.3g}-{high:.3g} kHz")

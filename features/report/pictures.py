@@ -26,6 +26,7 @@ from features.table.indicators import WHITENING_WIDTH, Orders
 from gen.corpus import GENERATOR, check_result, write_durably
 from gen.corpus.fault_classes import FUNDAMENTALS, HEALTHY, LOOKS, SHAFT
 from gen.support.errors import CorpusError
+from gen.support.units import from_si
 
 PictureFormat = Literal["png", "svg", "pdf"]
 FORMATS: Mapping[str, PictureFormat] = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
@@ -174,8 +175,10 @@ def draw_density(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = Non
         if one is not None:
             frequencies, density = psd(one.signal[None], one.fs, SEGMENT)
             faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
-            axes.plot(frequencies / 1e3, 10 * np.log10(np.maximum(density[0], faintest)), linewidth=0.8, **look)
-    low, high = shown.band.low / 1e3, min(shown.band.high, shown.fs / 2) / 1e3
+            axes.plot(
+                from_si(frequencies, "khz"), 10 * np.log10(np.maximum(density[0], faintest)), linewidth=0.8, **look
+            )
+    low, high = (from_si(edge, "khz") for edge in (shown.band.low, min(shown.band.high, shown.fs / 2)))
     axes.axvspan(low, high, color=FAINT, alpha=0.12, linewidth=0)
     axes.set(xlabel="frequency [kHz]", ylabel="PSD [dB]", xlim=(0, shown.fs / 2e3))
     axes.set_title(f"Power spectral density, dB re 1 ({shown.unit})²/Hz; envelope of {low:.3g}-{high:.3g} kHz shaded")
@@ -190,7 +193,10 @@ def draw_envelope_spectrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | 
             axes.plot(order[order <= top], spectrum[order <= top], linewidth=0.8, **look)
     axes.set(ylabel="envelope² / mean", ylim=(0, None))
     low, high = shown.band
-    axes.set_title(f"Squared envelope spectrum of the whitened band {low / 1e3:.3g}-{high / 1e3:.3g} kHz", pad=30)
+    axes.set_title(
+        f"Squared envelope spectrum of the whitened band {from_si(low, 'khz'):.3g}-{from_si(high, 'khz'):.3g} kHz",
+        pad=30,
+    )
 
 
 def draw_cursors(axes: Axes, shown: DrawnRecord) -> float:

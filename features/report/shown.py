@@ -16,6 +16,7 @@ from features.table.indicators import Orders
 from gen.corpus import FAULT_NAMES, SIGNAL, corpus_name, open_corpus
 from gen.corpus.fault_classes import UNKNOWN
 from gen.support.errors import CorpusError
+from gen.support.units import from_si
 
 CONSTANT = 1.02  # largest ratio of two speeds that count as one
 MARGIN = 1.05  # by which a tracked speed may leave the labelled range
@@ -56,7 +57,7 @@ def shown_recording(
     shown = DrawnRecord(name, signal, fs, float(np.mean(shaft_rates)), nominal, UNKNOWN, band)
     turning = _turning(_checked(shown, name), *shaft_rates)
     if turning.angle is None and _varies(*shaft_rates):
-        low, high = (60 * rate for rate in shaft_rates)
+        low, high = (from_si(rate, "rpm") for rate in shaft_rates)
         raise CorpusError(
             f"{name}: the speed between {low:.0f} and {high:.0f} rpm cannot be tracked in the signal, in which harmonics of the "
             f"shaft do not stand above the noise all the time, or which is too short; give one --rpm for a part of constant speed."
@@ -102,8 +103,8 @@ def _varies(slowest: float, fastest: float) -> bool:
 def _turning(shown: DrawnRecord, slowest: float, fastest: float) -> DrawnRecord:
     """The same with its speed in the title, and with the angle of the shaft if the speed varies and can be tracked in the signal."""
     if not (can_be_drawn(shown) and _varies(slowest, fastest)):
-        return shown._replace(title=f"{shown.title}, {60 * shown.shaft_rate:.0f} rpm")
-    title = f"{shown.title}, {60 * slowest:.0f}-{60 * fastest:.0f} rpm"
+        return shown._replace(title=f"{shown.title}, {from_si(shown.shaft_rate, 'rpm'):.0f} rpm")
+    title = f"{shown.title}, {from_si(slowest, 'rpm'):.0f}-{from_si(fastest, 'rpm'):.0f} rpm"
     try:
         rate = track_speed(shown.signal, shown.fs, slowest / MARGIN, fastest * MARGIN).rate
     except ValueError:  # too short, or sampled too slowly, for a course

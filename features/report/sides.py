@@ -25,6 +25,7 @@ from features.report.pictures import (
 )
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
+from gen.support.units import from_si
 
 COLOURS = (VERMILION, BLUE, "#009E73", "#CC79A7", "#E69F00", "#56B4E9")  # of the sets, as of the classes
 COLUMN = 2.6  # inches, width of one set
@@ -51,8 +52,8 @@ def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
         frequencies, power = psd(shown.signal[None], shown.fs, SEGMENT)
         share = power[0] / power[0].sum()
         level = 10 * np.log10(np.maximum(share, 10 ** (FAINTEST_DB / 10)))
-        density.plot(frequencies / 1e3, level, color=INK, linewidth=0.8)
-        density.set(xlabel="frequency [kHz]", xlim=(0, top / 1e3))
+        density.plot(from_si(frequencies, "khz"), level, color=INK, linewidth=0.8)
+        density.set(xlabel="frequency [kHz]", xlim=(0, from_si(top, "khz")))
         _draw_envelope(envelope, shown)
     panels[0, 0].set_ylabel("acceleration / rms")
     panels[1, 0].set_ylabel("share of the energy [dB]")

@@ -18,6 +18,7 @@ from features.signal.rows import FloatArray
 from features.signal.speed import DISAGREEMENT, EVIDENCE, ShaftSpeed, find_speed
 from features.table.speed import line_levels
 from gen.corpus import RecordBlock, read_channel
+from gen.support.units import from_si
 
 Speed = Literal["off", "check", "correct"]
 SPEEDS: tuple[Speed, ...] = ("off", "check", "correct")
@@ -181,8 +182,9 @@ def speed_warnings(table: xr.Dataset) -> list[str]:
         else "check the label and the bearing, or use --speed correct"
     )
     sentences = [
-        f"{table['source'].values[row]}: labelled {60 * label[row]:.0f} rpm, but its {LINES[EVIDENCE[table[BY].values[row]]]} "
-        f"fit {60 * estimate[row]:.0f} +- {60 * uncertainty[row]:.0f} rpm ({100 * (estimate[row] / label[row] - 1):+.1f} %); "
+        f"{table['source'].values[row]}: labelled {from_si(label[row], 'rpm'):.0f} rpm, but its {LINES[EVIDENCE[table[BY].values[row]]]} "
+        f"fit {from_si(estimate[row], 'rpm'):.0f} +- {from_si(uncertainty[row], 'rpm'):.0f} rpm "
+        f"({100 * (estimate[row] / label[row] - 1):+.1f} %); "
         f"{action}."
         for row in wrong[:MOST_SENTENCES]
     ]

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from gen.importers.labels import Labels
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
+from gen.support.units import from_si
 
 _TOPICS = {"fault": "Class", "specimen": "Specimen", "shaft_rpm": "Shaft speed (rpm)", "load_n": "Load (N)"}
 _MOST_PATHS = 3  # shown of the files that a sentence holds for
@@ -37,7 +38,7 @@ def _of_file(labels: Labels) -> Iterator[str]:
     bpfo, bpfi, bsf = (getattr(orders(bearing), name) for name in ("bpfo", "bpfi", "bsf"))
     yield (
         f"Bearing: {bearing.designation}, geometry {source}: {bearing.n_balls} balls of "
-        f"{1e3 * bearing.ball_diameter:g} mm on {1e3 * bearing.pitch_diameter:g} mm; BPFO {bpfo:.4g}, BPFI {bpfi:.4g}, "
+        f"{from_si(bearing.ball_diameter, 'mm'):g} mm on {from_si(bearing.pitch_diameter, 'mm'):g} mm; BPFO {bpfo:.4g}, BPFI {bpfi:.4g}, "
         f"2 BSF {2 * bsf:.4g} orders"
     )
 

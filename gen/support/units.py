@@ -8,7 +8,12 @@ a labelled speed is divided by 60.
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Quantity = TypeVar("Quantity", float, "NDArray[Any]")
 
 
 class Unit(NamedTuple):
@@ -28,6 +33,7 @@ UNITS: Mapping[str, Unit] = {
     "mm_s": Unit("mm/s", 1e-3),
     "mm2_s": Unit("mm2/s", 1e-6),
     "hz": Unit("Hz", 1.0),
+    "khz": Unit("kHz", 1e3),
     "s": Unit("s", 1.0),
     "kg": Unit("kg", 1.0),
     "n": Unit("N", 1.0),
@@ -125,6 +131,16 @@ def to_si(value: float, unit: str) -> float:
     (0.002, True)
     """
     return value * UNITS[unit].factor
+
+
+def from_si(value: Quantity, unit: str) -> Quantity:
+    """Value of an SI quantity in the unit with a suffix of ``UNITS``; a rate in Hz becomes a speed in rpm.
+
+    >>> from_si(0.002, "mm"), from_si(30.0, "rpm"), from_si(5400.0, "h")
+    (2.0, 1800.0, 1.5)
+    """
+    # 1 / (1 / 60) is exactly 60, and dividing by 1 / 60 would not be the inverse of dividing by 60
+    return value * (1 / UNITS[unit].factor)
 
 
 def percent_to_share(percent: float) -> float:

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gen.support.units import from_si
 from raceway.commands.recordings import Reading
 
 if TYPE_CHECKING:
@@ -22,14 +23,14 @@ def diagnosis_facts(
         "verdict": diagnosis.verdict,
         "probabilities": diagnosis.probabilities,
         "bearing": diagnosis.bearing,
-        "shaft_rpm": 60 * diagnosis.shaft_rate,
+        "shaft_rpm": from_si(diagnosis.shaft_rate, "rpm"),
         "evidence": [line_facts(line) for line in diagnosis.evidence],
         "levels": [one._asdict() for one in diagnosis.levels],
         "explanations": [_pair_facts(pair, as_given=as_given) for pair, as_given in pairs],
         "sentence": diagnosis.sentence,
         "advice": diagnosis.advice,
         "warnings": (*notes, *diagnosis.warnings),
-        "given_rpm": [60 * rate for rate in diagnosis.given.rates],
+        "given_rpm": [from_si(rate, "rpm") for rate in diagnosis.given.rates],
         "threshold": diagnosis.threshold,
         "missed_share": None if math.isnan(diagnosis.missed) else diagnosis.missed,
         "false_alarm": FALSE_ALARM,
@@ -48,8 +49,8 @@ def _pair_facts(pair: "Pair", *, as_given: bool) -> dict[str, Any]:
     return {
         "bearing": pair.bearing,
         "alike": list(pair.alike),
-        "shaft_rpm": round(60 * pair.rate, 2),
-        "uncertainty_rpm": round(60 * pair.uncertainty, 2),
+        "shaft_rpm": round(from_si(pair.rate, "rpm"), 2),
+        "uncertainty_rpm": round(from_si(pair.uncertainty, "rpm"), 2),
         "lines": pair.lines,
         "as_given": as_given,
     }
@@ -72,11 +73,11 @@ def assumptions(
     bearing = bearings[diagnosis.bearing]
     orders = ", ".join(f"{name.upper()} {float(order):.3f}" for name, order in diagnosis.orders._asdict().items())
     angle = f", contact angle {math.degrees(bearing.contact_angle):.3g}°"
-    low, high = (f"{60 * rate:,.6g}" for rate in diagnosis.given.rates)
+    low, high = (f"{from_si(rate, 'rpm'):,.6g}" for rate in diagnosis.given.rates)
     sensitivity = "" if reading.sensitivity is None else f", {reading.sensitivity:g} mV per g"
     facts = {
-        "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of {1e3 * bearing.ball_diameter:.4g} mm on "
-        f"{1e3 * bearing.pitch_diameter:.4g} mm{angle}, outer ring fixed",
+        "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of "
+        f"{from_si(bearing.ball_diameter, 'mm'):.4g} mm on {from_si(bearing.pitch_diameter, 'mm'):.4g} mm{angle}, outer ring fixed",
         "orders": orders,
         "given bearings": ", ".join(bearings) if len(bearings) > 1 else "",
         "given speed": f"{low} rpm" if low == high else f"{low} to {high} rpm",

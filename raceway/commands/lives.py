@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from gen.support.units import from_si
 from raceway.commands.feature_tables import table_of
 from raceway.console import show
 from raceway.console.options import (
@@ -87,9 +88,9 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
         (
             (
                 str(name),
-                *(f"{row[column] / 3600:,.1f}" for column in at),
+                *(f"{from_si(row[column], 'h'):,.1f}" for column in at),
                 *(f"{row[column]:.3f}" for column in others),
-                f"{row['mae_before'] / 3600:,.1f}",
+                f"{from_si(row['mae_before'], 'h'):,.1f}",
             )
             for name, row in scores.iterrows()
         ),

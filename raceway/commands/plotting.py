@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gen.support.units import rpm_to_hertz
 from raceway.commands.recordings import Reading, read_recording, reading_options, rpm_option
 from raceway.console import show
 from raceway.console.options import A_PATH, Analysis, band_option, file_option
@@ -136,5 +137,5 @@ def _shown(
     for note in notes:
         notice(f"warning: {note}")
     (signal,) = recorded.signals.values()
-    rates = speeds[0] / 60, speeds[1] / 60
+    rates = rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])
     return shown_recording(source.name, signal, recorded.fs, rates, bearing_orders(bearing), options["band"])

@@ -15,17 +15,18 @@ from matplotlib.patches import Annulus, Circle, Polygon
 
 from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION
 from gen.physics.catalogue import CATALOGUE
+from gen.support.units import from_si
 from studies.ophel2025.paper import CRACK, SHAFT_MASS, FloatArray, Preset
 
 Point = tuple[float, float]
 
 BEARING = CATALOGUE["6205-paper"]
-BALL, PITCH = 1e3 * BEARING.ball_diameter, 1e3 * BEARING.pitch_diameter  # mm
+BALL, PITCH = from_si(BEARING.ball_diameter, "mm"), from_si(BEARING.pitch_diameter, "mm")  # mm
 INNER, OUTER = (PITCH - BALL) / 2, (PITCH + BALL) / 2  # mm, radii of the raceways
 BORE, OUTSIDE = 12.5, 26.0  # mm, radii of the 6205
 POSITION = math.degrees(CRACK.angle)  # degrees from x, at the start
 HALF = math.degrees(CRACK.width / 2) / (1e-3 * INNER)  # degrees
-DEPTH = 1e3 * CRACK.depth  # mm
+DEPTH = from_si(CRACK.depth, "mm")  # mm
 SHAFT, HOUSING, STEEL = "#dbe6f0", "#ece8df", "#ffffff"
 
 
@@ -66,7 +67,7 @@ def _between_rings(axes: Axes, preset: Preset) -> None:
     _spring(axes, _polar(INNER, spring), _polar(OUTER, spring), 1.5)
     _damper(axes, _polar(INNER, damper), _polar(OUTER, damper), 1.5)
     mantissa, power = f"{preset.load_deflection_factor:.2e}".split("e")
-    gap = 1e6 * preset.half_clearance
+    gap = from_si(preset.half_clearance, "um")
     contact = (
         rf"ball: $f = K\,\delta^{{3/2}}$"
         "\n"
@@ -140,7 +141,7 @@ def _passage(axes: Axes) -> None:
     for edge in (90 - HALF, 90 + HALF):
         axes.plot(*zip(_polar(9.6, edge), _polar(INNER, edge), strict=True), color=VERMILION, linewidth=0.8)
     _angle(axes, 10.2, (90 - HALF, 90 + HALF), rf"$\phi_d$ = {2 * HALF:.0f}°", (0, 8.2), VERMILION, ha="center")
-    arc = 1e3 * CRACK.width
+    arc = from_si(CRACK.width, "mm")
     _note(axes, _polar(INNER, 90 + HALF), (-16.2, 11.5), f"arc $W_d$\n{arc:.1f} mm")
     _note(axes, _polar(INNER - DEPTH / 2, 90 - HALF), (12.6, 11.5), f"depth $D_d$\n{DEPTH:g} mm")
     _note(axes, (0, OUTER - DEPTH / 2), (4.6, 29.6), f"drop $d_r$ = {DEPTH:g} mm: no contact")

@@ -8,7 +8,7 @@ from gen.drawing import Distribution, Drawn, Draws, Known, Number, Section, with
 from gen.mechanisms.faults.bearing_fault import BearingFault, Spall
 from gen.physics.bearing import Bearing
 from gen.support.errors import RecipeError
-from gen.support.units import to_si
+from gen.support.units import from_si, to_si
 
 MAX_SPALLS = 16
 Trace = Annotated[tuple[Annotated[Number, Field(ge=0, le=5000)], ...], Field(min_length=3, max_length=2000)]
@@ -96,6 +96,6 @@ def check_fits(spall: Spall, bearing: Bearing, item: str) -> None:
     radius, widest = bearing.radius(spall.site), widest_spall(spall.site, bearing)
     if spall.width > widest:
         raise RecipeError(
-            f"{item}: a spall of {spall.width * 1e3:g} mm does not fit the {spall.site} radius of {radius * 1e3:.3g} mm; "
-            f"keep width_mm below {widest * 1e3:.3g}."
+            f"{item}: a spall of {from_si(spall.width, 'mm'):g} mm does not fit the {spall.site} radius of {from_si(radius, 'mm'):.3g} mm; "
+            f"keep width_mm below {from_si(widest, 'mm'):.3g}."
         )
