@@ -15,13 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, hilbert, sosfiltfilt
 
+from gen.drawing import Level
 from gen.generation.undetected import make_records
 from gen.measurement.judging import FALSE_ALARM, judges_of
+from gen.measurement.levels import Gains
 from gen.measurement.measure import measure
 from gen.measurement.mixing import Parts, Products
 from gen.measurement.rig import rig_filters
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import Gains, Purpose, Scenario, stream
+from gen.scenarios import Scenario
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
 from gen.simulation.truth import lines_of_faults
@@ -48,10 +50,9 @@ class Case(NamedTuple):
 class OtherNoise(Scenario):
     """The same record with another noise of the machine."""
 
-    def rng(self, purpose: Purpose) -> np.random.Generator:
-        """Random stream of this record for one purpose."""
-        record = self.record.stream_number + 1_000_000 * (purpose == Purpose.NOISE)
-        return stream(self.settings.seed, self.rig.number, self.specimen.number, record, purpose)
+    def stream(self, name: str, level: Level = "record") -> np.random.Generator:
+        """Random stream by name; that of the noise is another one."""
+        return super().stream(f"other {name}" if name == "noise" else name, level)
 
 
 def cases(recipe: Recipe, pairs: int) -> list[Case]:
@@ -62,7 +63,7 @@ def cases(recipe: Recipe, pairs: int) -> list[Case]:
     changes = {"corpus": corpus, "truth": truth, "faults": faults, "records": 2 * pairs}
     made = make_records(recipe.model_copy(update=changes), range(2 * pairs))
     scenarios, response = made.measured.scenarios, made.response
-    others: list[Scenario] = [OtherNoise(**vars(one)) for one in scenarios[::2]]
+    others: list[Scenario] = [OtherNoise(one.recipe) for one in scenarios[::2]]
     again = measure(simulate(scenarios[::2]).acceleration, others).signal
     whole = [place for place in range(1, len(scenarios), 2) if not {place - 1, place} & response.failures.keys()]
     found = []
@@ -71,10 +72,10 @@ def cases(recipe: Recipe, pairs: int) -> list[Case]:
         if orders:
             signals = made.measured.signal[place], made.measured.signal[place - 1], again[place // 2]
             record, twin, other = (signal[0] / (made.measured.counts_per_unit or 1.0) for signal in signals)
-            seen, rate = bool(made.measured.detectable[place]), response.truth[place].shaft_rate
+            seen, rate = bool(made.measured.detectable[place]), response.truth[place].mean_rate
             found.append(
                 Case(
-                    scenarios[place].specimen.fault,
+                    scenarios[place].fault,
                     seen,
                     record,
                     twin,
@@ -89,20 +90,17 @@ def cases(recipe: Recipe, pairs: int) -> list[Case]:
 
 def _impulses(scenario: Scenario) -> NDArray[np.float32]:
     """Lines of the impulses of a machine behind the gain of its record."""
-    axis, gains = timeline(scenario.settings), scenario.record.gains
-    assert gains is not None
-    filters = rig_filters(scenario.rig, axis.returned, axis.fs, scenario.settings.seed)
-    return np.float32(gains.background**2) * filters.impulse_lines
+    axis, level = timeline(scenario.recipe), scenario.recipe.level.si()
+    filters = rig_filters(scenario.recipe, axis.returned, axis.fs, scenario.origin.rig)
+    return np.float32((level["gain"] * level["background"]) ** 2) * filters.impulse_lines
 
 
 def rule_alarms(case: Case, fs: float) -> bool:
     """Whether the rule takes the noise of another recording of a healthy machine for a fault."""
     angles = 2 * np.pi * case.shaft_rate / fs * np.arange(len(case.twin))
     twin, again = (signal[None].astype(np.float32) for signal in (case.twin, case.again))
-    signals, products = (
-        np.stack([twin, np.zeros_like(twin), again - twin]),
-        Products(*np.zeros(6)),
-    )  # not needed for lines
+    signals = np.stack([twin, np.zeros_like(twin), again - twin])
+    products = Products(*np.zeros(6))  # not needed for lines
     (sees,) = judges_of([Parts(signals, products, case.impulses, case.orders, angles, steady=True)])
     return sees(Gains(1.0, 1.0))
 

@@ -22,7 +22,7 @@ from gen.physics.inputs import KernelInput
 from gen.physics.kernel.decimate import Decimation, Single, Stage, decimation
 from gen.physics.kernel.layout import Batch
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios, settings_of
+from gen.scenarios import draw_scenarios
 from gen.simulation.batches import Group, integrate_batch
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import laid_out
@@ -74,11 +74,9 @@ def kernel_rate(recipe: Path | str, records: int) -> Rate:
     checked = read_recipe(recipe)
     once = checked.truth.model_copy(update={"twins": False})  # no second run of a record without its fault
     checked = checked.model_copy(update={"truth": once})
-    axis, scenarios = timeline(settings_of(checked)), draw_scenarios(checked, 0, records)
+    axis, scenarios = timeline(checked), draw_scenarios(checked, 0, records)
     batches = laid_out(scenarios)
-    total = axis.integrated * sum(
-        steps_per_sample(kernel_input(scenario, axis), scenario.record, settings_of(checked)) for scenario in scenarios
-    )
+    total = axis.integrated * sum(steps_per_sample(kernel_input(scenario, axis), scenario) for scenario in scenarios)
     integrate_every(batches, axis)  # compiles the kernels, or loads them
     return _rate(total, lambda: integrate_every(batches, axis))
 
@@ -93,9 +91,7 @@ def step_seconds(recipe: Path | str) -> tuple[float, int]:
     """Step of our kernel for the first record of a recipe [s], and steps per sample."""
     checked = read_recipe(recipe)
     (scenario,) = draw_scenarios(checked, 0, 1)
-    factor = steps_per_sample(
-        kernel_input(scenario, timeline(settings_of(checked))), scenario.record, settings_of(checked)
-    )
+    factor = steps_per_sample(kernel_input(scenario, timeline(checked)), scenario)
     return 1 / (checked.recording.sample_rate_hz * factor), factor
 
 
@@ -113,7 +109,7 @@ def _rate(total: int, run: Callable[[], None]) -> Rate:
 def _c_rate(recipe: Path | str, records: int, folder: Path) -> Rate:
     """Function that measures the record-steps per second of the C program at the number of lanes at which it is fastest here."""
     checked = read_recipe(recipe)
-    groups, samples = seed_records(checked, records), timeline(settings_of(checked)).integrated
+    groups, samples = seed_records(checked, records), timeline(checked).integrated
     dt, steps = step_seconds(recipe)
     total = samples * steps * sum(map(len, groups.values()))
     rates = {}

@@ -15,7 +15,7 @@ from benchmarks.kernel import FULL, integrate_every
 from benchmarks.pairs import Line, cpu_seconds, interleaved, row, run_python, seconds
 from gen.generation.corpus import generate
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios, settings_of
+from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import laid_out
 from gen.simulation.timeline import timeline
 
@@ -77,7 +77,7 @@ def _kernel_alone(recipe: Path, records: int) -> Callable[[], float]:
     """Function that measures the records per second of the kernel; as in a corpus, a record with a fault is also run without it."""
     checked = read_recipe(recipe)
     batches = laid_out(draw_scenarios(checked, 0, records))
-    return lambda: records / cpu_seconds(integrate_every, batches, timeline(settings_of(checked)))
+    return lambda: records / cpu_seconds(integrate_every, batches, timeline(checked))
 
 
 def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_per_part: int = 32) -> Iterator[Line]:

@@ -111,9 +111,16 @@ smaller one, other than 0, cannot hold the rings together:
 
 The common value is pseudo-random with every `corpus.sampling`; a grid counts the rigs or specimens.
 
-None of these moves another value: each quantity keeps its own random numbers. The same holds for the conditions of
-one fault, such as `{kind: outer, width_mm: 1, operation: {load_n: 500}}`. Use these with care: a classifier can learn
-the load instead of the fault.
+**A list** gives the values of a key that is drawn for each of several items, one for each: resonances and tones that
+were measured on a machine, or the spalls of a race. The count must be as long:
+
+    path:
+      modes: {count: 2, frequency_hz: [820, 2950], damping_percent: [3, 1.5], gain_db: [0, 12], sign: [1, -1]}
+
+None of these moves another value: a random number follows from the seed, the number of its rig, specimen or record, and
+the name of its key (with `sampling: random`). The same holds for the conditions of one fault, such as
+`{kind: outer, width_mm: 1, operation: {load_n: 500}}`; a grid among them may move other grids of its records. Use these
+with care: a classifier can learn the load instead of the fault.
 
 ## Pairs and ladders
 

@@ -1,44 +1,54 @@
-"""Accelerations and rigs for the laws of the measurement, on responses that need no simulation."""
-
-from dataclasses import replace
+"""Drawn sections, and machines and bearings that need no simulation, for the laws of mechanisms and measurement."""
 
 import numpy as np
 
+from gen.drawing import Combination, Draws
 from gen.measurement.measure import measure
-from gen.scenarios import draw_scenarios, settings_of
+from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
 
 FS = 12_000.0
 FLOAT = {"recording.converter": {"kind": "float32"}}
 
 
-def path(direct, modes=(), once=0.0, twice=0.0):
-    return {"direct": direct, "modes": tuple(modes), "modulation": {"once": once, "twice": twice}}
+def drawn(section, **keys):
+    """A section of a recipe as one rig, specimen and record have it; one with a probability is there."""
+    there = {"probability": 1} if "probability" in section.model_fields else {}
+    given = section.model_validate(there | keys)
+    for level in ("rig", "specimen", "record"):
+        given = given.draw(Draws(0, level, 0, Combination(0), []))
+    return given
 
 
-def mode(frequency, damping, gain):
-    return {"frequency": frequency, "damping": damping, "gain": gain}
+def lines(levels, **others):
+    """Keys of lines with some levels [dB] and other keys that are the same for all of them."""
+    return {"count": len(levels), "level_db": [*levels]} | {key: [value] * len(levels) for key, value in others.items()}
 
 
-def tone(frequency, level, modulation=0.0):
-    return {"frequency": float(frequency), "level": level, "modulation": modulation}
+def quiet(**keys):
+    """Section ``background`` of white noise and nothing else, with some keys; its sources are there."""
+    sources = {
+        key: {"probability": 1, **value} for key, value in keys.items() if isinstance(value, dict) and key != "modes"
+    }
+    return {"background": {"floor_db": -120, **keys, **sources}}
 
 
-def quiet(**sources):
-    """A drawn background without a floor to speak of, with some sources."""
-    return {
-        "slope": 0.0, "floor": 1e-6, "modes": (), "modulation": {"once": 0.0, "twice": 0.0}, "coherence": 0.0, "growth": 0.0,
-        "harmonics": None, "tones": None, "impulses": None, "knocks": None,
-    } | sources  # fmt: skip
+def physical(background=1.0, gain=1.0):
+    """Section ``level`` with this rms of the background [m s-2]."""
+    return {"level": {"kind": "physical", "background_m_s2": background, "gain": gain}}
 
 
-QUIET = quiet()
+def direct(gain=1.0, **keys):
+    """Section ``path`` with a direct part, and resonances or a modulation among the keys alone."""
+    return {"path": {"direct": gain, **keys}}
 
 
 def response(recipe, n_records, wave):
     """``wave(time)`` as the acceleration of every record and channel, shape (record, channel, time)."""
-    n = timeline(settings_of(recipe)).lead + recipe.n_samples
-    signal = np.broadcast_to(wave(np.arange(n) / FS), (n_records, len(recipe.recording.channels), n))
+    axis = timeline(recipe)
+    signal = np.broadcast_to(
+        wave(np.arange(axis.returned) / axis.fs), (n_records, len(recipe.recording.channels), axis.returned)
+    )
     return signal.copy()
 
 
@@ -54,12 +64,7 @@ def rms(x):
     return np.sqrt(np.mean(np.asarray(x, dtype=float) ** 2, axis=(1, 2)))
 
 
-def with_rig(scenarios, **changes):
-    return [replace(scenario, rig=replace(scenario.rig, **changes)) for scenario in scenarios]
-
-
-def background_of(recipe, background, n_records=1, **of_rig):
-    """Signals of a machine with a background and a bearing at rest, shape (record, channel, time), and their scenarios."""
-    drawn = draw_scenarios(recipe, 0, n_records)
-    scenarios = with_rig(drawn, **{"background": background, "background_rms": 1.0, "gain": 1.0} | of_rig)
+def background_of(recipe, n_records=1):
+    """Signals of machines with bearings at rest, shape (record, channel, time), and their scenarios."""
+    scenarios = draw_scenarios(recipe, 0, n_records)
     return measure(silence(recipe, n_records), scenarios).signal.astype(float), scenarios

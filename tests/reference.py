@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
-from gen.physics.inputs import KernelInput, SpallInput, Turning
+from gen.physics.inputs import KernelInput, Spall, Turning
 from gen.physics.kernel import decimate
 from gen.physics.kernel.drop import RAISED_EDGE
 from gen.physics.kernel.layout import (
@@ -253,7 +253,7 @@ def rigid_path(offset: float, half: float, arc: float, ball: float, race: float,
     return min(lens + math.copysign(bend, race), depth)
 
 
-def fall(fault: SpallInput, offset: float, arc: float, ball: float, race: float) -> float:
+def fall(fault: Spall, offset: float, arc: float, ball: float, race: float) -> float:
     """Drop of a ball whose contact is ``offset`` [rad] from the centre of a spall, see docs/model.md, Spalls [m]."""
     half = fault.width / 2 / arc
     inside = half - abs(offset)
@@ -274,7 +274,7 @@ def fall(fault: SpallInput, offset: float, arc: float, ball: float, race: float)
 class Meeting(NamedTuple):
     """A ball near a spall."""
 
-    fault: SpallInput
+    fault: Spall
     ball: int
     offset: float
     """Of its contact from the middle of the spall [rad]."""
@@ -307,7 +307,7 @@ def meetings(record: KernelInput, angles: FloatArray, jitter: FloatArray, share:
     return met
 
 
-def scatter(fault: SpallInput, number: int) -> float:
+def scatter(fault: Spall, number: int) -> float:
     """Log-normal factor of the drop in one passage [1]."""
     return math.exp(fault.scatter * standard_normal(number, fault.seed)) if fault.scatter > 0 else 1.0
 

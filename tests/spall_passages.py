@@ -19,7 +19,7 @@ from scipy.signal import butter, sosfiltfilt
 from gen.physics.bearing import Bearing, orders
 from gen.physics.inputs import KernelInput
 from gen.physics.rotor import Machine, as_columns, ball_forces, rest
-from gen.scenarios import Scenario, draw_scenarios, settings_of
+from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import largest_drop_over
 from gen.simulation.inputs import bare_inputs, only
 from gen.simulation.motion import draw_motion
@@ -76,16 +76,16 @@ def passage(kind: str, width_mm: float, rpm: float, profile: str = "geometric", 
     )
     scenario = draw_scenarios(recipe)[0]
     response = simulate([scenario, scenario.without_fault()])
-    given, bearing, width = response.inputs[0], scenario.specimen.bearing, 1e-3 * width_mm
+    given, bearing, width = response.truth[0].given, scenario.bearing, 1e-3 * width_mm
     assert given is not None
-    load = scenario.rig.machine["load_angle"]
+    load = scenario.machine["load_angle"]
     housing, sensor = np.subtract(*response.acceleration.astype(float))
     fast = sosfiltfilt(butter(4, ABOVE, "highpass", fs=FS, output="sos"), sensor)
     kinks = np.abs(np.convolve(housing, [1, -2, 1], "same"))
     duration = width / contact_speed(bearing, given.turning.shaft_rate)
     n = round(FS * duration * (EXIT[1] - ENTRY[0]) / 2)
     place = np.linspace(ENTRY[0], EXIT[1], n)
-    parts = [slice(start, start + n) for start in _starts(scenario, given, timeline(settings_of(recipe)), n)]
+    parts = [slice(start, start + n) for start in _starts(scenario, given, timeline(recipe), n)]
     events = np.median([_events(place, kinks[part], sensor[part], fast[part]) for part in parts], axis=0)
     needed = unloading_drop(given.machine, bearing, load)
     unloaded = unloading_length(kind, needed, bearing) if profile == "geometric" else 0.0  # others drop at once
@@ -102,7 +102,7 @@ def _starts(scenario: Scenario, given: KernelInput, axis: Timeline, n: int) -> l
     spall, turning, bearing = given.spalls[0], given.turning, given.bearing
     turned = 2 * math.pi * turning.shaft_rate * (axis.response_times() + axis.settle / axis.fs)
     middle = spall.angle + (turning.shaft_angle + turned if spall.site == "inner" else 0.0 * turned)
-    near = np.abs(wrapped(middle - scenario.rig.machine["load_angle"])) < NEAR_THE_LOAD
+    near = np.abs(wrapped(middle - scenario.machine["load_angle"])) < NEAR_THE_LOAD
     found = []
     for ball in range(bearing.n_balls):
         angle = turning.cage_angle + orders(bearing).ftf * turned + 2 * math.pi * ball / bearing.n_balls
@@ -138,7 +138,7 @@ def contributions(
     recipe = reference_recipe(fault, n_seeds, operation=operation, recording={"duration_s": seconds})
     scenarios = draw_scenarios(recipe)
     response = simulate(scenarios + [scenario.without_fault() for scenario in scenarios]).acceleration
-    damaged, healthy = response[:, 0, timeline(settings_of(recipe)).kept].astype(float).reshape(2, n_seeds, -1)
+    damaged, healthy = response[:, 0, timeline(recipe).kept].astype(float).reshape(2, n_seeds, -1)
     return damaged - healthy
 
 
@@ -169,7 +169,7 @@ def unloads(scenario: Scenario, number: int = 0) -> bool | None:
         machine = only(bare_inputs([draw_motion(scenario)])).machine
     except (SimulationError, ValueError):
         return None
-    spall = scenario.specimen.spalls[number]
-    angle = scenario.rig.machine["load_angle"] + (spall.angle if spall.site == "outer" else 0.0)
-    needed = unloading_drop(machine, scenario.specimen.bearing, angle)
+    spall = scenario.spalls[number]
+    angle = spall.angle if spall.site == "outer" else scenario.machine["load_angle"]
+    needed = unloading_drop(machine, scenario.bearing, angle)
     return None if math.isnan(needed) else largest_drop_over(scenario, number) >= needed

@@ -9,7 +9,7 @@ from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import LINE_EXPONENT
-from gen.physics.inputs import ROUND, KernelInput, SpallInput, Turning, Waviness
+from gen.physics.inputs import ROUND, KernelInput, Spall, Turning, Waviness
 from gen.physics.kernel.drop import PROFILES as EVERY_PROFILE
 from gen.physics.kernel.layout import n_process_terms
 from gen.physics.rotor import Machine, sensor_springs
@@ -86,7 +86,7 @@ def machines(draw, *, half_clearance=None, contact_damping=None):
 @st.composite
 def spalls(draw, sites=("inner", "outer", "ball")):
     """A spall on one of ``sites``, narrower than the space between two balls."""
-    return SpallInput(draw(st.sampled_from(sites)), draw(widths), draw(depths), draw(angles), draw(st.integers(0, 8)))
+    return Spall(draw(st.sampled_from(sites)), draw(widths), draw(depths), draw(angles), draw(st.integers(0, 8)))
 
 
 @st.composite
@@ -157,7 +157,7 @@ def wandering_records(draw, *, balls=NINE):
 @st.composite
 def extended_records(draw):
     """A record with one spall on the inner race wide enough for two balls, and perhaps a second spall."""
-    wide = SpallInput("inner", draw(st.floats(11.5e-3, 18e-3)), draw(st.floats(3e-6, 50e-6)), draw(angles))
+    wide = Spall("inner", draw(st.floats(11.5e-3, 18e-3)), draw(st.floats(3e-6, 50e-6)), draw(angles))
     other = draw(st.lists(spalls(), max_size=1))
     return draw(wandering_records())._replace(spalls=(wide, *other))
 

@@ -83,10 +83,10 @@ Every corpus has the variables below. It can have further ones, numbers that are
 
 
 _SIMULATED = """
-Simulated records also have these; `draws` holds all that a record is simulated from: every drawn value by the names of
-the recipe's keys, and the settings that the recipe fixes. `raceway replay` makes the record again from it, in whatever
-corpus it lies. Where simulated and recorded records lie in one corpus, recorded ones have NaN, -1, `unjudged` or empty
-text there:
+Simulated records also have these; `draws` is the recipe of the record alone, as JSON: a number in place of every
+distribution, and the numbers of the record in the section `origin`. `raceway replay` makes the record again from it, in
+whatever corpus it lies, and `raceway replay --recipe FILE` writes it as a recipe to edit. Where simulated and recorded
+records lie in one corpus, recorded ones have NaN, -1, `unjudged` or empty text there:
 
 """
 

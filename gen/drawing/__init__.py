@@ -5,9 +5,9 @@ module        responsibility
 ============= ========================================================
 expressions   distributions as text: loguniform(0.1, 2)
 distributions distributions of drawn values
-section       base of all sections: bounds, unknown keys, meanings
-draws         draw values from the distributions of a section
-streams       random streams by number and purpose
+section       base of all sections: bounds, unknown keys, meanings, draw
+draws         numbers that a section is drawn from, shares of others
+streams       random numbers and streams by name
 ============= ========================================================
 """
 
@@ -17,6 +17,7 @@ from gen.drawing.distributions import (
     Choice,
     Distribution,
     Grid,
+    Listed,
     LogUniform,
     Normal,
     Number,
@@ -27,12 +28,12 @@ from gen.drawing.distributions import (
     weighted_index,
     within,
 )
-from gen.drawing.draws import Combination, Drawn, Draws, Known, in_si, known_of
+from gen.drawing.draws import Combination, Draws, Known
 from gen.drawing.section import Count, Name, Probability, Section, Weight, composed, plain, quantities
-from gen.drawing.streams import Purpose, stream
+from gen.drawing.streams import Level, number, stream
 
 __all__ = [
-    "DISTRIBUTIONS", "KINDS", "Choice", "Combination", "Count", "Distribution", "Drawn", "Draws", "Grid", "Known", "LogUniform", "Name",
-    "Normal", "Number", "Probability", "Purpose", "Section", "Support", "Uniform", "Weight", "composed", "in_si", "interval", "is_within",
-    "known_of", "plain", "quantities", "stream", "weighted_index", "within",
+    "DISTRIBUTIONS", "KINDS", "Choice", "Combination", "Count", "Distribution", "Draws", "Grid", "Known", "Level", "Listed", "LogUniform",
+    "Name", "Normal", "Number", "Probability", "Section", "Support", "Uniform", "Weight", "composed", "interval", "is_within", "number",
+    "plain", "quantities", "stream", "weighted_index", "within",
 ]  # fmt: skip

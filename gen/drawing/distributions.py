@@ -8,7 +8,7 @@ another quantity: :mod:`gen.recipe.shares` says which quantities can be named, a
 import functools
 import math
 from bisect import bisect_right
-from typing import Annotated, Any, ClassVar, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self, cast, get_args
 
 import numpy as np
 from pydantic import (
@@ -61,7 +61,7 @@ class _Distribution(BaseModel):
         return expression_of(self)
 
     @model_serializer(mode="plain")
-    def _as_written(self) -> str | float:
+    def _as_written(self) -> str | float | list[float]:
         return self.written
 
     def __str__(self) -> str:
@@ -94,9 +94,12 @@ class _Distribution(BaseModel):
         """Support of the product of a share and its quantity; the ``bounds`` of its field if it is not known."""
         self._product, self._product_is_known = product or bounds, product is not None
 
-    def at_scatter(self, value: float, u: float) -> float:
-        """Value of a record that scatters about ``value`` of its rig or specimen, at the quantile ``u``."""
-        return value * (1 + self.scatter_percent / 100 * (2 * u - 1)) if self.scatter_percent > 0 else value
+    def about(self, value: float) -> "Constant | Uniform":
+        """What is left to draw for a record whose rig or specimen has a ``value``."""
+        away = abs(value) * self.scatter_percent / 100
+        if away == 0:
+            return Constant.model_construct(value=value, share_of=self.share_of)
+        return Uniform.model_construct(kind="uniform", low=value - away, high=value + away, share_of=self.share_of)
 
 
 class Constant(_Distribution):
@@ -244,6 +247,25 @@ class Grid(_Distribution):
         return min(self.values), max(self.values)
 
 
+class Listed(_Distribution):
+    """Values that are given one by one, for a key that is drawn for each of several items; a list is short for this."""
+
+    arguments: ClassVar[tuple[str, ...]] = ("values",)
+    kind: Literal["listed"]
+    """Takes the numbers of a list."""
+    values: Annotated[tuple[Number, ...], Field(max_length=1000)]
+    """One number for each item."""
+
+    @property
+    def written(self) -> Any:
+        """The list."""
+        return list(self.values)
+
+    def _ends(self) -> Support:
+        """Return the smallest and the largest value."""
+        return min(self.values, default=math.nan), max(self.values, default=math.nan)
+
+
 DISTRIBUTIONS = (Constant, Uniform, LogUniform, Normal, Choice, Grid)
 
 
@@ -271,12 +293,16 @@ def _read(value: Any) -> Any:
         return value
     if isinstance(value, int | float) and not isinstance(value, bool):
         return {"kind": "constant", "value": value}
+    if isinstance(value, list | tuple):
+        return {"kind": "listed", "values": cast("Any", value)}
     return read_expression(value, KINDS)
 
 
 Distribution = Annotated[
-    Annotated[Constant | Uniform | LogUniform | Normal | Choice | Grid, Field(discriminator="kind")],
-    BeforeValidator(_read, json_schema_input_type=float | Annotated[str, StringConstraints(pattern=_TEXT)]),
+    Annotated[Constant | Uniform | LogUniform | Normal | Choice | Grid | Listed, Field(discriminator="kind")],
+    BeforeValidator(
+        _read, json_schema_input_type=float | Annotated[str, StringConstraints(pattern=_TEXT)] | list[float]
+    ),
 ]
 
 
@@ -285,9 +311,21 @@ def is_distribution(value: Any) -> bool:
     return isinstance(value, _Distribution)
 
 
-def within(low: float, high: float, *, open_low: bool = False, default: float | None = None) -> Any:
-    """Field of a distribution whose values all lie between ``low`` and ``high``; required if it has no default."""
-    bounds: dict[str, Any] = {"low": low, "high": high, "open_low": open_low}
+def within(
+    low: float,
+    high: float,
+    *,
+    open_low: bool = False,
+    default: float | str | None = None,
+    each: bool = False,
+    **per: str,
+) -> Any:
+    """Field of a distribution whose values all lie between ``low`` and ``high``; required if it has no default.
+
+    ``each`` is for a key that is drawn for each of the items that its section counts; ``per`` for one that is drawn at another level than
+    its section.
+    """
+    bounds: dict[str, Any] = {"low": low, "high": high, "open_low": open_low} | ({"each": True} if each else {}) | per
     given: dict[str, Any] = {} if default is None else {"default": default}
     return Field(**given, json_schema_extra=bounds)
 
@@ -306,7 +344,11 @@ def check_bounds(distribution: Any, bounds: dict[str, Any]) -> Any:
 
     The values of a share are checked when the whole recipe is read.
     """
-    if distribution is None or distribution.share_of is not None:
+    if isinstance(distribution, Listed) and not bounds.get("each"):
+        raise ValueError(
+            "is a list; give one number or distribution, a list is for keys that are drawn for each of several items."
+        )
+    if distribution is None or distribution.share_of is not None or getattr(distribution, "values", True) == ():
         return distribution
     for end in distribution.support():
         if not is_within(end, bounds):

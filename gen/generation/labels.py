@@ -11,7 +11,7 @@ from gen.corpus.simulated import with_values
 from gen.measurement import levels
 from gen.measurement.measure import Measured
 from gen.mechanisms import labels as mechanisms
-from gen.scenarios import common_settings, scenario_texts, simulation_errors, variables
+from gen.scenarios import same_recording, scenario_texts, variables
 from gen.simulation import steps, truth
 from gen.simulation.simulate import Response
 
@@ -26,20 +26,18 @@ LABELS = (
 """Variables of every simulated record, those of all corpora among them."""
 
 
-@simulation_errors()
 def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.float64] | None = None) -> xr.Dataset:
     """Measured records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
-    settings = common_settings(measured.scenarios)
+    recipe = same_recording(measured.scenarios)
     scenarios = [
-        scenario.without_fault() if settings.undetected == "healthy" and not detectable else scenario
+        scenario.without_fault() if recipe.truth.undetected == "healthy" and not detectable else scenario
         for scenario, detectable in zip(measured.scenarios, measured.detectable, strict=True)
     ]
     truths = [known._replace(scenario=one) for known, one in zip(response.truth, scenarios, strict=True)]
-    lives = [life for one in scenarios if (life := one.record.life) is not None]
+    lives = [life for one in scenarios if (life := one.origin.life) is not None]
     life_labels = LIFE if lives else ()
     of_mechanisms = [
-        mechanisms.label_values(one.specimen.damage, one.rig.background, chain)
-        for one, chain in zip(scenarios, measured.chain_labels, strict=True)
+        mechanisms.label_values(one.recipe, chain) for one, chain in zip(scenarios, measured.chain_labels, strict=True)
     ]
     columns: dict[str, ArrayLike] = {
         DRAWS: scenario_texts(measured.scenarios),
@@ -52,14 +50,14 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
     columns |= {label.name: [values[label.name] for values in of_mechanisms] for label in mechanisms.LABELS}
     return make_dataset(
         measured.signal,
-        settings.sample_rate,
-        settings.channels,
+        recipe.recording.sample_rate_hz,
+        tuple(channel.name for channel in recipe.recording.channels),
         columns,
         extra=LABELS + life_labels,
         counts_per_unit=measured.counts_per_unit,
         attributes={
-            "title": f"Records of recipe {settings.recipe}",
-            "history": f"simulated by raceway {version('raceway')} with recipe {settings.recipe}, seed {settings.seed}",
+            "title": f"Records of recipe {recipe.name}",
+            "history": f"simulated by raceway {version('raceway')} with recipe {recipe.name}, seed {recipe.seed}",
             "source": "simulation: Hertz contact shaft-bearing model, classical Runge-Kutta",
         },
     )

@@ -18,8 +18,8 @@ from gen.generation.parts import decoded, labelled, make_part
 from gen.generation.undetected import made_from
 from gen.recipe import Recipe, make_recipe, recipe_text
 from gen.recipe.keywords import FaultLike
-from gen.scenarios import Rig, Scenario, check_scenario, read_scenario, scenario_texts
-from gen.support.errors import CorpusError, RecipeError, SimulationError
+from gen.scenarios import Scenario
+from gen.support.errors import RecipeError, SimulationError
 from gen.support.executor import run
 
 
@@ -98,14 +98,15 @@ def records(
 
 
 def simulate(scenarios: Sequence[Scenario]) -> xr.Dataset:
-    """Simulate records of scenarios, such as drawn ones changed with :func:`dataclasses.replace`.
+    """Simulate records of scenarios, such as drawn ones changed by their methods.
 
     Parameters
     ----------
     scenarios : sequence of Scenario
-        From :func:`gen.draw_scenarios` or :func:`gen.read_scenarios`, changed or not. Random processes such as noise follow from the
-        numbers of rig, specimen and record, so scenarios with the same numbers have the same noise. A measured scenario of a pair or
-        ladder keeps its ``record.gains``; without them, the largest severity sets the level.
+        From :func:`gen.draw_scenarios` or :func:`gen.read_scenarios`, changed or not: ``without_fault()``, ``at_severity(0.5)``,
+        ``with_(operation={"shaft_rpm": 1200})``. Random processes such as noise follow from the numbers of their ``origin``, so scenarios
+        with the same numbers have the same noise. In a pair or ladder with a drawn ratio, the last one, of the largest severity, sets the
+        level; a stored scenario has that level already.
 
     Returns
     -------
@@ -115,46 +116,14 @@ def simulate(scenarios: Sequence[Scenario]) -> xr.Dataset:
     Raises
     ------
     RecipeError
-        If values of a scenario do not fit each other, or scenarios do not fit each other.
+        If these are no scenarios.
     SimulationError
-        If scenarios have different settings, or no record can be simulated.
+        If scenarios have different recordings, or no record can be simulated.
     """
-    part = labelled(made_from(_checked(scenarios)))
-    return _joined([part], failures_of(part), {"versions": json.dumps(library_versions())})
-
-
-def _checked(scenarios: Sequence[Scenario]) -> list[Scenario]:
-    """Scenarios as they are stored; RecipeError if one cannot be simulated, or does not fit another."""
-    if not isinstance(scenarios, Sequence) or isinstance(scenarios, str | bytes):
+    if not isinstance(scenarios, Sequence) or not all(isinstance(one, Scenario) for one in scenarios):
         raise RecipeError(f"scenarios: {type(scenarios).__name__} given; give a list of scenarios.")
-    rigs: dict[int, tuple[int, Rig]] = {}
-    rungs: dict[int, int] = {}
-    found = []
-    for place, given in enumerate(scenarios):
-        try:
-            scenario = read_scenario(scenario_texts([given])[0])
-            check_scenario(scenario)
-        except RecipeError as error:
-            raise RecipeError(f"scenarios[{place}]: {error}") from None
-        except (CorpusError, TypeError, AttributeError) as error:
-            reason = str(error).removeprefix("stored scenario: ").partition("; ")[0]
-            raise RecipeError(
-                f"scenarios[{place}]: is no scenario ({reason}); change drawn ones with dataclasses.replace, in finite numbers and text."
-            ) from None
-        first, rig = rigs.setdefault(scenario.rig.number, (place, scenario.rig))
-        if rig != scenario.rig:
-            raise RecipeError(
-                f"scenarios[{place}]: rig {rig.number} is not that of scenarios[{first}]; give another machine another number."
-            )
-        record = scenario.record
-        if record.pair >= 0 and record.gains is None:
-            if record.rung <= rungs.get(record.pair, -1):
-                raise RecipeError(
-                    f"scenarios[{place}]: rung {record.rung} of pair {record.pair} does not rise; sort them, each once."
-                )
-            rungs[record.pair] = record.rung  # the last, with the largest severity, sets the level of the pair
-        found.append(scenario)
-    return found
+    part = labelled(made_from([*scenarios]))
+    return _joined([part], failures_of(part), {"versions": json.dumps(library_versions())})
 
 
 def _made(recipe: Recipe, workers: int) -> xr.Dataset:

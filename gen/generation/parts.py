@@ -4,15 +4,18 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gen.corpus.joining import NUMBERS
 from gen.corpus.schema import add_class_names
 from gen.generation.facts import failures_of, part_attributes
 from gen.generation.labels import part_dataset
 from gen.generation.step_checks import step_errors
-from gen.generation.undetected import MadeRecords, make_records
+from gen.generation.undetected import MadeRecords, made_from, make_records
 from gen.recipe import Recipe
+from gen.scenarios import draw_scenarios
 
 
 def make_part(recipe: Recipe, numbers: range) -> xr.Dataset:
@@ -29,8 +32,10 @@ def make_part(recipe: Recipe, numbers: range) -> xr.Dataset:
     SimulationError
         If a record needs finer steps than the recipe allows, or every life has ended before these records.
     """
-    made = make_records(recipe, numbers)
+    made = make_records(recipe, numbers) if recipe.origin is None else made_from(draw_scenarios(recipe))
     part = labelled(made, step_errors(recipe, numbers, made))
+    if recipe.origin is not None:  # the only record of its corpus, whatever its numbers in another one
+        part = part.assign({name: part[name].copy(data=np.minimum(part[name], 0)) for name in NUMBERS})
     return part.assign_attrs(part_attributes(recipe, failures_of(part)))
 
 

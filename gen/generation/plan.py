@@ -14,7 +14,7 @@ import numpy as np
 
 from gen.corpus import CODECS, FAULTS, SPLITS
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import Scenario, draw_scenarios, scenario_texts, settings_of
+from gen.scenarios import Scenario, draw_scenarios, scenario_texts
 from gen.simulation.inputs import kernel_inputs
 from gen.simulation.kernels import is_compiled
 from gen.simulation.motion import draw_motion
@@ -110,8 +110,8 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         checked=len(places),
         left_out=round(len(failures) * of_checked),
         first_left_out=failures[0] if failures else None,
-        classes=_scaled((one.specimen.fault for one in drawn), FAULTS, of_drawn),
-        splits=_scaled((one.specimen.split for one in drawn), SPLITS, of_drawn),
+        classes=_scaled((one.fault for one in drawn), FAULTS, of_drawn),
+        splits=_scaled((one.origin.split for one in drawn), SPLITS, of_drawn),
         steps_per_sample=_scaled(steps, sorted(set(steps)), of_checked),
     )
 
@@ -124,12 +124,12 @@ def steps_of(scenarios: Sequence[Scenario], recipe: Recipe) -> Iterator[int | st
     SimulationError
         If a record needs more steps than the recipe has.
     """
-    axis = timeline(settings_of(recipe))
+    axis = timeline(recipe)
     for first in range(0, len(scenarios), AT_ONCE):
         some = scenarios[first : first + AT_ONCE]
         inputs, failures = kernel_inputs([draw_motion(scenario) for scenario in some], axis)
         for place, (given, scenario) in enumerate(zip(inputs, some, strict=True)):
-            yield failures[place] if given is None else steps_per_sample(given, scenario.record, scenario.settings)
+            yield failures[place] if given is None else steps_per_sample(given, scenario)
 
 
 def _scaled(values: Iterable[Any], order: Iterable[Any], scale: float) -> dict[Any, int]:

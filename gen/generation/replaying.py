@@ -60,6 +60,6 @@ def replay(path: Path | str, record: int) -> Replayed:
 
 def _place(stored: NDArray[np.floating], name: str, again: NDArray[np.floating], scenario: Scenario) -> int:
     """Place of a stored channel among those simulated again: the one with its samples, or else with its name, or else the first."""
-    names = scenario.settings.channels
+    names = [channel.name for channel in scenario.recipe.recording.channels]
     places = sorted(range(len(names)), key=lambda place: names[place] != name)
     return next((place for place in places if np.array_equal(again[place], stored)), places[0])

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from gen.generation.undetected import MadeRecords
 from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe
-from gen.scenarios import first_records, settings_of
+from gen.scenarios import first_records
 from gen.simulation.batches import Group, Integration, group_of, integrate_all
 from gen.simulation.simulate import acceleration_of
 from gen.simulation.timeline import timeline
@@ -18,11 +18,11 @@ CHECKED_PARTS = 8  # every 8th part integrates a batch of its records again: 1 t
 
 def step_errors(recipe: Recipe, numbers: range, made: MadeRecords) -> NDArray[np.float64]:
     """Relative rms change between some records of a part and the same at half the step, NaN for the other records, shape (record,)."""
-    response, axis = made.response, timeline(settings_of(recipe))
+    response, axis = made.response, timeline(recipe)
     inputs = {place: truth.given for place, truth in enumerate(response.truth)}
     usable = {place: one for place, one in inputs.items() if one and place not in response.failures}
     groups = {place: group_of(given, int(response.oversampling[place])) for place, given in usable.items()}
-    faults = [scenario.specimen.fault for scenario in made.measured.scenarios]
+    faults = [scenario.fault for scenario in made.measured.scenarios]
     halved = {
         place: Integration(usable[place], Group(groups[place].shape, 2 * groups[place].steps))
         for place in checked_places(recipe, numbers, faults, groups)

@@ -202,6 +202,8 @@ def endless(recipe: Recipe) -> Recipe:
         raise RecipeError(
             f"corpus.sampling: {recipe.corpus.sampling} covers a number of records, and a stream has no end; use random."
         )
+    if recipe.origin is not None:
+        raise RecipeError("origin: is that of one record, and a stream has no end; leave it out, or use gen.generate.")
     if key := _grid_in(recipe, ""):
         raise RecipeError(f"{key}: a grid is finite, and a stream has no end; use choice, or gen.generate.")
     return recipe.model_copy(update={"records": _LAST // recipe.corpus.n_rungs * recipe.corpus.n_rungs})

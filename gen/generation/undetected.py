@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gen.measurement.lives import with_ends
 from gen.measurement.measure import Measured, measure
 from gen.recipe import Recipe
-from gen.scenarios import Scenario, common_settings, draw_scenarios, further_ratios, settings_of, simulation_errors
+from gen.scenarios import Scenario, draw_scenarios, further_ratios, same_recording
 from gen.simulation.batches import integrate_all
 from gen.simulation.hits import felt_places
 from gen.simulation.simulate import Response, Run, open_integrations, response_of, runs_of
@@ -43,16 +43,16 @@ def make_records(recipe: Recipe, numbers: range) -> MadeRecords:
     SimulationError
         If there are none, since every life has ended before them.
     """
-    drawing, axis = Drawing(recipe), timeline(settings_of(recipe))
+    drawing, axis = Drawing(recipe), timeline(recipe)
     final: dict[int, tuple[MadeRecords, int]] = {}
     runs = drawing.first(numbers)
     while runs:
         integrate_all(open_integrations(runs), axis)
         made, runs = drawing.judge(runs)
-        redrawn = {run.scenario.record.number for run in runs}
+        redrawn = {run.scenario.origin.record for run in runs}
         for place, scenario in enumerate(made.measured.scenarios):
-            if scenario.record.number in numbers and scenario.record.number not in redrawn:
-                final[scenario.record.number] = made, place
+            if scenario.origin.record in numbers and scenario.origin.record not in redrawn:
+                final[scenario.origin.record] = made, place
     if not final:
         raise SimulationError(f"records {numbers.start}-{numbers.stop - 1}: every life has ended before them.")
     return _picked([final[number] for number in numbers if number in final])
@@ -106,20 +106,20 @@ class Drawing:
         if not self._redraws:
             return made, []
         unseen = _unseen_places(made)
-        specimens = dict.fromkeys(made.measured.scenarios[place].specimen.number for place in unseen)
+        specimens = dict.fromkeys(made.measured.scenarios[place].origin.specimen for place in unseen)
         again = sorted(number for number in specimens if self._tries.get(number, 0) < FAULT_TRIES - 1)
         advice = "raise level.faulty_db" if self.recipe.level.kind == "snr" else "lower level.background_m_s2"
         for place in unseen:
             scenario = made.measured.scenarios[place]
-            if scenario.specimen.number not in again:
+            if scenario.origin.specimen not in again:
                 made.response.failures[place] = (
-                    f"record {scenario.record.number}: none of {FAULT_TRIES} drawn faults of class {scenario.specimen.fault} can be seen "
+                    f"record {scenario.origin.record}: none of {FAULT_TRIES} drawn faults of class {scenario.fault} can be seen "
                     f"in it; {advice}, or choose truth.undetected: keep."
                 )
         if not again:
             return made, []
         known = {
-            run.scenario.record.number: run for place, run in enumerate(runs) if place not in made.response.failures
+            run.scenario.origin.record: run for place, run in enumerate(runs) if place not in made.response.failures
         }
         return made, runs_of(self._with_hits(self._redrawn(again)), known)
 
@@ -146,24 +146,23 @@ class Drawing:
 
         Of a group, the largest severity alone counts, as in :func:`_unseen_places`.
         """
-        by_number = {scenario.record.number: scenario for scenario in scenarios}
+        by_number = {scenario.origin.record: scenario for scenario in scenarios}
         tried = scenarios if self._redraws else []
         while tried:
             largest = [tried[place] for place in _largest_places(tried)]
             missed = {
-                one.specimen.number for one, is_felt in zip(largest, felt_places(largest), strict=True) if not is_felt
+                one.origin.specimen for one, is_felt in zip(largest, felt_places(largest), strict=True) if not is_felt
             }
             tried = self._redrawn(sorted(n for n in missed if self._tries.get(n, 0) < FAULT_TRIES - 1))
-            by_number.update({scenario.record.number: scenario for scenario in tried})
+            by_number.update({scenario.origin.record: scenario for scenario in tried})
         return list(by_number.values())
 
 
 def made_from(scenarios: list[Scenario]) -> MadeRecords:
     """Records of scenarios as they are; nothing is drawn again."""
-    with simulation_errors():
-        runs = runs_of(scenarios)
-        integrate_all(open_integrations(runs), timeline(common_settings(scenarios)))
-        return made_of(runs)
+    runs = runs_of(scenarios)
+    integrate_all(open_integrations(runs), timeline(same_recording(scenarios)))
+    return made_of(runs)
 
 
 def made_of(runs: list[Run], ratios: Mapping[int, Sequence[float]] = {}) -> MadeRecords:
@@ -185,6 +184,6 @@ def _largest_places(scenarios: list[Scenario]) -> list[int]:
     return [
         place
         for place, scenario in enumerate(scenarios)
-        if scenario.specimen.fault != "healthy"
-        and (place + 1 == len(scenarios) or scenarios[place + 1].record.rung <= scenario.record.rung)
+        if scenario.fault != "healthy"
+        and (place + 1 == len(scenarios) or scenarios[place + 1].origin.rung <= scenario.origin.rung)
     ]

@@ -30,7 +30,7 @@ from gen.generation.facts import part_attributes, part_file
 from gen.generation.labels import LABELS
 from gen.measurement.measure import LARGEST_COUNT
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
-from gen.scenarios import Settings, read_scenario
+from gen.scenarios import read_scenario
 from gen.support.errors import CorpusError
 
 _PART_RECORDS = 256
@@ -64,13 +64,13 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
     check_new(target)
     rows = records_in_memory(dataset)
     draws = rows[DRAWS].values if DRAWS in rows else np.full(rows.sizes["record"], "")
-    settings = [read_scenario(str(text)).settings if text else None for text in draws]
-    signal, full_scale, replayable = _signal(rows[SIGNAL].values, settings)
+    recipes = [read_scenario(str(text)).recipe if text else None for text in draws]
+    signal, full_scale, replayable = _signal(rows[SIGNAL].values, recipes)
     stored = _stored(rows, np.where(replayable, draws, ""), signal, full_scale)
     recipe = _whole_recipe(rows) if replayable.all() else None
     if recipe is None:
         parts, codec, text = np.arange(stored.sizes["record"]) // _PART_RECORDS, "zlib", None
-        names = dict.fromkeys(of.recipe for of in settings if of is not None)
+        names = dict.fromkeys(of.name for of in recipes if of is not None)
         facts = {
             "title": stored.attrs["title"],
             "recipe": ", ".join(names) or None,
@@ -90,26 +90,27 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
 
 
 def _signal(
-    values: NDArray[np.floating], settings: list[Settings | None]
+    values: NDArray[np.floating], recipes: list[Recipe | None]
 ) -> tuple[NDArray[np.int16] | NDArray[np.float32], float | None, NDArray[np.bool_]]:
     """Signal as it is stored, the full scale of its counts, if it has them, and whether each record is as its scenario gave it."""
-    counts = [_counts(row, of) for row, of in zip(values, settings, strict=True)]
+    counts = [_counts(row, of) for row, of in zip(values, recipes, strict=True)]
     replayable = [
-        of is not None and of.samples == values.shape[2] and (of.full_scale is None or found is not None)
-        for found, of in zip(counts, settings, strict=True)
+        of is not None and of.n_samples == values.shape[2] and (of.recording.full_scale is None or found is not None)
+        for found, of in zip(counts, recipes, strict=True)
     ]
-    scales = {of.full_scale if of is not None else None for of in settings}
+    scales = {of.recording.full_scale if of is not None else None for of in recipes}
     exact = [found for found in counts if found is not None]
     if len(scales) == 1 and len(exact) == len(counts):
         return np.stack(exact), scales.pop(), np.array(replayable)
     return values.astype(np.float32), None, np.array(replayable)
 
 
-def _counts(values: NDArray[np.floating], settings: Settings | None) -> NDArray[np.int16] | None:
+def _counts(values: NDArray[np.floating], recipe: Recipe | None) -> NDArray[np.int16] | None:
     """Counts of a record; None if its samples are not those of the converter of its scenario, or it has none."""
-    if settings is None or settings.full_scale is None:
+    full_scale = None if recipe is None else recipe.recording.full_scale
+    if full_scale is None:
         return None
-    exact = values.astype(np.float64) * (LARGEST_COUNT / settings.full_scale)
+    exact = values.astype(np.float64) * (LARGEST_COUNT / full_scale)
     counts = np.rint(exact)
     if not np.abs(exact - counts).max() <= _NOT_A_COUNT or np.abs(counts).max() > LARGEST_COUNT:
         return None

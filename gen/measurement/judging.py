@@ -22,10 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import ifft, next_fast_len, rfft
 
-from gen.measurement.levels import rms_of
+from gen.measurement.levels import Gains, rms_of
 from gen.measurement.mixing import Parts
 from gen.physics.kernel.compiling import compiled_to_disk
-from gen.scenarios import Gains
 
 FloatArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]

@@ -4,12 +4,12 @@ The products are exact: parts that are correlated over a short record neither ra
 """
 
 import math
+from typing import NamedTuple
 
 from gen.corpus.schema import Variable
 from gen.corpus.simulated import with_values
 from gen.measurement.mixing import Products
 from gen.physics.elementary import decibels
-from gen.scenarios import Gains
 
 SILENCE = 1e-30  # m s-2; a smaller rms counts as no signal
 
@@ -23,6 +23,13 @@ LABELS = (
     *with_values(detectable=None, clipped=None),
 )  # fmt: skip
 """Variables of the corpus, arrays of a :class:`gen.measurement.measure.Measured`."""
+
+
+class Gains(NamedTuple):
+    """Factors of bearing and background [1]."""
+
+    bearing: float
+    background: float
 
 
 def gains_of(products: Products, ratio: float, rms: float) -> Gains:

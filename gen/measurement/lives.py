@@ -10,8 +10,9 @@ from scipy.fft import rfft, rfftfreq
 
 from gen.measurement.judging import WINDOW_RMS
 from gen.measurement.measure import Measured
+from gen.recipe import Snapshot
 from gen.recipe.life import LifeEnd
-from gen.scenarios import Scenario, Snapshot, common_settings
+from gen.scenarios import Scenario, same_recording
 from gen.support.units import to_si
 
 VELOCITY_BAND = 10.0, 1000.0
@@ -20,9 +21,9 @@ VELOCITY_BAND = 10.0, 1000.0
 
 def with_ends(measured: Measured, end: LifeEnd) -> tuple[Measured, list[int]]:
     """Records of whole lives with what is known of each life when it has ended, and the places of records behind its end."""
-    fs, of_specimen = common_settings(measured.scenarios).sample_rate, defaultdict[int, list[int]](list)
+    fs, of_specimen = same_recording(measured.scenarios).recording.sample_rate_hz, defaultdict[int, list[int]](list)
     for place, scenario in enumerate(measured.scenarios):
-        of_specimen[scenario.specimen.number].append(place)
+        of_specimen[scenario.origin.specimen].append(place)
     scenarios, behind, limited = [*measured.scenarios], list[int](), bool(end.peak_m_s2 or end.velocity_mm_s)
     for places in of_specimen.values():
         last = next((at for at, place in enumerate(places) if limited and _is_beyond(measured, place, end, fs)), None)
@@ -30,12 +31,13 @@ def with_ends(measured: Measured, end: LifeEnd) -> tuple[Measured, list[int]]:
         behind += [] if last is None else places[last + 1 :]
         seen = next((_life(scenarios[place]).age for place in places if measured.detectable[place] == 1), None)
         for place in places:
-            life = replace(_life(scenarios[place]), first_detectable_time=seen)
+            life = _life(scenarios[place]).model_copy(update={"first_detectable_time": seen})
             if of_end is not None:
                 life = _ended_at(life, of_end)
             elif limited and not life.event:
-                life = replace(life, rul=None, rul_revolutions=None)
-            scenarios[place] = replace(scenarios[place], record=replace(scenarios[place].record, life=life))
+                life = life.model_copy(update={"rul": None, "rul_revolutions": None})
+            origin = scenarios[place].origin.model_copy(update={"life": life})
+            scenarios[place] = scenarios[place].edited(origin=origin)
     return replace(measured, scenarios=scenarios), behind
 
 
@@ -58,11 +60,11 @@ def _is_beyond(measured: Measured, place: int, end: LifeEnd, fs: float) -> bool:
 
 
 def _life(scenario: Scenario) -> Snapshot:
-    assert scenario.record.life is not None  # noqa: S101
-    return scenario.record.life
+    assert scenario.origin.life is not None  # noqa: S101
+    return scenario.origin.life
 
 
 def _ended_at(life: Snapshot, of_end: Snapshot) -> Snapshot:
     """A snapshot of a bearing that failed at another one."""
     rul, turns = (getattr(life, name) - getattr(of_end, name) for name in ("rul", "rul_revolutions"))
-    return replace(life, rul=rul, rul_revolutions=turns, event=1)
+    return life.model_copy(update={"rul": rul, "rul_revolutions": turns, "event": 1})

@@ -10,7 +10,7 @@ converter at full scale.
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,16 +19,17 @@ from numpy.typing import NDArray
 from gen.corpus.simulated import UNJUDGED
 from gen.measurement.background import with_background
 from gen.measurement.judging import Judge, compile_judging, judges_of
-from gen.measurement.levels import bearing_over_background, fault_over_rest, gains_of
+from gen.measurement.levels import Gains, bearing_over_background, fault_over_rest, gains_of
 from gen.measurement.mixing import Parts
 from gen.measurement.path import Vibration, through_paths, with_twin
-from gen.measurement.rig import rig_filters
+from gen.measurement.rig import RigFilters, rig_filters
 from gen.mechanisms.chain.measuring_chain import disturb
-from gen.scenarios import Gains, Purpose, Scenario, common_settings
+from gen.recipe.sensing import PhysicalLevel
+from gen.scenarios import Scenario, same_recording
 from gen.simulation.motion import Motion, draw_motion
 from gen.simulation.shaft import angles_of
 from gen.simulation.simulate import Twin
-from gen.simulation.timeline import timeline
+from gen.simulation.timeline import Timeline, timeline
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
@@ -85,22 +86,22 @@ def measure(
     ratios : mapping, optional
         Further signal-to-noise ratios of records by their place [dB]; the first one at which the fault can be seen is taken.
     """
-    settings = common_settings(scenarios)
-    fs, counts_per_unit = settings.sample_rate, _counts_per_unit(settings.full_scale)
+    recording = same_recording(scenarios).recording
+    fs, counts_per_unit = recording.sample_rate_hz, _counts_per_unit(recording.full_scale)
     # rms of an error that is uniform within half a count
     rounding = 0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
-    shape = len(scenarios), len(settings.channels), settings.samples
+    shape = len(scenarios), len(recording.channels), scenarios[0].recipe.n_samples
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
     rows: dict[int, Any] = {}
     for group in _groups(acceleration, scenarios, twins, motions or [*map(draw_motion, scenarios)]):
         level, gains = _level(group, scenarios, ratios)
         for place, (parts, judge) in group.items():
-            scenario = replace(scenarios[place], record=replace(scenarios[place].record, **level))
+            scenario = _with_level(scenarios[place], *level)
             analogue, chain_labels = _through_chain(_at_level(parts, gains), scenario, fs)
             clipped = 0 if counts_per_unit is None else _to_counts(analogue, counts_per_unit)
             signal[place] = analogue
             snr = bearing_over_background(parts.products, gains, rounding) if signal[place].any() else math.nan
-            visibility = _visibility(parts, judge, scenario.specimen.fault, gains, rounding)
+            visibility = _visibility(parts, judge, scenario.fault, gains, rounding)
             rows[place] = clipped, snr, *visibility, scenario, chain_labels
     *numbers, taken, labels = zip(*(rows[place] for place in range(len(scenarios))), strict=True)
     clipped, snr, fault_snr, fault_share, detectable = map(np.array, numbers)
@@ -109,26 +110,24 @@ def measure(
 
 def compile_measuring(scenario: Scenario) -> None:
     """Compile the mixing and the judging of records, or fetch them from numba's cache on disk."""
-    settings = scenario.settings
     compile_judging()
-    measure(np.zeros((1, len(settings.channels), timeline(settings).returned), np.float32), [scenario])
+    channels = len(scenario.recipe.recording.channels)
+    measure(np.zeros((1, channels, timeline(scenario.recipe).returned), np.float32), [scenario])
 
 
 def _groups(
     acceleration: Float32Array, scenarios: Sequence[Scenario], twins: Sequence[Twin], motions: Sequence[Motion]
 ) -> Iterator[dict[int, tuple[Parts, Judge]]]:
     """Parts of the records of each group with their judges, by place: signal, path and background, and nothing of the level."""
-    settings = common_settings(scenarios)
-    axis = timeline(settings)
-    rigs = {scenario.rig.number: scenario.rig for scenario in scenarios}
-    of_rigs = {number: rig_filters(rig, axis.returned, axis.fs, settings.seed) for number, rig in rigs.items()}
+    axis = timeline(same_recording(scenarios))
+    filters = _filters(scenarios, axis)
     twin_of = {twin.place: twin for twin in twins}
     for groups in _passes(scenarios, max(1, _ROWS // acceleration.shape[1])):
         places = [place for group in groups for place in group]
         vibrations = [
             Vibration(
                 scenarios[place],
-                of_rigs[scenarios[place].rig.number],
+                filters[place],
                 angles_of(motions[place], axis),
                 *with_twin(acceleration[place], twin_of.get(place)),
             )
@@ -139,11 +138,26 @@ def _groups(
         yield from ({place: judged[place] for place in group} for group in groups)
 
 
+def _filters(scenarios: Sequence[Scenario], axis: Timeline) -> list[RigFilters]:
+    """Filters of the rig of each record; rigs of one number differ where scenarios were changed by hand."""
+    known = defaultdict[int, list[tuple[Any, RigFilters]]](list)
+    filters = []
+    for scenario in scenarios:
+        number, recipe = scenario.origin.rig, scenario.recipe
+        parts = recipe.recording, recipe.path, recipe.background
+        of_rig = next((made for others, made in known[number] if others == parts), None)
+        if of_rig is None:
+            of_rig = rig_filters(recipe, axis.returned, axis.fs, number)
+            known[number].append((parts, of_rig))
+        filters.append(of_rig)
+    return filters
+
+
 def _passes(scenarios: Sequence[Scenario], size: int) -> Iterator[list[list[int]]]:
     """Places of records by their groups, whole groups in passes of about ``size`` records; most groups have one record."""
     groups = defaultdict[int, list[int]](list)
     for place, scenario in enumerate(scenarios):
-        pair = scenario.record.pair
+        pair = scenario.origin.pair
         groups[pair if pair >= 0 else -1 - place].append(place)
     together: list[list[int]] = []
     for group in groups.values():
@@ -156,22 +170,34 @@ def _passes(scenarios: Sequence[Scenario], size: int) -> Iterator[list[list[int]
 
 def _level(
     group: Mapping[int, tuple[Parts, Judge]], scenarios: Sequence[Scenario], ratios: Mapping[int, Sequence[float]]
-) -> tuple[dict[str, Any], Gains]:
-    """Level of the records of a group, as changes of ``record`` of their scenarios, and its gains.
+) -> tuple[tuple[Any, int], Gains]:
+    """Level of the records of a group with the number of its try, and its gains.
 
     It is the level of the largest severity that did not diverge: the drawn one, or if its fault cannot be seen, the first of some further
-    ratios at which it can.
+    ratios at which it can. In a group it becomes a physical level, so that all that differs between its records is the fault.
     """
     finite = [place for place, (parts, _) in group.items() if math.isfinite(sum(parts.products))]
     place = (finite or [*group])[-1]
-    (parts, sees), rig, record = group[place], scenarios[place].rig, scenarios[place].record
-    if record.snr is None or record.rms is None:
-        return {}, record.gains or Gains(rig.gain, rig.gain * rig.background_rms)
-    tried = [record.snr, *ratios.get(place, ())]
-    gains = [record.gains or gains_of(parts.products, ratio, record.rms) for ratio in tried]
+    (parts, sees), scenario = group[place], scenarios[place]
+    level, drawn = scenario.recipe.level, scenario.recipe.level.si()
+    if level.kind == "physical":
+        return (level, 0), Gains(drawn["gain"], drawn["gain"] * drawn["background"])
+    key = "healthy" if scenario.fault == "healthy" else "faulty"
+    tried = [drawn[key], *ratios.get(place, ())]
+    gains = [gains_of(parts.products, ratio, drawn["rms"]) for ratio in tried]
     chosen = next((n for n, some in enumerate(gains) if len(tried) == 1 or sees(some)), 0)
-    level: dict[str, Any] = {"snr": tried[chosen], "rms": record.rms, "level_try": record.level_try + chosen}
-    return level | ({"gains": gains[chosen]} if record.pair >= 0 else {}), gains[chosen]
+    if scenario.origin.pair < 0 or not finite:
+        return (level.model_copy(update={f"{key}_db": tried[chosen]}), chosen), gains[chosen]
+    bearing, background = gains[chosen]
+    level = PhysicalLevel.model_construct(kind="physical", gain=bearing, background_m_s2=background / bearing)
+    return (level, chosen), Gains(bearing, bearing * level.si()["background"])
+
+
+def _with_level(scenario: Scenario, level: Any, level_try: int) -> Scenario:
+    """A scenario with the level that it is measured at."""
+    if level_try:
+        scenario = scenario.edited(origin=scenario.origin.model_copy(update={"level_try": level_try}))
+    return scenario.edited(level=level)
 
 
 def _at_level(parts: Parts, gains: Gains) -> Float32Array:
@@ -183,11 +209,8 @@ def _at_level(parts: Parts, gains: Gains) -> Float32Array:
 
 def _through_chain(signal: Any, scenario: Scenario, fs: float) -> tuple[Any, dict[str, float]]:
     """Signal with the faults of the measuring chain of a scenario and the offset of its sensors, and the values of the labels."""
-    of_rig, of_record = scenario.rig.sensor_faults, scenario.record.sensor_faults
-    labels = dict[str, float]()
-    if of_rig or of_record:
-        signal, labels = disturb(signal, of_rig, of_record, fs, scenario.rng(Purpose.SENSOR_NOISE))
-    signal += np.float32(scenario.rig.offset)
+    signal, labels = disturb(signal, scenario.recipe.sensor_faults, fs, scenario.stream)
+    signal += np.float32(scenario.recipe.recording.si()["offset"])
     return signal, labels
 
 

@@ -1,5 +1,6 @@
 """Transfer paths and machine background of a rig, for records of one length."""
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -7,13 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-from gen.drawing import Drawn
+from gen.drawing import stream
 from gen.mechanisms.background.harmonics import motion_of_harmonics
 from gen.mechanisms.background.noise import noise_factors
+from gen.mechanisms.background.section import BackgroundSection
 from gen.mechanisms.background.tones import motion_of_tones
 from gen.mechanisms.path import parts_of_modulation, transmissibility
 from gen.physics.kernel.decimate import pass_band
-from gen.scenarios import Purpose, Rig, stream
+from gen.recipe import Recipe
+from gen.support.units import decibel_to_ratio
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
@@ -50,7 +53,7 @@ class RigFilters:
     """Angle per sample of each tone, shape (tone,) [rad]."""
     tone_modulations: ComplexArray
     """Modulation of each tone by the shaft, shape (tone,)."""
-    background: Drawn
+    background: BackgroundSection
     """As drawn for the rig."""
     knock_phase: float
     """Phase of the knocks [rad]."""
@@ -84,27 +87,30 @@ class RigFilters:
         return behind_paths * (chain * self.amplitudes / np.maximum(rms, _SMALLEST_GAIN))
 
 
-def rig_filters(rig: Rig, length: int, fs: float, seed: int) -> RigFilters:
-    """Transfer paths and background of a rig, for responses of ``length`` samples.
+def rig_filters(recipe: Recipe, length: int, fs: float, rig: int) -> RigFilters:
+    """Transfer paths and background of a drawn recipe, for responses of ``length`` samples.
 
-    Everything that is locked to the shaft has a phase that belongs to the rig, drawn from its own stream of ``seed``.
+    Everything that is locked to the shaft has a phase that belongs to the rig, of which ``rig`` is the number.
     """
-    n, background = next_fast_len(length, real=True), rig.background
+    n, background, channels = next_fast_len(length, real=True), recipe.background, recipe.recording.channels
     frequency = np.arange(n // 2 + 1) * (fs / n)
-    own = [path or rig.path for path in rig.own_paths]
-    sensor = high_pass(rig.high_pass, frequency)
+    own = [channel.path or recipe.path for channel in channels]
+    corner = recipe.recording.si()["high_pass"]
+    sensor = high_pass(corner, frequency)
     chain = sensor * pass_band(frequency * (2 / fs))
-    paths = np.stack([path["direct"] + transmissibility(path["modes"], frequency) for path in own])
-    impulse_paths, impulses = paths * chain, background["impulses"]
-    if impulses or background["knocks"]:
+    paths = np.stack([path.si()["direct"] + transmissibility(path.modes, frequency) for path in own])
+    impulse_paths, of_impulses = paths * chain, 0.0
+    if background.impulses or background.knocks:
         impulse_paths /= np.abs(irfft(impulse_paths, n)).max(axis=1, keepdims=True)
-    # An impulse of strength ``a`` raises all lines by ``a^2`` times its energy; the mean of ``a^4`` is 3 for a normal distribution.
-    of_impulses = math.sqrt(3 * impulses["frequency"] * length / fs) * impulses["level"] ** 2 if impulses else 0.0
-    of_modulations, of_harmonics, of_tones, of_knocks = stream(seed, rig.number, 0, 0, Purpose.PHASES).spawn(4)
-    directions = np.array([channel.angle for channel in rig.channels])
-    harmonics, harmonic_motion = motion_of_harmonics(background["harmonics"] or (), directions, of_harmonics)
-    tones, tone_motion = motion_of_tones(background["tones"] or (), fs, directions, of_tones)
-    direct = None if rig.high_pass > 0 or any(path["modes"] for path in own) else [[path["direct"]] for path in own]
+    if background.impulses is not None:
+        # An impulse of strength ``a`` raises all lines by ``a^2`` times its energy; the mean of ``a^4`` is 3 for a normal distribution.
+        impulses = background.impulses.si()
+        of_impulses = math.sqrt(3 * impulses["rate"] * length / fs) * decibel_to_ratio(impulses["level"]) ** 2
+    phases = functools.partial(stream, recipe.seed, "rig", rig)
+    directions = np.array([channel.si()["angle"] for channel in channels])
+    harmonics, harmonic_motion = motion_of_harmonics(background.harmonics, directions, phases("phases of harmonics"))
+    tones, tone_motion = motion_of_tones(background.tones, fs, directions, phases("phases of tones"))
+    direct = None if corner > 0 or any(path.modes for path in own) else [[path.si()["direct"]] for path in own]
     return RigFilters(
         n=n,
         fs=fs,
@@ -113,25 +119,26 @@ def rig_filters(rig: Rig, length: int, fs: float, seed: int) -> RigFilters:
         direct=None if direct is None else np.array(direct, np.float32),
         chain=chain,
         noise=noise_factors(background, frequency, np.abs(chain), n),
-        modulations=_modulations(rig, of_modulations),
+        modulations=_modulations(recipe, phases("phases of modulation")),
         motion=np.concatenate([harmonic_motion, tone_motion], axis=1),
         amplitudes=np.concatenate([harmonics, tones[:, 1]]),
         steps=tones[:, 0].copy(),
         tone_modulations=tones[:, 2] + 1j * tones[:, 3],
         background=background,
-        knock_phase=2 * math.pi * of_knocks.random(),
+        knock_phase=2 * math.pi * phases("phase of knocks").random(),
         impulse_paths=impulse_paths.astype(np.complex64),
         impulse_lines=np.float32(of_impulses) * np.abs(impulse_paths.astype(np.complex64)) ** 2,
     )
 
 
-def _modulations(rig: Rig, rng: np.random.Generator) -> ComplexArray:
+def _modulations(recipe: Recipe, rng: np.random.Generator) -> ComplexArray:
     """Modulations of the noise and of the path of each channel, shape (1 + channel, 2); channels on the common path share one."""
-    of_noise, of_path, *of_own = rng.random((2 + len(rig.own_paths), 2))
-    rows = [parts_of_modulation(rig.background["modulation"], of_noise)]
-    for own, turns in zip(rig.own_paths, of_own, strict=True):
-        path, turns = (rig.path, of_path) if own is None else (own, turns)
-        rows.append(parts_of_modulation(path["modulation"], turns))
+    own = [channel.path for channel in recipe.recording.channels]
+    of_noise, of_path, *of_own = rng.random((2 + len(own), 2))
+    rows = [parts_of_modulation(recipe.background.modulation, of_noise)]
+    for path, turns in zip(own, of_own, strict=True):
+        shared = path is None
+        rows.append(parts_of_modulation((recipe.path if shared else path).modulation, of_path if shared else turns))
     return np.array(rows).view(np.complex128)
 
 

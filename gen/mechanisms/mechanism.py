@@ -1,4 +1,4 @@
-"""What a mechanism of a recipe is: a section that some rigs or records have, with its key and its labels."""
+"""What a mechanism of a recipe is: a section that some rigs or records have, with its key, its effect and its labels."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any, ClassVar
@@ -17,7 +17,7 @@ class Mechanism(Section):
     """Keys of a mechanism; it is left out of a recipe, or occurs with a probability."""
 
     place: ClassVar[str]
-    """Its key in a recipe, and its name among drawn values."""
+    """Its key in a recipe."""
     labels: ClassVar[tuple[Variable, ...]] = ()
     """What the corpus says of it, 0 in a record without it."""
 
@@ -40,8 +40,3 @@ def section_with(name: str, module: str, base: type[Section], mechanisms: Iterab
 def mechanisms_of(section: Section) -> Iterator[Any]:
     """Mechanisms that a section of a recipe has."""
     return (value for _, value in section if isinstance(value, Mechanism))
-
-
-def is_flat(drawn: Any) -> bool:
-    """Whether drawn values, which may come from a file, are numbers by name."""
-    return isinstance(drawn, dict) and all(type(value) in (int, float) for value in drawn.values())

@@ -17,7 +17,7 @@ from gen.physics.rotor import Machine, as_columns, ball_angles, rest
 FloatArray = NDArray[np.float64]
 
 
-class SpallInput(NamedTuple):
+class Spall(NamedTuple):
     """One spall."""
 
     site: str
@@ -37,6 +37,10 @@ class SpallInput(NamedTuple):
     """Standard deviation of the logarithm of the drop from passage to passage [1]."""
     seed: int = 0
     """Seed of that scatter."""
+    roughness: float = 0.0
+    """Rms roughness of the floor, which a ``table`` holds [m]."""
+    trace: tuple[float, ...] = ()
+    """Depths of a measured surface from edge to edge, evenly spaced, which a ``table`` holds [m]; for the profile ``trace``."""
 
 
 class Turning(NamedTuple):
@@ -115,7 +119,7 @@ class KernelInput(NamedTuple):
     bearing: Bearing
     machine: Machine
     turning: Turning
-    spalls: tuple[SpallInput, ...]
+    spalls: tuple[Spall, ...]
     frequencies: FloatArray
     """Frequencies of the cosine terms of all processes, shape (term,) [Hz]; see :func:`gen.physics.kernel.layout.n_process_terms`."""
     phases: FloatArray
@@ -162,7 +166,7 @@ def walk_slip_rms(bearing: Bearing, turning: Turning, held: float) -> float:
     return turning.walk * math.sqrt(apart / turned) if turning.walk > 0 else 0.0
 
 
-def spall_span(bearing: Bearing, spall: SpallInput) -> tuple[float, float]:
+def spall_span(bearing: Bearing, spall: Spall) -> tuple[float, float]:
     """Half the angle between the edges of a spall [rad], and the radius of the damaged surface [m]."""
     radius = bearing.radius(spall.site)
     return 0.5 * spall.width / radius, radius

@@ -11,6 +11,7 @@ publication        licence, creators and references of the corpus
 sensing            sensors, level, converter
 changes            keys of operation and level that one fault replaces
 fault_entries      keys that all entries of faults have in common
+origin             where the record of a drawn recipe comes from
 sections           all sections of a recipe, and the counts that follow from them
 shares             quantities that are a share of another
 lives              lives that cannot be

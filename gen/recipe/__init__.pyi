@@ -3,7 +3,7 @@ from .finding import find_recipe as find_recipe, recipe_purpose as recipe_purpos
 from .keywords import make_recipe as make_recipe
 from .machine import CatalogueBearing as CatalogueBearing
 from .model import Recipe as Recipe
-from .operation import ProfileSection as ProfileSection
+from .origin import OriginSection as OriginSection, Snapshot as Snapshot
 from .reading import (
     corpus_identity as corpus_identity,
     read_recipe as read_recipe,

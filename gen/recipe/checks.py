@@ -93,6 +93,8 @@ def _rungs_problem(recipe: Sections, healthy: float, faulty: float) -> str | Non
 
 def _corpus_problem(recipe: Sections) -> str | None:
     corpus = recipe.corpus
+    if recipe.origin is not None and (recipe.n_records, len(recipe.faults), recipe.life) != (1, 1, None):
+        return "origin: is that of one record without life; keep one rig with one specimen, one record and one fault, or leave origin out."
     if recipe.truth.undetected == "redraw" and corpus.records_of_a_specimen > recipe.storage.records_per_part:
         return (
             f"truth.undetected: redraw judges all {corpus.records_of_a_specimen} records of a specimen together, and a part has "
@@ -109,10 +111,8 @@ def _corpus_problem(recipe: Sections) -> str | None:
 
 
 def _sensor_faults_problem(recipe: Sections) -> str | None:
-    converter = recipe.recording.converter
-    full_scale = None if converter.kind == "float32" else converter.full_scale_m_s2
     for fault in mechanisms_of(recipe.sensor_faults):
-        problem = fault.problem(full_scale, recipe.recording.duration_s)
+        problem = fault.problem(recipe.recording.full_scale, recipe.recording.duration_s)
         if problem is not None:
             return f"sensor_faults.{fault.place}.{problem}"
     return None
@@ -144,7 +144,8 @@ def _operation_problem(recipe: Sections, place: str, operation: OperationSection
     beyond = load_problem(recipe.bearing, recipe.specimen, operation, place)
     if beyond is not None:
         return beyond
-    if "temperature_celsius" in operation.model_fields_set and recipe.contact.lubricant is None:
+    given = "temperature_celsius" in operation.model_fields_set and recipe.origin is None
+    if given and recipe.contact.lubricant is None:
         return f"{place}.temperature_celsius: has no effect without oil; give contact.lubricant, or leave it out."
     duration = recipe.recording.duration_s
     for key, profile in (("speed", operation.speed_profile), ("load", operation.load_profile)):

@@ -23,6 +23,8 @@ class LifeEnd(Section):
 class LifeSection(Section):
     """Life of each specimen, from its first turn to its failure; its records are snapshots of it, one after the other."""
 
+    drawn_per = "specimen"
+
     cadence_h: Above0
     """Time from one snapshot to the next."""
     damaged_cadence_h: Above0 | None = None

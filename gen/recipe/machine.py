@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AliasChoices, BeforeValidator, Field, StrictInt, field_validator, model_validator
 
-from gen.drawing import Distribution, Name, Number, Section, within
+from gen.drawing import Distribution, Draws, Name, Number, Section, within
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.physics.extent import MAX_BALLS
-from gen.support.units import to_si
+from gen.support.units import UNITS, to_si
 
 _KNOWN = tuple(
     name for name, bearing in CATALOGUE.items() if bearing.rolling_element == "ball" or bearing.roller_length
@@ -79,6 +79,8 @@ class OwnBearing(Section):
 class CatalogueBearing(Section):
     """Bearings by designation, one of which is drawn per rig."""
 
+    drawn_per = "rig"
+
     kind: Literal["catalogue"]
     """Takes bearings by their designations."""
     designations: Annotated[tuple[Name, ...], Field(min_length=1)]
@@ -106,6 +108,15 @@ class CatalogueBearing(Section):
             raise ValueError(f"designations: {unknown!r} is neither in the catalogue nor in entries; {guess}")
         return self
 
+    def draw(self, of: Draws) -> Self:
+        """One of the designations."""
+        chosen = self.designations[int(of.u("designations") * len(self.designations))]
+        return self.model_copy(update={"designations": (chosen,)})
+
+    def drawing(self) -> Bearing:
+        """The drawn bearing, as on its drawing."""
+        return self.bearing(self.designations[0])
+
     def bearing(self, designation: str) -> Bearing:
         """Bearing of a designation, from the entries or from the catalogue."""
         own = self.entries.get(designation)
@@ -114,6 +125,8 @@ class CatalogueBearing(Section):
 
 class GeometryBearing(Section):
     """A bearing given by its dimensions, drawn per rig."""
+
+    drawn_per = "rig"
 
     kind: Literal["geometry"]
     """Takes a bearing by its dimensions, each of which can vary from rig to rig."""
@@ -147,6 +160,28 @@ class GeometryBearing(Section):
         if self.n_balls.support()[0] == self.n_balls.support()[1] and low == high:
             check_room(round(self.n_balls.support()[0]), high * pitch.support()[0], pitch.support()[0])
         return self
+
+    def draw(self, of: Draws) -> Self:
+        """The dimensions, with balls that fit beside each other."""
+        drawn = super().draw(of)
+        values, n_balls = drawn.si(), round(drawn.n_balls)
+        ball = self.fitting_ball(n_balls, values["pitch_diameter"], values["ball_diameter"])
+        fitting = {} if ball == values["ball_diameter"] else {"ball_diameter_mm": ball / UNITS["mm"].factor}
+        return drawn.model_copy(update={"n_balls": float(n_balls), **fitting})
+
+    def drawing(self) -> Bearing:
+        """The drawn bearing, as on its drawing."""
+        drawn = self.si()
+        rollers = drawn["roller_length"]
+        return Bearing(
+            designation=self.designation,
+            n_balls=round(drawn["n_balls"]),
+            pitch_diameter=drawn["pitch_diameter"],
+            ball_diameter=drawn["ball_diameter"],
+            contact_angle=drawn["contact_angle"],
+            rolling_element="roller" if rollers > 0 else "ball",
+            roller_length=rollers or None,
+        )
 
     @staticmethod
     def fitting_ball(n_balls: int, pitch: float, ball: float) -> float:
@@ -198,6 +233,8 @@ class Resonator(Section):
 class MachineSection(Section):
     """Masses, springs and dampers of the machine, and its faults other than those of the bearing; drawn per rig."""
 
+    drawn_per = "rig"
+
     shaft_mass_kg: Distribution = within(0, 1000, open_low=True, default=5.5)
     """Mass that moves with the inner ring."""
     housing_mass_kg: Distribution = within(0, 1000, open_low=True, default=3.0)
@@ -219,7 +256,9 @@ class MachineSection(Section):
     contact_damping_n_s_m: Distribution = within(0, 1e4, default=0.0)
     """Damper in each loaded contact, in addition to that of the oil film; it acts on the approach speed of the rings."""
     balance_mm_s: Distribution = within(0, 100, default=1.0)
-    """Balance grade G of the rotor (ISO 21940-11) at the highest `shaft_rpm` of `operation` and `faults`; it gives a line at 1x."""
+    """Balance grade G of the rotor (ISO 21940-11) at `balance_rpm`; it gives a line at 1x."""
+    balance_rpm: Annotated[Number, Field(gt=0)] | None = None
+    """Speed for which `balance_mm_s` holds; the highest `shaft_rpm` of `operation` and `faults` if left out."""
     load_angle_deg: Distribution = within(-360, 360, default=-90.0)
     """Direction of the radial load, counter-clockwise from the horizontal; -90 is down. The load zone lies there."""
     bow_n: Distribution = within(0, 1e6, default=0.0)
@@ -232,6 +271,12 @@ class MachineSection(Section):
     """Half the play of a loose housing: within it the support has no stiffness."""
     resonator: Resonator | None = Resonator()
     """Resonance between housing and sensor; `null` leaves it out."""
+
+    @property
+    def unbalance(self) -> float:
+        """Mass times eccentricity of the drawn rotor after ISO 21940-11 [kg m]."""
+        drawn = self.si()
+        return drawn["shaft_mass"] * drawn["balance"] / (2 * math.pi * to_si(self.balance_rpm or math.nan, "rpm"))
 
 
 class LubricantSection(Section):
@@ -250,6 +295,8 @@ class LubricantSection(Section):
 class ContactSection(Section):
     """Contact of balls and races."""
 
+    drawn_per = "rig"
+
     footprint: Literal["point", "hertz"] = "point"
     """Width over which a ball feels a spall: `hertz` averages over the contact ellipse, `point` takes its centre alone."""
     lubricant: LubricantSection | None = None
@@ -258,6 +305,8 @@ class ContactSection(Section):
 
 class SpecimenSection(Section):
     """Deviations of one physical bearing from its drawing, drawn per specimen."""
+
+    drawn_per = "specimen"
 
     diametral_clearance_um: Distribution = within(-60, 500, default=10.0)
     """Internal clearance as built, negative for preload; a larger one narrows the load zone."""

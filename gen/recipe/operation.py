@@ -7,6 +7,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from gen.drawing import Distribution, Number, Section, within
+from gen.physics.profile import Profile
+from gen.support.units import percent_to_share
 
 Share = Annotated[Number, Field(gt=0, le=1000)]
 CLOSEST_TIMES_S = 1e-6  # between two points of a profile; its slope stays a finite number
@@ -21,6 +23,11 @@ class Ramp(Section):
     """Share of the drawn speed or load at the start of the record."""
     to_percent: Distribution = within(0.1, 1000)
     """Share of the drawn speed or load at the end of the record."""
+
+    def course(self, duration: float) -> Profile:
+        """The drawn change over a record of a ``duration`` in s."""
+        drawn = self.si()
+        return Profile((0.0, duration), (drawn["from"], drawn["to"]))
 
 
 class RunUp(Section):
@@ -37,6 +44,12 @@ class RunUp(Section):
     lasting_s: Distribution = within(0, 600, open_low=True)
     """Duration of the change."""
 
+    def course(self, duration: float) -> Profile:  # noqa: ARG002
+        """The drawn change, whatever the length of the record."""
+        drawn = self.si()
+        times = drawn["start"], drawn["start"] + drawn["lasting"]
+        return Profile(times, (drawn["from"], drawn["to"]), smooth=True)
+
 
 class Steps(Section):
     """Levels of equal duration with smooth transitions between them."""
@@ -48,6 +61,13 @@ class Steps(Section):
     step_s: Annotated[Number, Field(gt=0, le=60)] = 0.1
     """Duration of each transition; at most that of one level."""
 
+    def course(self, duration: float) -> Profile:
+        """The levels over a record of a ``duration`` in s."""
+        levels = tuple(map(percent_to_share, self.levels_percent))
+        changes = [duration * change / len(levels) for change in range(1, len(levels))]
+        times = tuple(time + side * self.step_s / 2 for time in changes for side in (-1, 1))
+        return Profile(times, tuple(level for pair in pairwise(levels) for level in pair), smooth=True)
+
 
 class Table(Section):
     """A measured profile: linear between its points, constant before the first and after the last."""
@@ -58,6 +78,10 @@ class Table(Section):
     """Times of the points, from the start of the record, in rising order and at least a microsecond apart."""
     percent: Annotated[tuple[Share, ...], Field(min_length=1, max_length=10_000)]
     """Share of the drawn speed or load at each point."""
+
+    def course(self, duration: float) -> Profile:  # noqa: ARG002
+        """The points, whatever the length of the record."""
+        return Profile(self.times_s, tuple(map(percent_to_share, self.percent)))
 
     @model_validator(mode="after")
     def _in_pairs(self) -> Self:
@@ -83,6 +107,8 @@ class SlipWalk(Section):
 
 class OperationSection(Section):
     """Operating conditions, drawn per record."""
+
+    drawn_per = "record"
 
     shaft_rpm: Distribution = within(1, 100_000)
     """True speed of the shaft at 100 % of the speed profile; the label differs from it by `label_error_percent`."""

@@ -70,6 +70,8 @@ def recipe_hash(recipe: Recipe) -> str:
 @functools.lru_cache(maxsize=16)
 def corpus_identity(recipe: Recipe) -> str:
     """First 12 digits of the SHA-256 of the values that draws depend on: with the same ones, equal numbers are the same machine."""
+    if recipe.origin is not None:
+        return recipe.origin.corpus
     return _hash(recipe, {"storage", "publication", "records", "name", "title"})[:12]
 
 

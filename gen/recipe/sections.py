@@ -24,6 +24,7 @@ from gen.recipe.machine import (
     SpecimenSection,
 )
 from gen.recipe.operation import OperationSection
+from gen.recipe.origin import OriginSection
 from gen.recipe.publication import PublicationSection
 from gen.recipe.sensing import PhysicalLevel, RecordingSection, SnrLevel
 
@@ -153,6 +154,8 @@ class Sections(Section):
     """Twins of the records with a fault, and records in which it cannot be seen."""
     storage: StorageSection = StorageSection()
     """Size and compression of the files."""
+    origin: OriginSection | None = None
+    """Where the only record of the recipe comes from, if it was drawn before; `raceway replay --recipe` writes it."""
     records: Annotated[StrictInt, Field(ge=1)] | None = None
     """Number of records, if the corpus is to have fewer or more than rigs * specimens * records per specimen: the first ones, or those of
     further rigs. No record depends on it, so that a corpus can grow."""
@@ -215,3 +218,8 @@ class Sections(Section):
         """Operating conditions of the records of one entry of ``faults``."""
         changes = self.faults[entry].operation
         return self.operation if changes is None else self.operation.model_copy(update=changes.given())
+
+    def level_of(self, entry: int) -> PhysicalLevel | SnrLevel:
+        """Level of the records of one entry of ``faults``."""
+        changes = self.faults[entry].level
+        return self.level if changes is None else self.level.model_copy(update=changes.given())

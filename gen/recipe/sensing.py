@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, StrictInt
 
-from gen.drawing import Distribution, Name, Number, Section, Weight, within
+from gen.drawing import Distribution, Draws, Name, Number, Section, Weight, weighted_index, within
 from gen.mechanisms.path import PathSection
 
 MAX_OVERSAMPLING = 96
@@ -57,9 +57,21 @@ class Channel(Section):
     path: PathSection | None = None
     """Transfer path of this channel alone, as for a sensor at the fan end; the common `path` if left out."""
 
+    def draw(self, of: Draws) -> Any:
+        """The sensor on one of its bodies."""
+        place = weighted_index(tuple(self.body.values()), of.u("body"))
+        return super().draw(of).model_copy(update={"body": {[*self.body][place]: 1.0}})
+
+    @property
+    def drawn_body(self) -> Body:
+        """Body that carries the drawn sensor."""
+        return next(body for body, weight in self.body.items() if weight)
+
 
 class RecordingSection(Section):
     """Sample rate, length and channels of every record."""
+
+    drawn_per = "rig"
 
     sample_rate_hz: Annotated[Number, Field(ge=1000, le=200_000)]
     """Sample rate of all channels; the signal is flat up to 0.8 of half this rate."""
@@ -78,27 +90,36 @@ class RecordingSection(Section):
     converter: Annotated[Converter | FloatConverter, Field(discriminator="kind")] = Converter()
     """Conversion of the signal to stored numbers."""
 
+    @property
+    def full_scale(self) -> float | None:
+        """Largest acceleration of the converter [m s-2]; None without one."""
+        return None if self.converter.kind == "float32" else self.converter.full_scale_m_s2
+
 
 class PhysicalLevel(Section):
     """The simulated acceleration times a gain, plus a background of drawn rms; drawn per rig."""
 
+    drawn_per = "rig"
+
     kind: Literal["physical"] = "physical"
     """Keeps the level of the simulation, so that a larger fault gives a larger signal."""
-    gain: Distribution = within(0, 1000, open_low=True, default=1.0)
+    gain: Distribution = within(0, 1e12, open_low=True, default=1.0)
     """Factor on bearing signal and background, such as the sensitivity of a sensor."""
-    background_m_s2: Distribution = within(0, 1000, default=1.0)
+    background_m_s2: Distribution = within(0, 1e12, default=1.0)
     """Rms of the background noise before the gain; lines and impulses are added at their levels relative to it."""
 
 
 class SnrLevel(Section):
     """A drawn signal-to-noise ratio and a drawn rms of the whole record, so that the level does not give the class away."""
 
+    drawn_per = "record"
+
     kind: Literal["snr"]
     """Scales bearing signal and background per record."""
     faulty_db: Distribution = within(-60, 60)
     """Rms of what the fault adds over that of all else, background and bearing without the fault; for records with a fault. With
     `truth.twins: false` it is that of the whole bearing signal over the background."""
-    healthy_db: Distribution = within(-60, 60)
+    healthy_db: Distribution = within(-60, 60, per="rig")
     """Rms of the bearing signal over that of the background, for healthy records; one ratio for all of a rig."""
     rms_m_s2: Distribution = within(0, 1000, open_low=True, default=5.0)
     """Rms of the whole record, bearing signal and background together."""

@@ -5,11 +5,14 @@ from pathlib import Path
 from typing import Any
 
 from ruamel.yaml import YAML
+from ruamel.yaml.representer import SafeRepresenter
 
 from gen.corpus import write_text_durably
 from gen.drawing import plain
 from gen.recipe.model import Recipe
 from gen.support.errors import RecipeError
+
+_LONGEST_LINE = 90
 
 
 def write_recipe(recipe: Recipe, path: Path | str) -> None:
@@ -32,11 +35,23 @@ def write_recipe(recipe: Recipe, path: Path | str) -> None:
 def recipe_text(recipe: Recipe) -> str:
     """YAML text of a recipe: the keys that were given, one section below the other."""
     yaml = YAML(typ="safe", pure=True)
-    yaml.default_flow_style, yaml.width = None, 100  # sections without others on one line
+    yaml.Representer = _Representer
+    yaml.default_flow_style, yaml.width = None, 1000
     yaml.representer.sort_base_mapping_type_on_output = False
     text = io.StringIO()
-    yaml.dump(_without_points(plain(recipe)), text)
+    given = {key: value for key, value in plain(recipe).items() if value != {}}
+    yaml.dump(_without_points(given), text)
     return text.getvalue()
+
+
+class _Representer(SafeRepresenter):
+    """Short sections without others on one line."""
+
+    def represent_mapping(self, tag: str, mapping: Any, flow_style: bool | None = None) -> Any:
+        node = super().represent_mapping(tag, mapping, flow_style)
+        if sum(len(key.value) + len(str(value.value)) + 4 for key, value in node.value) > _LONGEST_LINE:
+            node.flow_style = False
+        return node
 
 
 def _without_points(value: Any) -> Any:

@@ -14,8 +14,8 @@ import math
 import numpy as np
 
 from gen.corpus import FAULTS
+from gen.drawing import stream
 from gen.recipe import Recipe, fault_class
-from gen.scenarios.model import Purpose, stream
 
 # Irrational steps without a common small multiple, and without one with that of the split (the golden ratio).
 _HEALTHY_STEP, _FAULTY_STEP = math.sqrt(2), 2 ** (1 / 3)
@@ -53,7 +53,7 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     n_healthy += int(offsets[0] < healthy - n_healthy - _ROUNDING)
     faulty = _share_out(shares, count - n_healthy, offsets[1])
     chosen = [*["healthy"] * n_healthy, *faulty]
-    return [chosen[i] for i in stream(recipe.seed, rig, 0, 0, Purpose.CLASSES).permutation(count)]
+    return [chosen[i] for i in stream(recipe.seed, "rig", rig, "faults").permutation(count)]
 
 
 def possible_entries(recipe: Recipe, specimen: int, fault: str) -> list[int]:
@@ -65,7 +65,7 @@ def possible_entries(recipe: Recipe, specimen: int, fault: str) -> list[int]:
 
 def _offsets(seed: int, rig: int) -> tuple[float, float]:
     """Offsets in [0, 1) of a rig, for its healthy and for its faulty specimens."""
-    starts = stream(seed, 0, 0, 1, Purpose.CLASSES).random(2)  # the classes of a rig have 0 for the record
+    starts = stream(seed, "corpus", 0, "faults").random(2)
     return (float(starts[0]) + rig * _HEALTHY_STEP) % 1, (float(starts[1]) + rig * _FAULTY_STEP) % 1
 
 

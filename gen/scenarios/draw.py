@@ -1,30 +1,56 @@
-"""Draw scenarios: rigs, specimens and records.
+"""Draw scenarios: a recipe becomes that of a rig, then that of a specimen, then that of a record, section by section.
 
-A rig is one machine with its path, background and sensor; it has healthy and faulty specimens, and each specimen has several records.
-Every rig, specimen, record and purpose has its own random stream, which depends on their numbers and not on the order of work. Only the
-fault stream depends on the fault: a record with its fault and the same record without it differ in the fault alone.
+A rig is one machine with its path, background and sensor; it has healthy and faulty specimens, and each specimen has several records. Every
+number depends on the seed, the number of its rig, specimen or record, and its name. Only the numbers of ``faults`` depend on the fault: a
+record with its fault and the same record without it differ in the fault alone.
 """
 
 import functools
-import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus import SPLITS
-from gen.drawing import Draws, Known, known_of, weighted_index
-from gen.mechanisms.background.section import draw_background, draw_later, draw_locked
-from gen.mechanisms.chain.measuring_chain import draw_for_rig
-from gen.mechanisms.faults.bearing_fault import draw_damage
-from gen.recipe import Fault, Recipe, operations
-from gen.scenarios.bearings import draw_as_built, draw_bearing, known_of_rig
+from gen.drawing import Combination, Draws, Known, Section, quantities, stream, weighted_index
+from gen.physics.axial import least_axial_load
+from gen.physics.bearing import Bearing, free_contact_angle
+from gen.physics.rating import static_rating
+from gen.recipe import (
+    FREE_ANGLE,
+    LEAST_AXIAL_LOAD,
+    STATIC_RATING,
+    Fault,
+    OriginSection,
+    Recipe,
+    corpus_identity,
+    operations,
+)
+from gen.recipe.publication import PublicationSection
+from gen.recipe.sections import CorpusSection, StorageSection, TruthSection
 from gen.scenarios.classes import fault_of_each_specimen, possible_entries
-from gen.scenarios.model import Pickup, Purpose, Rig, Scenario, Specimen, stream
-from gen.scenarios.operating import Operating, operating_of
+from gen.scenarios.lives import SpecimenLife, at_snapshot, draw_life
 from gen.scenarios.points import points_of
-from gen.scenarios.records import SpecimenSource, draw_records, source_of
+from gen.scenarios.scenario import Scenario, as_built, check_bearing, scenario_of, sound
 from gen.support.errors import RecipeError
+from gen.support.units import split_unit
+
+_OF_RIG = ("recording", "bearing", "machine", "machine_conditions", "contact", "path", "background", "sensor_faults")
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A rig or a specimen: the recipe with its numbers, and what the next level is drawn with."""
+
+    recipe: Recipe
+    draws: Draws
+    known: Known
+    bearing: Bearing
+    life: SpecimenLife | None = None
+    rungs: tuple[Fault, ...] = field(default=())
+    """Fault of a specimen at each rung; one if its records are in no groups."""
 
 
 def draw_scenarios(
@@ -46,102 +72,132 @@ def draw_scenarios(
             f"{recipe.name}: has no records {first} to {numbers.stop if stop is None else stop} (exclusive); it has "
             f"{recipe.n_records}, numbered from 0."
         )
-    tries = fault_tries or {}
+    if recipe.origin is not None:
+        return [scenario_of(recipe)]
     first_specimen, last_specimen = recipe.specimen_of(numbers[0]), recipe.specimen_of(numbers[-1])
     first_rig, last_rig = recipe.rig_of(first_specimen), recipe.rig_of(last_specimen)
-    rig_draws = {
-        number: Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), number, f"rig {number}", point)
-        for number, point in points_of(recipe, Purpose.RIG, first_rig, last_rig + 1).items()
+    rigs = {
+        number: _draw_rig(recipe, _draws(recipe, "rig", number, number, point))
+        for number, point in points_of(recipe, "rig", first_rig, last_rig + 1).items()
     }
-    rigs = {number: _draw_rig(recipe, number, draws) for number, draws in rig_draws.items()}
-    known = {number: known_of_rig(recipe, rig) for number, rig in rigs.items()}
-    classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
-    sources: dict[int, SpecimenSource] = {}
-    operating: dict[int, Operating] = {}
-    for number, point in points_of(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items():
-        rig = recipe.rig_of(number)
-        draws = Draws(stream(recipe.seed, rig, number, 0, Purpose.SPECIMEN), number, f"specimen {number}", point)
-        specimen = _draw_specimen(recipe, rigs[rig], known[rig], number, draws, classes[rig], tries.get(number, 0))
-        if specimen.entry not in operating:
-            operating[specimen.entry] = operating_of(recipe, specimen.entry)
-        sources[number] = source_of(
-            recipe, rigs[rig], known[rig], specimen, operating[specimen.entry], rig_draws[rig], draws
-        )
-    return list(draw_records(recipe, sources, numbers))
+    specimens = {}
+    for number, point in points_of(recipe, "specimen", first_specimen, last_specimen + 1).items():
+        rig, draws = rigs[recipe.rig_of(number)], _draws(recipe, "specimen", number, number, point)
+        specimens[number] = _draw_specimen(recipe, rig, draws, (fault_tries or {}).get(number, 0))
+    points = _record_points(recipe, numbers)
+    return list(_draw_records(recipe, specimens, numbers, points))
 
 
-def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
-    machine = draws.section(recipe.machine)
-    # ISO 21940-11 defines the balance grade at the highest speed of the machine
-    highest_rate = max(operation.shaft_rpm.support()[1] for operation in operations(recipe).values()) / 60
-    machine["unbalance"] = machine["shaft_mass"] * machine["balance"] / (2 * math.pi * highest_rate)
-    known = known_of(recipe.machine, machine)
-    resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator, known)
-    bearing = draw_bearing(recipe, draws)
-    level = draws.section(recipe.level)
-    channels = []
-    for channel in recipe.recording.channels:
-        body = tuple(channel.body)[weighted_index(tuple(channel.body.values()), draws.u())]
-        channels.append(Pickup(body, draws.section(channel)["angle"]))
-    path = recipe.path.draw(draws)
-    background = draw_background(recipe.background, draws)
-    own_paths = tuple(None if c.path is None else c.path.draw(draws) for c in recipe.recording.channels)
-    oil = None if recipe.contact.lubricant is None else draws.section(recipe.contact.lubricant)
-    if oil is not None and oil["viscosity_100"] >= oil["viscosity_40"]:
-        raise RecipeError(
-            f"rig {number}: oil of {oil['viscosity_40'] * 1e6:.3g} mm2/s at 40 C has no lower viscosity at 100 C; "
-            f"keep viscosity_100_mm2_s below viscosity_40_mm2_s."
-        )
-    background |= draw_later(recipe.background, draws)
-    background |= draw_locked([recipe.background, recipe], functools.partial(stream, recipe.seed, number, 0, 0), number)
-    high_pass, offset = draws.value(recipe.recording.high_pass_hz), draws.value(recipe.recording.offset_m_s2)
-    return Rig(
-        number=number,
-        bearing=bearing,
-        machine=machine,
-        resonator=resonator,
-        channels=tuple(channels),
-        path=path,
-        own_paths=own_paths,
-        background=background,
-        gain=level.get("gain", 1.0),
-        background_rms=level.get("background", 1.0),
-        lubricant=oil,
-        footprint=recipe.contact.footprint == "hertz",
-        sensor_faults=draw_for_rig(
-            recipe.sensor_faults,
-            stream(recipe.seed, number, 0, 0, Purpose.RIG_SENSOR_FAULTS),
-            number,
-            len(recipe.recording.channels),
-        ),
-        high_pass=high_pass,
-        offset=offset,
+def _draws(recipe: Recipe, level: Any, of: int, item: int, point: NDArray[np.float64]) -> Draws:
+    """Numbers of a rig, specimen or record; its grids have the combination ``item``."""
+    return Draws(
+        recipe.seed, level, of, Combination(item), point[::-1].tolist(), channels=len(recipe.recording.channels)
     )
 
 
-def _draw_specimen(
-    recipe: Recipe,
-    rig: Rig,
-    known: Known,
-    number: int,
-    draws: Draws,
-    classes: list[str],
-    fault_try: int,
-) -> Specimen:
-    bearing, properties = draw_as_built(recipe, rig.bearing, known, draws)
+def _draw_rig(recipe: Recipe, draws: Draws) -> Drawn:
+    drawn: dict[str, Any] = {}
+    for key in _OF_RIG:
+        section = getattr(recipe, key)
+        if section is not None:
+            drawn[key] = section.draw(draws.within(key, "rig"))
+    machine, bearing = drawn["machine"], drawn["bearing"].drawing()
+    # ISO 21940-11 defines the balance grade at the highest speed of the machine
+    highest = machine.balance_rpm or _highest_speed(recipe)
+    drawn["machine"] = machine.model_copy(update={"balance_rpm": highest})
+    oil = drawn["contact"].lubricant
+    if oil is not None and oil.viscosity_100_mm2_s >= oil.viscosity_40_mm2_s:
+        raise RecipeError(
+            f"rig {draws.of}: oil of {oil.viscosity_40_mm2_s:.3g} mm2/s at 40 C has no lower viscosity at 100 C; "
+            f"keep viscosity_100_mm2_s below viscosity_40_mm2_s."
+        )
+    dimensions = {"pitch_diameter_mm": bearing.pitch_diameter, "ball_diameter_mm": bearing.ball_diameter}
+    known = {**_known(recipe.machine, machine), **dimensions}
+    return Drawn(recipe.model_copy(update=drawn), draws._replace(point=[]), known, bearing)
+
+
+@functools.lru_cache(maxsize=16)
+def _highest_speed(recipe: Recipe) -> float:
+    return max(operation.shaft_rpm.support()[1] for operation in operations(recipe).values())
+
+
+def _known(given: Section, drawn: Section) -> dict[str, float]:
+    """Drawn quantities of a section by their keys [SI]."""
+    values = drawn.si()
+    return {key: values[split_unit(key)[0]] for key in quantities(given)}
+
+
+def _built(rig: Drawn, draws: Draws) -> Drawn:
+    """A specimen without its fault."""
+    recipe, drawing = rig.recipe, rig.bearing
+
+    def free_angle(value: Any) -> float:
+        """Free contact angle with the clearance and the grooves of the specimen [rad]; 0 if its drawing has a contact angle."""
+        if drawing.contact_angle != 0:
+            return 0.0
+        grooved = replace(
+            drawing, inner_conformity=value("inner_conformity"), outer_conformity=value("outer_conformity")
+        )
+        return free_contact_angle(grooved, value("diametral_clearance_um"))
+
+    known = {**rig.known, FREE_ANGLE: free_angle}
+    specimen = recipe.specimen.draw(draws._replace(known=known).within("specimen", "specimen"))
+    bearing = as_built(drawing, specimen.si())
+    check_bearing(bearing, f"specimen {draws.of}")
+    known = {**rig.known, **_known(recipe.specimen, specimen)}
+    return Drawn(recipe.model_copy(update={"specimen": specimen}), draws, known, bearing)
+
+
+def _draw_specimen(recipe: Recipe, rig: Drawn, draws: Draws, fault_try: int) -> Drawn:
+    number = draws.of
     position = number % recipe.corpus.specimens_per_rig
-    fault = classes[position]
+    fault = fault_of_each_specimen(recipe, rig.draws.of)[position]
     wanted, entry = possible_entries(recipe, number, fault), 0
+    of_faults = draws._replace(point=[]).within("faults", "specimen")
     for attempt in sorted({0, fault_try}):
-        draws = Draws(stream(recipe.seed, rig.number, number, attempt, Purpose.FAULT), number, f"specimen {number}")
-        entry = wanted[weighted_index(tuple(recipe.faults[place].weight for place in wanted), draws.u())]
+        u = of_faults._replace(attempt=attempt).u("entry")
+        entry = wanted[weighted_index(tuple(recipe.faults[place].weight for place in wanted), u)]
         # a fault that is drawn again leaves the conditions as they are
         first = recipe.faults[entry]
         wanted = [place for place in wanted if _same_conditions(recipe.faults[place], first)]
-    split = _draw_split(recipe, rig.number, position)
-    known = {**known, **known_of(recipe.specimen, properties)}
-    spalls, damage = draw_damage(recipe.faults[entry].components, draws, bearing, known)
-    return Specimen(number, bearing, properties, fault, spalls, damage, split, fault_try, entry)
+    origin = OriginSection.model_construct(
+        corpus=corpus_identity(recipe),
+        rig=rig.draws.of,
+        specimen=number,
+        record=0,
+        entry=entry,
+        split=_draw_split(recipe, rig.draws.of, position),
+        fault_try=fault_try,
+    )
+    return _of_entry(recipe, rig, _built(rig, draws), draws, entry, origin)
+
+
+def _of_entry(recipe: Recipe, rig: Drawn, built: Drawn, draws: Draws, entry: int, origin: OriginSection) -> Drawn:
+    """A specimen with what its records have in common, and with its fault."""
+    drawn: dict[str, Any] = {}
+    # of one combination of grids for all specimens of a rig
+    of_rig = rig.draws._replace(grids=replace(rig.draws.grids))
+    for key, section in (("operation", recipe.operation_of(entry)), ("level", recipe.level_of(entry))):
+        drawn[key] = section.draw(of_rig.within(key, "rig")).draw(draws.within(key, "specimen"))
+    of_faults = draws._replace(point=[], attempt=origin.fault_try, known=built.known, bearing=built.bearing)
+    fault = recipe.faults[entry].draw(of_faults.within("faults", "specimen"))
+    for part in fault.components:
+        part.check(built.bearing, f"specimen {draws.of}")
+    fault = fault.model_copy(update={"weight": 1.0, "operation": None, "level": None})
+    drawn |= {"faults": (fault,), "origin": origin}
+    load: Known = {
+        **built.known,
+        STATIC_RATING: lambda _: static_rating(rig.bearing),
+        LEAST_AXIAL_LOAD: lambda value: least_axial_load(value("load_n"), built.bearing.contact_angle),
+    }
+    rungs = (1.0,) if recipe.corpus.rungs is None or not fault.components else recipe.corpus.rungs
+    faults = tuple(fault if share == 1 else sound() if share == 0 else fault.at_severity(share) for share in rungs)
+    made = replace(built, recipe=built.recipe.model_copy(update=drawn), known=load, rungs=faults)
+    if recipe.life is None:
+        return made
+    middle = _draws(recipe, "record", 0, 0, np.full(64, 0.5))._replace(known=load)
+    conditions = drawn["operation"].draw(middle.within("operation", "record")).si()
+    return replace(made, life=draw_life(recipe, made.recipe, built.bearing, conditions))
 
 
 def _same_conditions(one: Fault, other: Fault) -> bool:
@@ -167,4 +223,79 @@ def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
 @functools.lru_cache(maxsize=4)
 def _ranks(seed: int, rig: int, count: int) -> NDArray[np.int64]:
     """Random order of all rigs, or of the specimens of a rig, for the split."""
-    return stream(seed, rig, 0, 0, Purpose.SPLIT).permutation(count)
+    return stream(seed, "rig", rig, "corpus.split").permutation(count)
+
+
+def _record_points(recipe: Recipe, numbers: range) -> dict[int, NDArray[np.float64]]:
+    """Quasi-random points of the groups of ``n_rungs`` records that hold some records, by number.
+
+    A faulty specimen has one point for a group. A healthy one has one for each record: those after the first of a group come after the
+    points of all groups, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
+    """
+    rungs = recipe.corpus.n_rungs
+    points: dict[int, NDArray[np.float64]] = {}
+    first, last = numbers[0] // rungs * rungs, numbers[-1] // rungs * rungs
+    for place in range(rungs):
+        points |= points_of(recipe, "record", recipe.item_of(first + place), recipe.item_of(last + place) + 1)
+    return points
+
+
+def _draw_records(
+    recipe: Recipe, specimens: Mapping[int, Drawn], numbers: range, points: Mapping[int, NDArray[np.float64]]
+) -> Iterator[Scenario]:
+    """Records of some specimens; a life that has ended has no records at the numbers that are left of its specimen.
+
+    The records of a group have the numbers of its first record, and the combination of grids and the quasi-random point of the group.
+    """
+    for number in numbers:
+        specimen = specimens[recipe.specimen_of(number)]
+        group, place = divmod(number, recipe.corpus.n_rungs)
+        grouped = len(specimen.rungs) > 1
+        first = number - place if grouped else number
+        item = recipe.item_of(first)
+        narrowest = min((width for fault in specimen.rungs for width in _widths(fault)), default=None)
+        origin: Any = specimen.recipe.origin
+        placed = {"pair": group, "rung": place, "narrowest_mm": narrowest} if grouped else {}
+        origin = origin.model_copy(update={"record": number, **placed})
+        draws = _draws(recipe, "record", first, item, points[item])
+        if specimen.life is None:
+            yield _record(specimen, draws, specimen.rungs[place if grouped else 0], origin)
+        elif (snapshot := number - recipe.records_of(origin.specimen).start) < len(specimen.life.ages):
+            yield at_snapshot(_record(specimen, draws, specimen.rungs[0], origin), specimen.life, snapshot)
+
+
+def _widths(fault: Fault) -> Iterator[float]:
+    for part in fault.components:
+        yield from getattr(part, "width_mm", ())
+
+
+def _record(specimen: Drawn, draws: Draws, fault: Fault, origin: OriginSection) -> Scenario:
+    """Scenario of a record of a specimen, without its place in a life."""
+    recipe, of_record = specimen.recipe, draws._replace(known=specimen.known)
+    drawn = {
+        key: getattr(recipe, key).draw(of_record.within(key, "record"))
+        for key in ("operation", "level", "sensor_faults")
+    }
+    return Scenario(recipe.model_copy(update=drawn | {"faults": (fault,), "origin": origin, **_alone(recipe)}))
+
+
+_ONE = CorpusSection(rigs=1, specimens_per_rig=1, records_per_specimen=1)
+
+
+def _alone(recipe: Recipe) -> dict[str, Any]:
+    """Sections of a recipe with one record, whose fault is not drawn again."""
+    truth = _truth_of_one(recipe.truth.twins, recipe.truth.undetected)
+    files = {"publication": PublicationSection(), "storage": StorageSection()}
+    return {"corpus": _ONE, "truth": truth, "records": None, "life": None, **files}
+
+
+@functools.cache
+def _truth_of_one(twins: bool, undetected: str) -> TruthSection:
+    return TruthSection.model_validate({"twins": twins, "undetected": "keep" if undetected == "redraw" else undetected})
+
+
+def further_ratios(recipe: Recipe, scenario: Scenario, count: int) -> list[float]:
+    """Signal-to-noise ratios of the later tries of a level [dB]; the first one is drawn with the record."""
+    level: Any = recipe.level_of(scenario.origin.entry)
+    draws = _draws(recipe, "record", scenario.origin.first_record, 0, np.empty(0)).within("level", "record")
+    return [level.faulty_db.draw(draws._replace(attempt=1 + attempt).u("faulty_db")) for attempt in range(count)]

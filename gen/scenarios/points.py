@@ -5,22 +5,22 @@ import warnings
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.drawing import Level, stream
 from gen.recipe import Recipe
-from gen.scenarios.model import Purpose, stream
 
 _DIMENSIONS = 64  # quasi-random values of an item; its further values are pseudo-random
 # Each level has its own dimensions: with common ones the first values of a specimen and of its only record were correlated (r up to 1).
-_FIRST_DIMENSION = {Purpose.RECORD: 0, Purpose.SPECIMEN: _DIMENSIONS, Purpose.RIG: 2 * _DIMENSIONS}
+_FIRST_DIMENSION = {"record": 0, "specimen": _DIMENSIONS, "rig": 2 * _DIMENSIONS}
 
 
-def points_of(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
+def points_of(recipe: Recipe, level: Level, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
     """Quasi-random points of the items ``first`` to ``stop`` of a level, by number; empty points if sampling is random."""
     if recipe.corpus.sampling == "random":
         return {number: np.empty(0) for number in range(first, stop)}
     from scipy.stats import qmc  # the import takes half a second, and few recipes need it
 
     engine_type = {"sobol": qmc.Sobol, "halton": qmc.Halton}[recipe.corpus.sampling]
-    rng = stream(recipe.seed, 0, 0, 0, Purpose.SAMPLING)
+    rng = stream(recipe.seed, "corpus", 0, "corpus.sampling")
     engine = engine_type(_FIRST_DIMENSION[level] + _DIMENSIONS, scramble=True, rng=rng)
     if isinstance(engine, qmc.Halton):
         engine.num_generated = first  # Halton.fast_forward computes all points before it

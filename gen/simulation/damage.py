@@ -7,15 +7,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.mechanisms.faults.bearing_fault import RACES, Spall
+from gen.drawing import stream
+from gen.mechanisms.faults.bearing_fault import RACES
+from gen.mechanisms.faults.worn_race import DistributedFault
 from gen.physics.bearing import Bearing, orders
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import footprints
-from gen.physics.inputs import ROUND, SpallInput, Waviness
+from gen.physics.inputs import ROUND, Spall, Waviness
 from gen.physics.kernel.compiling import compiled_to_disk
 from gen.physics.kernel.drop import GEOMETRIC, PROFILES, drop
 from gen.physics.trace import ball_path, contact_mean, rough_surface, spall_positions
-from gen.scenarios import Purpose, Scenario, stream
+from gen.scenarios import Scenario
 
 FloatArray = NDArray[np.float64]
 
@@ -27,20 +29,19 @@ GROWING_FLOOR = 10e-3
 """Length of the rough floor of which a growing spall lays bare ever more, from its middle on [m]: its waves are 0.1 to 1 mm long."""
 
 
-def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[SpallInput, ...]:
-    """Spalls as the kernel takes them: angles on the outer race count from x, and rough floors or wide contacts need a table."""
-    spalls = scenario.specimen.spalls
+def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[Spall, ...]:
+    """Spalls as the kernel takes them: rough floors and wide contacts need a table."""
+    spalls = scenario.spalls
     if not spalls:
         return ()
-    rng = scenario.rng(Purpose.EDGES)
-    if scenario.record.life is not None:  # a spall keeps its edges while it grows
-        rng = stream(scenario.settings.seed, scenario.rig.number, scenario.specimen.number, 0, Purpose.EDGES)
-    seeds = rng.integers(2**52, size=len(spalls)).tolist()
-    made = []
-    for number, (spall, bare) in enumerate(zip(spalls, untabulated_spalls(scenario), strict=True)):
-        known = bare._replace(scatter=spall.scatter, seed=seeds[number])
-        made.append(_tabulate(scenario, number, known, ball_load) if _needs_table(scenario, spall) else known)
-    return tuple(made)
+    # a spall keeps its edges while it grows
+    edges = scenario.stream("edges", "record" if scenario.origin.life is None else "specimen")
+    seeds = edges.integers(2**52, size=len(spalls)).tolist()
+    seeded = [spall._replace(seed=seed) for spall, seed in zip(spalls, seeds, strict=True)]
+    return tuple(
+        _tabulate(scenario, number, spall, ball_load) if _needs_table(scenario, spall) else spall
+        for number, spall in enumerate(seeded)
+    )
 
 
 def _met(site: str, inner: float, outer: float) -> tuple[float, ...]:
@@ -48,31 +49,19 @@ def _met(site: str, inner: float, outer: float) -> tuple[float, ...]:
     return {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[site]
 
 
-def untabulated_spalls(scenario: Scenario) -> tuple[SpallInput, ...]:
-    """The spalls of a record without their tables."""
-    shift = scenario.rig.machine["load_angle"]
-    return tuple(
-        SpallInput(
-            site=spall.site,
-            width=spall.width,
-            depth=spall.depth,
-            angle=spall.angle + (shift if spall.site == "outer" else 0.0),
-            ball=spall.ball,
-            profile=spall.profile,
-        )
-        for spall in scenario.specimen.spalls
-    )
-
-
 def _needs_table(scenario: Scenario, spall: Spall) -> bool:
-    return scenario.rig.footprint or spall.profile == "trace" or spall.roughness > 0
+    return _has_width(scenario) or spall.profile == "trace" or spall.roughness > 0
 
 
-def _tabulate(scenario: Scenario, number: int, bare: SpallInput, ball_load: float) -> SpallInput:
+def _has_width(scenario: Scenario) -> bool:
+    return scenario.recipe.contact.footprint == "hertz"
+
+
+def _tabulate(scenario: Scenario, number: int, bare: Spall, ball_load: float) -> Spall:
     paths = spall_paths(scenario, number)
-    if not scenario.rig.footprint:
+    if not _has_width(scenario):
         return bare._replace(profile="table", table=tuple(tuple(path) for path in paths))
-    widths = _met(bare.site, *footprints(scenario.specimen.bearing, ball_load))
+    widths = _met(bare.site, *footprints(scenario.bearing, ball_load))
     margin = max(widths)
     table = tuple(tuple(contact_mean(path, bare.width, b, margin)) for path, b in zip(paths, widths, strict=True))
     return bare._replace(profile="table", width=bare.width + 2 * margin, table=table)
@@ -80,18 +69,17 @@ def _tabulate(scenario: Scenario, number: int, bare: SpallInput, ball_load: floa
 
 def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
     """Path of the middle of a contact over a spall, shape (point,) [m]: on its race, or for a ball spall on both races."""
-    specimen, spall = scenario.specimen, scenario.specimen.spalls[number]
-    bearing = specimen.bearing
-    place = scenario.settings.seed, scenario.rig.number, specimen.number, number
+    spall, bearing = scenario.spalls[number], scenario.bearing
     # radii of the races: a convex one (inner) is positive, a concave one (outer) negative
     races = _met(spall.site, bearing.inner_radius, -bearing.outer_radius)
-    floor = spall.width if scenario.record.life is None else max(GROWING_FLOOR, spall.width)
+    floor = spall.width if scenario.origin.life is None else max(GROWING_FLOOR, spall.width)
+    place = scenario.recipe.seed, scenario.origin.specimen, number
     return _paths(spall, floor, bearing.ball_diameter / 2, races, place)
 
 
 def largest_drop_over(scenario: Scenario, number: int) -> float:
     """Largest drop of a rigid ball over a spall, on the race where it is larger [m]."""
-    spall, bearing = scenario.specimen.spalls[number], scenario.specimen.bearing
+    spall, bearing = scenario.spalls[number], scenario.bearing
     if spall.profile != "geometric" or spall.roughness > 0:
         return max(float(path.max()) for path in spall_paths(scenario, number))
     race = -bearing.outer_radius if spall.site == "outer" else bearing.inner_radius
@@ -107,7 +95,7 @@ def cached_drop(profile: int, offset: float, half: float, arc: float, ball: floa
 
 @functools.lru_cache(maxsize=256)
 def _paths(
-    spall: Spall, floor: float, ball: float, races: tuple[float, ...], place: tuple[int, int, int, int]
+    spall: Spall, floor: float, ball: float, races: tuple[float, ...], place: tuple[int, int, int]
 ) -> tuple[FloatArray, ...]:
     at = spall_positions(spall.width)
     if spall.profile not in ("geometric", "trace"):
@@ -119,31 +107,25 @@ def _paths(
     if spall.profile == "trace":
         depths = np.interp(at, np.linspace(at[0], at[-1], len(spall.trace)), spall.trace)
     if spall.roughness > 0:
-        rough = rough_surface(spall.roughness, stream(*place, Purpose.ROUGHNESS))
+        seed, specimen, number = place
+        rough = rough_surface(spall.roughness, stream(seed, "specimen", specimen, f"roughness {number}"))
         depths = np.maximum(depths + np.interp(at, spall_positions(floor), rough), 0.0)
     return tuple(ball_path(depths, spall.width, ball, race) for race in races)
 
 
-def _wear_of(scenario: Scenario) -> tuple[Any, ...]:
-    """Items of the drawn values of each worn race."""
-    return tuple(tuple(drawn.items()) for drawn in scenario.specimen.damage.values() if "wear" in drawn)
-
-
-def _is_wavy(scenario: Scenario) -> bool:
-    """Whether races or balls of a specimen are wavy, as made or as worn."""
-    properties = scenario.specimen.properties
-    return bool(properties["waviness"] or properties["ball_waviness"] or _wear_of(scenario))
-
-
 def waviness_of(scenario: Scenario, fs: float) -> Waviness:
     """Fourier amplitudes of races and balls of the specimen of a record, without waves that pass a ball too fast for ``fs`` [Hz]."""
-    if not _is_wavy(scenario):
+    rms, of_balls = scenario.properties["waviness"], scenario.properties["ball_waviness"]
+    worn = tuple(
+        (part.site, part.si()["waviness"], part.order)
+        for part in scenario.components
+        if isinstance(part, DistributedFault)
+    )
+    if not (rms or of_balls or worn):
         return ROUND
-    specimen, profile = scenario.specimen, scenario.record.speed_profile
-    place = scenario.settings.seed, scenario.rig.number, specimen.number, 0
-    rms, of_balls = specimen.properties["waviness"], specimen.properties["ball_waviness"]
-    whole, at_balls = _waves(place, specimen.bearing, rms, of_balls, _wear_of(scenario))
-    highest_rate = scenario.record.conditions.shaft_rate * (1.0 if profile is None else max(profile.shares))
+    place, profile = (scenario.recipe.seed, scenario.origin.specimen), scenario.speed_profile
+    whole, at_balls = _waves(place, scenario.bearing, rms, of_balls, worn)
+    highest_rate = scenario.conditions["shaft_rate"] * (1.0 if profile is None else max(profile.shares))
     highest_order = FASTEST_WAVE * fs / highest_rate
     races = np.where(at_balls.races <= highest_order, whole.races, 0j)
     return Waviness(races, np.where(at_balls.balls <= highest_order, whole.balls, 0j))
@@ -160,18 +142,23 @@ class Passages(NamedTuple):
 
 @functools.lru_cache(maxsize=256)
 def _waves(
-    place: tuple[int, int, int, int], bearing: Bearing, rms: float, of_balls: float, wear: tuple[Any, ...]
+    place: tuple[int, int],
+    bearing: Bearing,
+    rms: float,
+    of_balls: float,
+    worn: tuple[tuple[str, float, int | None], ...],
 ) -> tuple[Waviness, Passages]:
     """Amplitudes of a specimen, with random phases, and how often each wave passes a ball."""
-    rng, n_balls, spinning = stream(*place, Purpose.WAVINESS), bearing.n_balls, orders(bearing)
+    (seed, specimen), n_balls, spinning = place, bearing.n_balls, orders(bearing)
+    rng = stream(seed, "specimen", specimen, "waviness")
     every, even = np.arange(LOWEST_ORDER, HIGHEST_ORDER + 1), 2 * np.arange(1, BALL_ORDERS + 1)
     races = _falling(every) * rms * _phasors(rng, (2, len(every)))
     # in even orders the two contacts of a ball have the same height: together twice as much
     balls = 2 * of_balls * _falling(even)[:, None] * _phasors(rng, (len(even), n_balls))
-    for worn in map(dict, wear):
-        only, rng = worn["order"], stream(*place, Purpose.WEAR)
+    for site, wear, only in worn:
+        rng = stream(seed, "specimen", specimen, "wear")
         shape = _falling(every) if only is None else math.sqrt(2) * (every == only)
-        races[RACES.index(worn["site"])] += shape * worn["wear"] * _phasors(rng, (len(every),))
+        races[RACES.index(site)] += shape * wear * _phasors(rng, (len(every),))
     passing = np.stack([every * (1 - spinning.ftf), every * spinning.ftf])
     if of_balls == 0:
         balls = ROUND.balls

@@ -11,7 +11,6 @@ from typing import NamedTuple
 from gen.physics.bearing import FaultOrders
 from gen.physics.inputs import KernelInput
 from gen.scenarios import Scenario
-from gen.simulation.damage import untabulated_spalls
 from gen.simulation.inputs import bare_inputs, resting
 from gen.simulation.motion import draw_motion
 
@@ -54,13 +53,13 @@ def felt_places(scenarios: Sequence[Scenario]) -> list[bool]:
     inputs, _ = bare_inputs([draw_motion(scenarios[place]) for place in places])
     for place, given in zip(places, resting(inputs), strict=True):
         if given is not None:  # otherwise no such machine is possible; the simulation says so
-            zone, spalls = load_zone(given), untabulated_spalls(scenarios[place])
+            zone, spalls = load_zone(given), scenarios[place].spalls
             felt[place] = any(_reaches(given, spall.angle, spall.width, zone) for spall in spalls)
     return felt
 
 
 def _only_outer_spalls(scenario: Scenario) -> bool:
-    return bool(scenario.specimen.spalls) and scenario.specimen.damaged_parts == ["outer"]
+    return bool(scenario.spalls) and scenario.damaged_parts == ["outer"]
 
 
 def _reaches(given: KernelInput, angle: float, width: float, zone: LoadZone) -> bool:

@@ -81,8 +81,6 @@ def resting(inputs: Sequence[KernelInput | None]) -> list[KernelInput | None]:
 
 def without_fault(given: KernelInput, scenario: Scenario, timeline: Timeline) -> KernelInput:
     """Kernel input of a record without its fault, from that with it: the machine is the same."""
-    if not scenario.specimen.damage:
-        return given._replace(spalls=())  # there are spalls alone
     sound = scenario.without_fault()
     angles = given.turning.shaft_angle, given.turning.cage_angle, given.turning.spin_angle
     return given._replace(spalls=(), turning=turning_of(sound, *angles), waviness=waviness_of(sound, timeline.fs))
@@ -90,13 +88,13 @@ def without_fault(given: KernelInput, scenario: Scenario, timeline: Timeline) ->
 
 def _without_axial_load(motion: Motion) -> KernelInput:
     check_load(motion.scenario)
-    channels = motion.scenario.rig.channels
+    channels = motion.scenario.recipe.recording.channels
     pickups = np.zeros((len(channels), 6))
     for weights, channel in zip(pickups, channels, strict=True):
-        first = _FIRST_COORDINATE[channel.body]
-        weights[first : first + 2] = math.cos(channel.angle), math.sin(channel.angle)
+        first, angle = _FIRST_COORDINATE[channel.drawn_body], channel.si()["angle"]
+        weights[first : first + 2] = math.cos(angle), math.sin(angle)
     return KernelInput(
-        bearing=motion.scenario.specimen.bearing,
+        bearing=motion.scenario.bearing,
         machine=machine_of(motion.scenario),
         turning=motion.turning,
         spalls=(),
@@ -107,4 +105,4 @@ def _without_axial_load(motion: Motion) -> KernelInput:
 
 
 def _name(scenario: Scenario, error: ValueError) -> str:
-    return f"record {scenario.record.number}: {error}"
+    return f"record {scenario.origin.record}: {error}"

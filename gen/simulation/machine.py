@@ -24,9 +24,9 @@ stiffness_of = functools.lru_cache(maxsize=4096)(load_deflection_factor)
 
 def check_load(scenario: Scenario) -> None:
     """Raise ValueError if the equivalent static load of a record is far above the static rating of its bearing."""
-    drawing, conditions, profile = scenario.rig.bearing, scenario.record.conditions, scenario.record.load_profile
-    radial = conditions.load * (1.0 if profile is None else max(profile.shares))
-    load = equivalent_load(radial, conditions.axial_load, scenario.specimen.bearing.contact_angle)
+    drawing, conditions = scenario.drawing, scenario.conditions
+    radial = conditions["load"] * _largest_share(scenario)
+    load = equivalent_load(radial, conditions["axial_load"], scenario.bearing.contact_angle)
     rating = static_rating(drawing)
     if load * LEAST_SAFETY > rating:
         raise ValueError(
@@ -43,8 +43,8 @@ def machine_of(scenario: Scenario) -> Machine:
     ValueError
         If the oil film is too thick for film formulas, or the axial load too small to hold the rings together.
     """
-    drawn, resonator = scenario.rig.machine, scenario.rig.resonator
-    bearing, load = scenario.specimen.bearing, scenario.record.conditions.load
+    drawn, bearing, load = scenario.machine, scenario.bearing, scenario.conditions["load"]
+    resonator = None if scenario.recipe.machine.resonator is None else scenario.recipe.machine.resonator.si()
     mass = drawn["shaft_mass"] + drawn["housing_mass"]
     stiffness_x = mass * (2 * math.pi * drawn["support_frequency"]) ** 2
     stiffness_y = stiffness_x * drawn["support_ratio"]
@@ -78,10 +78,14 @@ def machine_of(scenario: Scenario) -> Machine:
         looseness=drawn["looseness"],
         contact_exponent=contact_exponent(bearing),
     )
-    axial, profile = scenario.record.conditions.axial_load, scenario.record.load_profile
-    if axial != 0:
-        check_axial_load(machine, axial, 1.0 if profile is None else max(profile.shares))
+    if scenario.conditions["axial_load"] != 0:
+        check_axial_load(machine, scenario.conditions["axial_load"], _largest_share(scenario))
     return machine
+
+
+def _largest_share(scenario: Scenario) -> float:
+    """Largest value of the load profile [1]."""
+    return 1.0 if scenario.load_profile is None else max(scenario.load_profile.shares)
 
 
 def with_axial_loads(
@@ -90,11 +94,11 @@ def with_axial_loads(
     """Machines of some records whose balls are squeezed by the axial loads too; the cages start at ``cage_angles`` [rad]."""
     loaded, alike = list(machines), defaultdict[float, list[int]](list)
     for place, scenario in enumerate(scenarios):
-        if scenario.record.conditions.axial_load != 0:
+        if scenario.conditions["axial_load"] != 0:
             alike[machines[place].contact_exponent].append(place)
     for places in alike.values():
-        loads = np.array([scenarios[place].record.conditions.axial_load for place in places])
-        n_balls = [scenarios[place].specimen.bearing.n_balls for place in places]
+        loads = np.array([scenarios[place].conditions["axial_load"] for place in places])
+        n_balls = [scenarios[place].bearing.n_balls for place in places]
         balls = ball_angles(n_balls, [cage_angles[place] for place in places])
         squeezes = axial_approach(as_columns([machines[place] for place in places]), loads, balls)
         for place, squeeze in zip(places, squeezes, strict=True):
@@ -105,14 +109,14 @@ def with_axial_loads(
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
     """Load-deflection factor [N m^-n], damping [N s/m] and half the clearance [m] of one ball, with thermal expansion and oil film."""
-    bearing, conditions, oil = scenario.specimen.bearing, scenario.record.conditions, scenario.rig.lubricant
-    factor, clearance = stiffness_of(bearing), scenario.specimen.properties["diametral_clearance"]
-    clearance = warm_clearance(bearing, clearance, conditions.inner_ring_hotter)
-    if oil is None:
+    bearing, conditions, lubricant = scenario.bearing, scenario.conditions, scenario.recipe.contact.lubricant
+    factor, clearance = stiffness_of(bearing), scenario.properties["diametral_clearance"]
+    clearance = warm_clearance(bearing, clearance, conditions["inner_ring_hotter"])
+    if lubricant is None:
         return factor, 0.0, clearance / 2
-    heaviest = heaviest_ball_load(scenario)
+    heaviest, oil = heaviest_ball_load(scenario), lubricant.si()
     lubricant = Lubricant(oil["viscosity_40"], oil["viscosity_100"], oil["density"], oil["pressure_viscosity"])
-    made = film(bearing, lubricant, conditions.temperature, conditions.shaft_rate, heaviest)
+    made = film(bearing, lubricant, conditions["temperature"], conditions["shaft_rate"], heaviest)
     if made.thickness > THICKEST_FILM:
         raise ValueError(
             f"an oil film of {made.thickness * 1e6:.3g} um is above the {THICKEST_FILM * 1e6:g} um for which film formulas hold; "
@@ -124,8 +128,8 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
 
 def heaviest_ball_load(scenario: Scenario) -> float:
     """Static load of the most loaded ball after Stribeck, plus its share of the axial load, without preload [N]."""
-    bearing, conditions = scenario.specimen.bearing, scenario.record.conditions
-    total = STRIBECK * conditions.load
-    if conditions.axial_load > 0 and bearing.contact_angle != 0:
-        total += conditions.axial_load / abs(math.sin(bearing.contact_angle))
+    bearing, conditions = scenario.bearing, scenario.conditions
+    total = STRIBECK * conditions["load"]
+    if conditions["axial_load"] > 0 and bearing.contact_angle != 0:
+        total += conditions["axial_load"] / abs(math.sin(bearing.contact_angle))
     return total / bearing.n_balls

@@ -23,7 +23,7 @@ from gen.physics.kernel.layout import (
 )  # fmt: skip
 from gen.physics.kernel.turning import STRIDE
 from gen.physics.profile import mean_share, share_at
-from gen.scenarios import Purpose, Scenario
+from gen.scenarios import Scenario
 from gen.simulation.timeline import Timeline
 
 FloatArray = NDArray[np.float64]
@@ -45,42 +45,42 @@ class Motion(NamedTuple):
 
 def draw_motion(scenario: Scenario) -> Motion:
     """Draw the motion of a record from its own random stream."""
-    rng = scenario.rng(Purpose.MOTION)
+    rng = scenario.stream("motion")
     turning = turning_of(scenario, *(2 * np.pi * rng.random(3)).tolist())
-    return Motion(scenario, turning, *_processes(scenario.specimen.bearing, turning.shaft_rate, rng))
+    return Motion(scenario, turning, *_processes(scenario.bearing, turning.shaft_rate, rng))
 
 
 def turning_of(scenario: Scenario, shaft_angle: float, cage_angle: float, spin_angle: float) -> Turning:
     """Rotation of a record from its angles at the start [rad]."""
-    drawn, conditions = scenario.rig.machine, scenario.record.conditions
-    damage = {name: x for values in scenario.specimen.damage.values() for name, x in values.items()}
+    drawn, conditions, walk = scenario.machine, scenario.conditions, scenario.recipe.operation.slip_walk
+    of_fault = {name: value for part in scenario.components for name, value in part.turning().items()}
+    seeds = {
+        seed: int(scenario.stream(name).integers(2**52))
+        for seed, name, needed in (
+            ("knock_seed", "knocks of the cage", "knock" in of_fault),
+            ("walk_seed", "slip walk", walk is not None),
+            ("axis_seed", "jumps of the axis", "axis_jumps" in of_fault),
+        )
+        if needed
+    }
     return Turning(
-        shaft_rate=conditions.shaft_rate,
-        speed_rms=conditions.speed_wander,
-        mean_slip=conditions.mean_slip,
-        slip_rms=conditions.slip,
-        spin_rms=conditions.spin_wander,
-        jitter_rms=conditions.jitter,
-        axis_offset=damage.get("axis_offset", 0.0),
-        axis_rms=damage.get("axis_wander", 0.0),
-        axis_limit=damage.get("track", 0.0),
-        unbalance=drawn["unbalance"],
+        shaft_rate=conditions["shaft_rate"],
+        speed_rms=conditions["speed_wander"],
+        mean_slip=conditions["mean_slip"],
+        slip_rms=conditions["slip"],
+        spin_rms=conditions["spin_wander"],
+        jitter_rms=conditions["jitter"],
+        unbalance=scenario.recipe.machine.unbalance,
         shaft_angle=shaft_angle,
         cage_angle=cage_angle,
         spin_angle=spin_angle,
         bow=drawn["bow"],
         twice_x=drawn["misalignment"] * math.cos(drawn["misalignment_angle"]),
         twice_y=drawn["misalignment"] * math.sin(drawn["misalignment_angle"]),
-        knock=damage.get("knock", 0.0),
         knock_angle=drawn["load_angle"] + LEAVES_LOAD_ZONE,
-        knock_seed=int(scenario.rng(Purpose.KNOCKS).integers(2**52)) if "knock" in damage else 0,
-        late_ball=0 if "knock" in damage else -1,
-        late_by=damage.get("pitch_error", 0.0),
-        walk=conditions.slip_walk or 0.0,
-        walk_seed=int(scenario.rng(Purpose.SLIP).integers(2**52)) if conditions.slip_walk is not None else 0,
-        axis_jumps=damage.get("jumps", 0.0),
-        axis_spread=damage.get("spread", 0.0),
-        axis_seed=int(scenario.rng(Purpose.AXIS).integers(2**52)) if "jumps" in damage else 0,
+        walk=0.0 if walk is None else walk.si()["spacing"],
+        **of_fault,
+        **seeds,
     )
 
 
@@ -106,22 +106,21 @@ def _bands(n_balls: int) -> tuple[FloatArray, FloatArray, NDArray[np.int_]]:
 
 def is_scheduled(scenario: Scenario) -> bool:
     """Whether speed or load of a record change over time by a profile or by load wander."""
-    record = scenario.record
-    return not (record.speed_profile is None and record.load_profile is None and record.conditions.load_wander == 0)
+    profiles = scenario.speed_profile, scenario.load_profile
+    return profiles != (None, None) or scenario.conditions["load_wander"] != 0
 
 
 def schedule_of(scenario: Scenario, timeline: Timeline) -> FloatArray:
     """Factors of shaft rate and load at the knots, shape (knot, 2); (0, 2) if both are constant."""
-    record = scenario.record
     if not is_scheduled(scenario):
         return CONSTANT
     times = timeline.knot_times(np.arange(timeline.knots))
     factors = np.ones((len(times), 2))
-    if record.speed_profile is not None:
-        factors[:, 0] = share_at(record.speed_profile, times + 0.5 / timeline.fs)
-    if record.load_profile is not None:
-        factors[:, 1] = share_at(record.load_profile, times)
-    if record.conditions.load_wander > 0:
+    if scenario.speed_profile is not None:
+        factors[:, 0] = share_at(scenario.speed_profile, times + 0.5 / timeline.fs)
+    if scenario.load_profile is not None:
+        factors[:, 1] = share_at(scenario.load_profile, times)
+    if scenario.conditions["load_wander"] > 0:
         factors[:, 1] *= load_wander(scenario, times)
     return factors
 
@@ -134,10 +133,10 @@ def load_wander(scenario: Scenario, times: FloatArray) -> FloatArray:
 
 def wander_terms(scenario: Scenario) -> tuple[float, FloatArray, FloatArray]:
     """Amplitude of every term of the load wander [1], rates of at most the shaft rate [rad/s], and phases [rad], shape (term,)."""
-    rng, conditions = scenario.rng(Purpose.LOAD_WANDER), scenario.record.conditions
-    rates = 2 * np.pi * conditions.shaft_rate * power(0.05, rng.random(LOAD_TERMS))
+    rng, conditions = scenario.stream("load wander"), scenario.conditions
+    rates = 2 * np.pi * conditions["shaft_rate"] * power(0.05, rng.random(LOAD_TERMS))
     phases = rng.uniform(0, 2 * np.pi, LOAD_TERMS)
-    return conditions.load_wander * math.sqrt(2 / LOAD_TERMS), rates, phases
+    return conditions["load_wander"] * math.sqrt(2 / LOAD_TERMS), rates, phases
 
 
 def cosine_sum(
@@ -168,8 +167,8 @@ def _walk(bearing: Bearing, turning: Turning, timeline: Timeline) -> FloatArray:
 
 def mean_motion(motion: Motion, timeline: Timeline) -> tuple[float, FaultOrders]:
     """Mean shaft rate [Hz] and fault orders [1] over a record, with speed profile, wander and slip."""
-    turning, profile, duration = motion.turning, motion.scenario.record.speed_profile, timeline.duration
-    bearing = motion.scenario.specimen.bearing
+    turning, profile, duration = motion.turning, motion.scenario.speed_profile, timeline.duration
+    bearing = motion.scenario.bearing
     terms = slice(TILT_FIRST)  # speed, slip and spin
     settle, turn, phase = timeline.settle / timeline.fs, 2 * np.pi * motion.frequencies[terms], motion.phases[terms]
     if profile is None:

@@ -56,7 +56,7 @@ def _record_angles(row: xr.Dataset, place: int) -> FloatArray:
             (scenario,) = read_scenarios(row)
         except CorpusError as error:
             raise CorpusError(f"record {place}{str(error).removeprefix('record 0')}") from None
-        axis = timeline(scenario.settings)
+        axis = timeline(scenario.recipe)
         return angles_of(draw_motion(scenario), axis)[axis.kept]
     rate = row["shaft_rate"].item()
     if not rate > 0:
@@ -72,7 +72,7 @@ def angles_of(motion: Motion, timeline: Timeline) -> FloatArray:
     kernel.
     """
     start, omega, wander = motion.turning.shaft_angle, 2 * math.pi * motion.turning.shaft_rate, motion.turning.speed_rms
-    profile = motion.scenario.record.speed_profile
+    profile = motion.scenario.speed_profile
     if profile is None:
         nodes = np.arange(timeline.dropped, timeline.dropped + timeline.returned + STRIDE, STRIDE) / timeline.fs
         turned = omega * (nodes + (wander * _integrated_wander(motion, nodes) if wander > 0 else 0.0))

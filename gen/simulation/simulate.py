@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import lay_out
 from gen.physics.kernel.layout import Batch
-from gen.scenarios import Scenario, common_settings
+from gen.scenarios import Scenario, same_recording
 from gen.simulation.batches import Group, Integration, batches, group_of, integrate_all
 from gen.simulation.inputs import kernel_inputs, without_fault
 from gen.simulation.motion import Motion, draw_motion
@@ -78,7 +78,7 @@ class Run(NamedTuple):
     @property
     def healthy(self) -> Integration | None:
         """The record without a fault, if it is integrated."""
-        return self.twin or (self.own if self.scenario.specimen.fault == "healthy" else None)
+        return self.twin or (self.own if self.scenario.fault == "healthy" else None)
 
 
 def simulate(scenarios: list[Scenario]) -> Response:
@@ -87,7 +87,7 @@ def simulate(scenarios: list[Scenario]) -> Response:
     Parameters
     ----------
     scenarios : list of Scenario
-        Records to simulate; they share their settings.
+        Records to simulate; they have the same recording.
 
     Returns
     -------
@@ -97,10 +97,10 @@ def simulate(scenarios: list[Scenario]) -> Response:
     Raises
     ------
     SimulationError
-        Before anything runs, if a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
+        Before anything runs, if a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if recordings differ.
     """
     runs = runs_of(scenarios)
-    integrate_all(open_integrations(runs), timeline(common_settings(scenarios)))
+    integrate_all(open_integrations(runs), timeline(same_recording(scenarios)))
     return response_of(runs)
 
 
@@ -112,25 +112,25 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] | None = None) -
     Raises
     ------
     SimulationError
-        If a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
+        If a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if recordings differ.
     """
-    axis, motions = timeline(common_settings(scenarios)), [draw_motion(scenario) for scenario in scenarios]
+    axis, motions = timeline(same_recording(scenarios)), [draw_motion(scenario) for scenario in scenarios]
     integrated = {number: run.healthy for number, run in (known or {}).items()}
     runs: list[Run] = []
     of_group: dict[tuple[int, int], Integration | None] = {}
     inputs, failures = kernel_inputs(motions, axis)
     for place, (motion, given) in enumerate(zip(motions, inputs, strict=True)):
-        scenario, number = motion.scenario, motion.scenario.record.number
+        scenario, number = motion.scenario, motion.scenario.origin.record
         if given is None:
             runs.append(Run(motion, None, failures[place], None, None))
             continue
-        steps = steps_per_sample(given, scenario.record, scenario.settings)
+        steps = steps_per_sample(given, scenario)
         own, twin = Integration(given, group_of(given, steps)), None
         before = integrated.get(number)
         if before is not None and before.group.steps != steps:
             before = None
         if _has_twin(scenario):
-            twin = before or of_group.get((scenario.record.pair, steps))
+            twin = before or of_group.get((scenario.origin.pair, steps))
             if twin is None:
                 healthy = without_fault(given, scenario, axis)
                 # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
@@ -138,8 +138,8 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] | None = None) -
         elif before is not None:
             own = before
         runs.append(Run(motion, given, "", own, twin))
-        if scenario.record.pair >= 0:
-            of_group.setdefault((scenario.record.pair, steps), runs[-1].healthy)
+        if scenario.origin.pair >= 0:
+            of_group.setdefault((scenario.origin.pair, steps), runs[-1].healthy)
     return runs
 
 
@@ -150,9 +150,9 @@ def open_integrations(runs: Iterable[Run]) -> list[Integration]:
 
 def response_of(runs: Sequence[Run]) -> Response:
     """Response and truth of scenarios that have been integrated."""
-    settings = common_settings([run.scenario for run in runs])
-    axis = timeline(settings)
-    acceleration = np.empty((len(runs), len(settings.channels), axis.returned), np.float32)
+    recipe = same_recording([run.scenario for run in runs])
+    axis = timeline(recipe)
+    acceleration = np.empty((len(runs), len(recipe.recording.channels), axis.returned), np.float32)
     oversampling, phases, failures = np.zeros(len(runs), np.int64), np.full(len(runs), np.nan), {}
     for place, run in enumerate(runs):
         oversampling[place], phases[place], sentence = _step_of(run, axis.fs)
@@ -176,7 +176,7 @@ def _step_of(run: Run, fs: float) -> tuple[int, float, str | None]:
     phase = step_phase(run.given, run.own.steepest, steps, fs)
     # with its twin: if that diverged, what the fault adds is not known
     diverged = max(one.diverged for one in run.integrations) / fs
-    return steps, phase, failure(run.scenario.record.number, steps, diverged, phase)
+    return steps, phase, failure(run.scenario.origin.record, steps, diverged, phase)
 
 
 def acceleration_of(integration: Integration | None) -> NDArray[np.float32]:
@@ -186,12 +186,12 @@ def acceleration_of(integration: Integration | None) -> NDArray[np.float32]:
 
 
 def _has_twin(scenario: Scenario) -> bool:
-    return scenario.settings.twins and scenario.specimen.fault != "healthy"
+    return scenario.recipe.truth.twins and scenario.fault != "healthy"
 
 
 def laid_out(scenarios: list[Scenario]) -> list[tuple[Group, Batch]]:
     """Scenarios in lanes, batch by batch, as :func:`simulate` integrates them; all must be possible."""
-    runs, fs = runs_of(scenarios), common_settings(scenarios).sample_rate
+    runs, fs = runs_of(scenarios), same_recording(scenarios).recording.sample_rate_hz
     every = open_integrations(runs)
     return [
         (group, lay_out([every[place].given for place in places], group.shape, 1 / fs))

@@ -10,8 +10,9 @@ from gen.corpus.simulated import with_values
 from gen.physics.inputs import KernelInput
 from gen.physics.rotor import highest_angular_frequency, highest_damping_rate, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING
-from gen.scenarios import Operation, Settings
+from gen.scenarios import Scenario
 from gen.support.errors import SimulationError
+from gen.support.units import to_si
 
 FloatArray = NDArray[np.float64]
 
@@ -30,19 +31,20 @@ LABELS = (
 """Variables of the corpus, arrays of a :class:`gen.simulation.simulate.Response`."""
 
 
-def steps_per_sample(given: KernelInput, record: Operation, settings: Settings) -> int:
+def steps_per_sample(given: KernelInput, scenario: Scenario) -> int:
     """Steps per sample that the modes and the spalls of a record need; the records of a group have the same.
 
     Raises
     ------
     SimulationError
-        If the settings ask for too few, or the mode needs more than are allowed.
+        If the recipe asks for too few, or the mode needs more than are allowed.
     """
-    number, fs, asked = record.number, settings.sample_rate, settings.oversampling
+    number, recording = scenario.origin.record, scenario.recipe.recording
+    fs, asked = recording.sample_rate_hz, recording.oversampling
     _check_turn(given, number, fs)
     rate = fastest_rate(given)
     need = max(min(rate / (FINE_STEP * fs), ENOUGH), rate / (FOLLOWED_STEP * fs))
-    need = max(need, min(PASSAGE_STEPS * passage_rate(given, record.narrowest_spall) / fs, MAX_OVERSAMPLING))
+    need = max(need, min(PASSAGE_STEPS * passage_rate(given, _narrowest(scenario)) / fs, MAX_OVERSAMPLING))
     if asked is not None:
         if rate / (asked * fs) > COARSEST_STEP:
             raise SimulationError(
@@ -57,6 +59,12 @@ def steps_per_sample(given: KernelInput, record: Operation, settings: Settings) 
         f"record {number}: its stiffest mode of {rate / 2 / math.pi:.0f} Hz needs more than {_FACTORS[-1]} steps per "
         f"sample at {fs:g} Hz; soften the machine or raise recording.sample_rate_hz."
     )
+
+
+def _narrowest(scenario: Scenario) -> float | None:
+    """Width of the narrowest spall of the group of a record [m]."""
+    width = scenario.origin.narrowest_mm
+    return None if width is None else to_si(width, "mm")
 
 
 def _check_turn(given: KernelInput, number: int, fs: float) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.kernel.decimate import LAG
-from gen.scenarios import Settings
+from gen.recipe import Recipe
 
 FloatArray = NDArray[np.float64]
 
@@ -69,7 +69,7 @@ class Timeline(NamedTuple):
         return np.arange(self.returned) / self.fs - LEAD_S
 
 
-def timeline(settings: Settings) -> Timeline:
+def timeline(recipe: Recipe) -> Timeline:
     """Time axis of the records of a recipe."""
-    fs = settings.sample_rate
-    return Timeline(fs, round(settings.settle * fs), round(LEAD_S * fs), settings.samples)
+    fs = recipe.recording.sample_rate_hz
+    return Timeline(fs, round(recipe.recording.settle_s * fs), round(LEAD_S * fs), recipe.n_samples)

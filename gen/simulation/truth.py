@@ -9,9 +9,8 @@ import numpy as np
 from gen.corpus.fault_classes import CLASSES
 from gen.corpus.schema import Variable
 from gen.corpus.simulated import with_values
-from gen.mechanisms.faults.bearing_fault import Spall
 from gen.physics.bearing import FaultOrders
-from gen.physics.inputs import KernelInput
+from gen.physics.inputs import KernelInput, Spall
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
 from gen.simulation.damage import largest_drop_over
@@ -26,8 +25,8 @@ class Truth(NamedTuple):
     scenario: Scenario
     given: KernelInput | None
     """None if no such machine is possible."""
-    shaft_rate: float
-    """Mean over the record, speed wander included [Hz]."""
+    mean_rate: float
+    """Mean shaft rate over the record, speed wander included [Hz]."""
     orders: FaultOrders
     """Mean over the record, slip included [1]."""
 
@@ -39,65 +38,59 @@ def truth_of(motion: Motion, axis: Timeline, given: KernelInput | None) -> Truth
 
 def lines_of_faults(truth: Truth) -> tuple[float, ...]:
     """Orders at which the faults of a record repeat; none for a worn race, which hits nothing [1]."""
-    specimen = truth.scenario.specimen
-    hitting = [*(spall.site for spall in specimen.spalls), *specimen.damage]
-    lines = dict.fromkeys(CLASSES[one].lines[0] for one in hitting if one in CLASSES)
+    parts = truth.scenario.components
+    lines = dict.fromkeys(CLASSES[part.kind].lines[0] for part in parts if part.kind in CLASSES)
     return tuple(line.multiple * getattr(truth.orders, line.base) for line in lines)
 
 
 def _duration(truth: Truth) -> float:
-    return timeline(truth.scenario.settings).duration
+    return timeline(truth.scenario.recipe).duration
 
 
 def _shaft_rate(truth: Truth) -> float:
     """Mean of the speed profile, with the drawn error of the label [Hz]."""
-    conditions, profile = truth.scenario.record.conditions, truth.scenario.record.speed_profile
-    return conditions.shaft_rate * mean_share(profile, _duration(truth)) * (1 + conditions.label_error)
+    conditions = truth.scenario.conditions
+    mean = conditions["shaft_rate"] * mean_share(truth.scenario.speed_profile, _duration(truth))
+    return mean * (1 + conditions["label_error"])
 
 
 def _shaft_rate_at(truth: Truth, time: float) -> float:
-    record = truth.scenario.record
-    share = 1.0 if record.speed_profile is None else share_at(record.speed_profile, np.array([time]))[0]
-    return record.conditions.shaft_rate * share
+    profile = truth.scenario.speed_profile
+    share = 1.0 if profile is None else share_at(profile, np.array([time]))[0]
+    return truth.scenario.conditions["shaft_rate"] * share
 
 
 def _load(truth: Truth) -> float:
     """Mean of the load profile [N]."""
-    record = truth.scenario.record
-    return record.conditions.load * mean_share(record.load_profile, _duration(truth))
+    return truth.scenario.conditions["load"] * mean_share(truth.scenario.load_profile, _duration(truth))
 
 
 def _of_widest(value: Callable[[Scenario, Spall], float], without: float = 0.0) -> Callable[[Truth], float]:
     """Function of a truth that gives a value of the widest spall, or ``without`` a spall another one."""
 
     def of_truth(truth: Truth) -> float:
-        widest = max(truth.scenario.specimen.spalls, key=lambda spall: spall.width, default=None)
+        widest = max(truth.scenario.spalls, key=lambda spall: spall.width, default=None)
         return without if widest is None else value(truth.scenario, widest)
 
     return of_truth
 
 
-def _angle(scenario: Scenario, spall: Spall) -> float:
-    """On the outer race from the x axis [rad]."""
-    return spall.angle + (scenario.rig.machine["load_angle"] if spall.site == "outer" else 0.0)
-
-
 def _largest_drop(scenario: Scenario, spall: Spall) -> float:
-    return largest_drop_over(scenario, scenario.specimen.spalls.index(spall))
+    return largest_drop_over(scenario, scenario.spalls.index(spall))
 
 
 def _width_share(scenario: Scenario, spall: Spall) -> float:
-    bearing = scenario.specimen.bearing
+    bearing = scenario.bearing
     circumference = 2 * math.pi * bearing.radius(spall.site)
     return spall.width / (circumference if spall.site == "ball" else circumference / bearing.n_balls)
 
 
 def _loaded_hits(truth: Truth) -> int:
-    if not truth.scenario.settings.twins:
+    if not truth.scenario.recipe.truth.twins:
         return -1
-    if truth.given is None or not truth.scenario.specimen.spalls:
+    if truth.given is None or not truth.scenario.spalls:
         return 0
-    return loaded_hits(truth.given, truth.orders, truth.shaft_rate * _duration(truth))
+    return loaded_hits(truth.given, truth.orders, truth.mean_rate * _duration(truth))
 
 
 LABELS = (
@@ -106,8 +99,8 @@ LABELS = (
         load=_load,
         width=_of_widest(lambda _, spall: spall.width),
         depth=_of_widest(lambda _, spall: spall.depth),
-        angle=_of_widest(_angle, math.nan),
-        true_shaft_rate=lambda truth: truth.shaft_rate,
+        angle=_of_widest(lambda _, spall: spall.angle, math.nan),
+        true_shaft_rate=lambda truth: truth.mean_rate,
         first_shaft_rate=lambda truth: _shaft_rate_at(truth, 0.0),
         last_shaft_rate=lambda truth: _shaft_rate_at(truth, _duration(truth)),
     ),

@@ -97,6 +97,8 @@ def _place(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
     for step in location:
         if isinstance(step, int):
             place += f"[{step}]"
+        elif node.branches(step):
+            node = node.of_kind(step)
         elif node.knows(step) or (step not in _FORMS and (not node.models or step not in _branches())):
             shown = step if step.isprintable() and len(step) <= _LONGEST_KEY else reprlib.repr(step)
             place += f".{shown}" if place else shown
@@ -122,6 +124,10 @@ class _Cursor:
 
     def knows(self, key: str) -> bool:
         return any(key in model.model_fields for model in self.models)
+
+    def branches(self, step: str) -> bool:
+        """Whether a step is the kind of one of several sections, also if it is a key too: ``ball``."""
+        return len(self.models) > 1 and self.of_kind(step) is not self
 
     def into(self, key: str) -> "_Cursor":
         annotations = [model.model_fields[key].annotation for model in self.models if key in model.model_fields]
@@ -161,7 +167,7 @@ def _last(location: tuple[int | str, ...], model: type[BaseModel]) -> _Cursor:
     node = _Cursor(model)
     for step in location:
         if isinstance(step, str):
-            node = node.into(step) if node.knows(step) else node.of_kind(step)
+            node = node.into(step) if node.knows(step) and not node.branches(step) else node.of_kind(step)
     return node
 
 

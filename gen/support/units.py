@@ -152,13 +152,17 @@ def percent_to_share(percent: float) -> float:
     return percent / 100
 
 
-def decibel_to_ratio(level: float) -> float:
-    """Ratio of two amplitudes [1].
+def decibel_to_ratio(level: Quantity) -> Quantity:
+    """Ratio of two amplitudes, of each level [1].
 
     >>> decibel_to_ratio(40)
     100.0
     """
-    return 10 ** (level / 20)
+    if isinstance(level, float | int):
+        return 10 ** (level / 20)
+    ratios = level.copy()  # one by one: powers of arrays have other last bits on other processors
+    ratios[:] = [10 ** (one / 20) for one in level.tolist()]
+    return ratios
 
 
 def rpm_to_hertz(speed: float) -> float:

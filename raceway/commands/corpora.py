@@ -327,16 +327,27 @@ def info(corpus: Path, where: str | None, as_json: bool) -> None:
 @corpus_argument
 @record_option
 @file_option("FILE.nc", "Write the new record here.", (".nc",), required=False)
+@file_option(
+    "FILE.yaml",
+    "Write the scenario of the record here, as a recipe.",
+    (".yaml", ".yml"),
+    required=False,
+    flags=("--recipe",),
+)
 @json_option
-def replay(corpus: Path, record: int, output: Path | None, as_json: bool) -> int:
+def replay(corpus: Path, record: int, output: Path | None, recipe: Path | None, as_json: bool) -> int:
     """Simulate one record of DIR again and compare it.
 
     The record is simulated from the scenario that DIR stores with it. Exits with 1 if its bits differ from those of the stored record, as
-    they can on a processor without fused multiply-add or with other versions of the libraries.
+    they can on a processor without fused multiply-add or with other versions of the libraries. With --recipe, the scenario becomes a recipe
+    of this record alone, with each drawn number in place of its distribution: generate makes the record again from it, or another one
+    after a change such as that of a width or of the speed.
 
       raceway replay corpus --record 17
       raceway replay corpus --record 17 -o record.nc
+      raceway replay corpus --record 17 --recipe record.yaml
     """
+    from gen import read_scenarios, write_recipe
     from gen import replay as replay_record
     from gen.corpus import write_part
 
@@ -344,9 +355,14 @@ def replay(corpus: Path, record: int, output: Path | None, as_json: bool) -> int
         again = replay_record(corpus, record)
     if output is not None:
         write_part(again.dataset, output)
+    if recipe is not None:
+        (scenario,) = read_scenarios(again.dataset)
+        write_recipe(scenario.recipe, recipe)
     if as_json:
-        show.as_json({"corpus": corpus, "record": record, "identical": again.identical, "output": output})
+        facts = {"corpus": corpus, "record": record, "identical": again.identical, "output": output, "recipe": recipe}
+        show.as_json(facts)
     else:
         verdict = "identical" if again.identical else "differs; raceway info shows the versions that made the corpus"
-        show.text(f"{corpus}: record {record}: {verdict}.", *([f"written to {output}."] if output else []))
+        written = [f"written to {path}." for path in (output, recipe) if path is not None]
+        show.text(f"{corpus}: record {record}: {verdict}.", *written)
     return DONE if again.identical else FOUND_WANTING

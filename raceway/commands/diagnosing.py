@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gen.support.units import from_si, rpm_to_hertz
-from raceway.commands.diagnosis_output import assumptions, diagnosis_facts
 from raceway.commands.diagnosis_tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
 from raceway.commands.recordings import (
     Reading,
@@ -126,6 +124,7 @@ def diagnose(
     with keep_garbage():
         loaded, source = _model(model)
         from features.diagnosis import diagnose_recording
+        from raceway.commands.diagnosis_output import assumptions, diagnosis_facts
 
     found = []
     for path, recorded, used, of_file in chain((first,), readings):
@@ -198,6 +197,8 @@ def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dic
 
 
 def _name(bearing: "Bearing") -> str:
+    from gen.support.units import from_si
+
     if bearing.designation != "own":
         return bearing.designation
     return f"{bearing.n_balls} x {from_si(bearing.ball_diameter, 'mm'):g} mm on {from_si(bearing.pitch_diameter, 'mm'):g} mm"
@@ -209,6 +210,7 @@ def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -
     from features.diagnosis import ANY_RATE, Given
     from features.table.indicators import Orders
     from gen.physics.bearing import orders
+    from gen.support.units import rpm_to_hertz
 
     nominal = {name: Orders(*(np.asarray(order) for order in orders(one))) for name, one in bearings.items()}
     return Given(nominal, ANY_RATE if speeds is None else (rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])))

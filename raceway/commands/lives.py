@@ -4,7 +4,6 @@ from pathlib import Path
 
 import click
 
-from gen.support.units import from_si
 from raceway.commands.feature_tables import table_of
 from raceway.console import show
 from raceway.console.options import (
@@ -64,6 +63,7 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
     """
     from features.lives.prognosis import SHARES, check_lives, score_lives
     from gen.corpus import open_corpus
+    from gen.support.units import from_si
 
     for one in (corpus, tested or corpus):
         with open_corpus(one) as opened:

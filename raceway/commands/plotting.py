@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gen.support.units import rpm_to_hertz
 from raceway.commands.recordings import Reading, read_recording, reading_options, rpm_option
 from raceway.console import show
 from raceway.console.options import A_PATH, Analysis, band_option, file_option
@@ -123,6 +122,7 @@ def _shown(
 ) -> "DrawnRecord":
     from features.report.shown import shown_record, shown_recording
     from gen import bearing_orders
+    from gen.support.units import rpm_to_hertz
 
     options = Analysis(band=band).options()
     if len(reading.channels) > 1:

@@ -16,7 +16,7 @@ from scipy.signal import get_window
 
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.inputs import KernelInput, SpallInput, Turning
+from gen.physics.inputs import KernelInput, Spall, Turning
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
@@ -30,7 +30,7 @@ FS = 40_000  # Hz, and the step of the integration; 320 kHz changes no value by 
 SECONDS = 1.0
 SHAFT_MASS = 5.5  # kg, the rotor
 CHANNELS = ("x1", "y1", "x2", "y2")
-CRACK = SpallInput("inner", 2 * math.radians(10) * 15.5e-3, 1e-3, math.radians(15), profile="rectangular")
+CRACK = Spall("inner", 2 * math.radians(10) * 15.5e-3, 1e-3, math.radians(15), profile="rectangular")
 FIGURES = {
     "figure3": ("Figure 3. Healthy: displacements", "healthy", False),
     "figure4": ("Figure 4. Cracked inner race: displacements", "cracked", False),

@@ -26,6 +26,6 @@ def test_every_file_that_a_page_names_is_there(page):
 def test_the_first_recipe_of_the_page_makes_records_of_all_its_widths():
     (text,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "recipes/README.md").read_text(encoding="utf-8"), re.DOTALL)
     scenarios = draw_scenarios(read_recipe(parse_yaml(text, "recipes/README.md", RecipeError)))
-    widths = {round(1e3 * spall.width, 6) for scenario in scenarios for spall in scenario.specimen.spalls}
+    widths = {round(1e3 * spall.width, 6) for scenario in scenarios for spall in scenario.spalls}
     assert widths == {0.2, 0.4, 0.6, 0.8, 1.0}
-    assert {scenario.specimen.bearing.n_balls for scenario in scenarios} == {22}
+    assert {scenario.bearing.n_balls for scenario in scenarios} == {22}

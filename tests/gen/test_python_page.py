@@ -67,7 +67,7 @@ def test_the_page_has_two_hundred_records_at_five_severities_and_two_sensors(tmp
     (text,) = blocks("python.md", "yaml")
     (tmp_path / "r.yaml").write_text(text, encoding="utf-8")
     recipe = gen.read_recipe(tmp_path / "r.yaml")
-    widths = [scenario.specimen.spalls[0].width for scenario in gen.draw_scenarios(recipe)]
+    widths = [scenario.spalls[0].width for scenario in gen.draw_scenarios(recipe)]
     assert len(widths) == 200
     assert sorted({(width, widths.count(width)) for width in widths}) == [
         (pytest.approx(width * 1e-3), 40) for width in (0.2, 0.4, 0.6, 0.8, 1.0)

@@ -193,7 +193,7 @@ def test_a_limit_can_be_raised_for_one_command(run, tmp_path, monkeypatch):
 
 def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tmp_path, monkeypatch):
     def first_diverges(runs):
-        numbers = [run.scenario.record.number for run in runs]
+        numbers = [run.scenario.origin.record for run in runs]
         failures = {place: f"record {number} diverged." for place, number in enumerate(numbers) if number % 12 == 0}
         return replace(response_of(runs), failures=failures)
 
@@ -223,12 +223,7 @@ def test_info_shows_the_range_of_the_severities_of_each_class(run, told, tiny_co
     with open_corpus(tiny_corpus) as corpus:
         widths = corpus["width"].values[corpus["fault"].values == FAULTS.index("outer")]
     assert found["outer"]["width"] == [widths.min(), widths.max()]
-    assert set(found["outer"]) == {
-        "width",
-        "depth",
-        "angle",
-        "largest_drop",
-    }  # those that are 0 in all records are left out
+    assert set(found["outer"]) == {"width", "depth", "angle", "largest_drop"}  # those that are 0 in all are left out
     shown = run("info", tiny_corpus).stdout
     for factor, unit in ((1e3, "mm ("), (1, "m), depth ")):
         assert f"{factor * widths.min():.3g} to {factor * widths.max():.3g} {unit}" in shown
@@ -255,6 +250,17 @@ def test_replay_finds_a_record_identical_and_writes_it(run, told, tiny_corpus, t
     with open_corpus(tiny_corpus) as corpus, netCDF4.Dataset(path) as written:
         np.testing.assert_allclose(written[SIGNAL][0], corpus[SIGNAL][17], rtol=1e-6)
     assert run("replay", tiny_corpus, "--record", 0).stdout == f"{tiny_corpus}: record 0: identical.\n"
+
+
+def test_replay_writes_a_recipe_that_gives_the_record_again_and_replaces_no_file(run, told, tiny_corpus, tmp_path):
+    path, line = tmp_path / "record.yaml", ("replay", tiny_corpus, "--record", 17, "--recipe", tmp_path / "record.yaml")
+    assert told(*line)["recipe"] == str(path)
+    told("generate", path, "-o", tmp_path / "again")
+    with open_corpus(tiny_corpus) as corpus, open_corpus(tmp_path / "again") as again:
+        np.testing.assert_array_equal(again[SIGNAL][0], corpus[SIGNAL][17])
+    before = path.read_bytes()
+    assert "record.yaml: exists; give another name" in run(*line).stderr
+    assert path.read_bytes() == before
 
 
 @pytest.mark.usefixtures("few_trees")

@@ -28,4 +28,4 @@ def test_corpora_tables_and_scenarios_are_made_as_the_readme_says(tiny_corpus, t
     exec(CORPORA.replace('"quickstart"', repr(str(tiny_recipe))), names)  # noqa: S102 - our own page
     assert len(names["pair"].acceleration) == 2
     assert names["table"].sizes["record"] == names["corpus"].sizes["record"]
-    assert names["twin"].specimen.fault == "healthy" != names["scenario"].specimen.fault
+    assert names["twin"].fault == "healthy" != names["scenario"].fault

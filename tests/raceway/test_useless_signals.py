@@ -39,8 +39,8 @@ def test_generate_keeps_a_corpus_that_cannot_be_used_but_says_so_and_exits_with_
 
 
 def test_info_and_card_count_the_records_of_each_class_with_a_clipped_sample(run, told, tiny_recipe, tmp_path):
-    """At 100 m/s2 some impacts of the faults are clipped, which leaves their records usable."""
-    run("generate", with_full_scale(tiny_recipe, tmp_path, 100), "-o", tmp_path / "c", "--workers", 1)
+    """At 150 m/s2 some impacts of the faults are clipped, which leaves their records usable."""
+    run("generate", with_full_scale(tiny_recipe, tmp_path, 150), "-o", tmp_path / "c", "--workers", 1)
     with open_corpus(tmp_path / "c") as corpus:
         clipped = (np.abs(corpus.acceleration) == np.abs(corpus.acceleration).max()).any(("channel", "elapsed_time"))
         classes = [str(name) for name in corpus.fault_name.values[clipped]]

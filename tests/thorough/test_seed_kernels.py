@@ -13,7 +13,7 @@ from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import lay_out
 from gen.physics.kernel.decimate import decimation
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import draw_scenarios, settings_of
+from gen.scenarios import draw_scenarios
 from gen.simulation.batches import group_of, integrate_batch
 from gen.simulation.timeline import timeline
 from tests.lanes import march_lanes
@@ -55,7 +55,7 @@ def test_the_kernel_in_c_returns_the_outputs_of_ours(steps: int, brief_seed: Pat
     if compiler() is None:
         pytest.skip("no C compiler")
     recipe = read_recipe(brief_seed)
-    axis, filters = timeline(settings_of(recipe)), decimation(steps)
+    axis, filters = timeline(recipe), decimation(steps)
     for profile, records in seed_records(recipe, 2 * LANES).items():
         group, some = group_of(records[0], steps), records[:LANES]
         ours = integrate_batch(group, lay_out(some, group.shape, 1 / axis.fs), axis).response

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from gen.drawing import Distribution, Drawn, Draws, Probability, within
+from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.background.source import BackgroundSource, FloatArray
+from gen.support.units import decibel_to_ratio
 
 
 class Impulses(BackgroundSource):
@@ -18,12 +19,9 @@ class Impulses(BackgroundSource):
     level_db: Distribution = within(-80, 60)
     """Rms of their peaks behind the path, relative to the rms of the background noise."""
 
-    def draw_present(self, draws: Draws) -> Drawn:
-        """Mean rate [Hz] and level."""
-        return {"frequency": draws.value(self.rate_hz), "level": draws.ratio(self.level_db)}
-
-
-def add_impulses(hits: FloatArray, drawn: Drawn, fs: float, rng: np.random.Generator) -> None:
-    """Add the strengths of impulses to the samples at which they start, shape (time,) [1]."""
-    times = rng.integers(len(hits), size=rng.poisson(drawn["frequency"] * len(hits) / fs))
-    np.add.at(hits, times, drawn["level"] * rng.standard_normal(len(times), dtype=np.float32))
+    def add_to(self, hits: FloatArray, fs: float, rng: np.random.Generator) -> None:
+        """Add the strengths of impulses to the samples at which they start, shape (time,) [1]."""
+        drawn = self.si()
+        times = rng.integers(len(hits), size=rng.poisson(drawn["rate"] * len(hits) / fs))
+        strengths = rng.standard_normal(len(times), dtype=np.float32)
+        np.add.at(hits, times, decibel_to_ratio(drawn["level"]) * strengths)

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
-from gen.drawing import Distribution, Drawn, Draws, Probability, within
+from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.background.source import BackgroundSource, FloatArray
+from gen.support.units import decibel_to_ratio
 
 _SCATTER = 0.2  # of the strength from knock to knock
 
@@ -22,12 +23,9 @@ class Knocks(BackgroundSource):
     level_db: Distribution = within(-80, 60)
     """Mean of their peaks behind the path, relative to the rms of the background noise."""
 
-    def draw_present(self, draws: Draws) -> Drawn:
-        """Number per turn of the shaft and level."""
-        return {"frequency": draws.value(self.orders), "level": draws.ratio(self.level_db)}
-
-
-def add_knocks(hits: FloatArray, drawn: Drawn, phase: float, angles: FloatArray, rng: np.random.Generator) -> None:
-    """Add the strengths of knocks to the samples at which they start, shape (time,) [1], for ``angles`` of the shaft [rad]."""
-    times = np.flatnonzero(np.diff(np.floor((drawn["frequency"] * angles + phase) / (2 * math.pi))) > 0) + 1
-    hits[times] += drawn["level"] * (1 + _SCATTER * rng.standard_normal(len(times), dtype=np.float32))
+    def add_to(self, hits: FloatArray, phase: float, angles: FloatArray, rng: np.random.Generator) -> None:
+        """Add the strengths of knocks to the samples at which they start, shape (time,) [1], for ``angles`` of the shaft [rad]."""
+        drawn = self.si()
+        times = np.flatnonzero(np.diff(np.floor((drawn["orders"] * angles + phase) / (2 * math.pi))) > 0) + 1
+        scatter = _SCATTER * rng.standard_normal(len(times), dtype=np.float32)
+        hits[times] += decibel_to_ratio(drawn["level"]) * (1 + scatter)

@@ -15,7 +15,7 @@ and in between the landings follow no order at all [1]_.
 import numpy as np
 
 from gen.corpus.schema import Variable
-from gen.drawing import Distribution, Drawn, Draws, Probability, Purpose, within
+from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.background.machine_conditions import label_of
 from gen.mechanisms.background.source import FloatArray, LockedSource
 from gen.support.units import STANDARD_GRAVITY, decibel_to_ratio
@@ -24,10 +24,10 @@ from gen.support.units import STANDARD_GRAVITY, decibel_to_ratio
 class Looseness(LockedSource):
     """A support that the shaft lifts off the ground once a turn, or every second turn: harmonics, half orders and impacts."""
 
-    place, of_rig, of_record = "looseness", Purpose.LOOSENESS, Purpose.LOOSENESS
+    place = "looseness"
     labels = (
         Variable("looseness", "f8", "1", "latent", "force that lifts a loose machine over its weight, 0 on a firm support",
-            lambda drawn: drawn["lift"]),
+            lambda one: one.si()["lift"]),
         label_of(lambda _: "looseness"),  # whatever else the machine has
     )  # fmt: skip
 
@@ -43,21 +43,24 @@ class Looseness(LockedSource):
     level_db: Distribution = within(-80, 40)
     """Rms of this vibration relative to that of the background noise."""
 
-    def draw_present(self, draws: Draws) -> Drawn:
-        """Ratio, resonance [Hz], damping ratio, level, and the angle at which the shaft lifts most [rad]."""
-        drawn = draws.section(self)
-        return drawn | {"level": decibel_to_ratio(drawn["level"]), "phase": draws.angle()}
-
-    @staticmethod
-    def vibrations(drawn: Drawn, angles: FloatArray, fs: float, rng: np.random.Generator) -> list[FloatArray]:  # noqa: ARG004
-        """Acceleration of the machine beside that on firm ground."""
+    def vibrations(
+        self,
+        angles: FloatArray,
+        fs: float,
+        of_rig: np.random.Generator,
+        of_record: np.random.Generator,  # noqa: ARG002
+    ) -> list[FloatArray]:
+        """Acceleration of the machine beside that on firm ground; the angle at which the shaft lifts most belongs to the rig."""
         from gen.physics.rattle import rattling  # compiled: a recipe is read without numba
 
-        lifting = drawn["lift"] * STANDARD_GRAVITY * np.cos(angles - drawn["phase"])
+        drawn = self.si()
+        lifting = drawn["lift"] * STANDARD_GRAVITY * np.cos(angles - 2 * np.pi * of_rig.random())
         ground, _ = rattling(-lifting, drawn["frequency"], drawn["damping"], STANDARD_GRAVITY, fs)
         moved = ground + lifting
         rms = float(np.sqrt(np.mean(moved**2)))
-        return [moved * (drawn["level"] / rms)] if rms > 0 else []  # less than a turn, without a flight
+        return (
+            [moved * (decibel_to_ratio(drawn["level"]) / rms)] if rms > 0 else []
+        )  # less than a turn, without a flight
 
     @staticmethod
     def compile() -> None:

@@ -9,14 +9,14 @@ A burst is noise times ``exp(k (cos(n angle + start) - 1))``, a bell of the shaf
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 from pydantic import Field, StrictInt
 
 from gen.corpus.fault_classes import UNKNOWN, UNKNOWN_CODE
 from gen.corpus.schema import Variable
-from gen.drawing import Distribution, Drawn, Draws, Probability, Purpose, Section, Weight, weighted_index, within
+from gen.drawing import Distribution, Draws, Probability, Section, Weight, weighted_index, within
 from gen.mechanisms.background.source import FloatArray, LockedSource
 from gen.support.units import decibel_to_ratio
 
@@ -25,10 +25,10 @@ MACHINE_CONDITIONS: Mapping[int, str] = {**dict(enumerate(("sound", *get_args(Ma
 """Classes of ``machine_condition``."""
 
 
-def label_of(kind: Callable[[Drawn], str]) -> Variable:
-    """The label ``machine_condition`` of a source, from the kind of condition that its drawn values stand for."""
+def label_of(kind: Callable[[Any], str]) -> Variable:
+    """The label ``machine_condition`` of a source, from the kind of condition that it stands for."""
     meaning = "condition of the machine, whatever that of its bearing"
-    code = lambda drawn: 1 + get_args(MachineKind).index(kind(drawn))  # noqa: E731
+    code = lambda one: 1 + get_args(MachineKind).index(kind(one))  # noqa: E731
     return Variable("machine_condition", "i1", "1", "label", meaning, code, MACHINE_CONDITIONS)
 
 
@@ -57,66 +57,76 @@ class MachineCondition(Section):
     """Order of the shaft whose multiples it shows: 1 for the shaft, 0.5 for looseness and rub, that of the belt for a belt."""
     count: Distribution = within(0, 400, default=0.0)
     """Number of lines, at 1, 2, ... times `order`, rounded to a whole number; those beyond half the sample rate are left out."""
-    level_db: Distribution = within(-80, 40, default=-20.0)
+    level_db: Distribution = within(-80, 40, each=True, default=-20.0)
     """Rms of a line relative to that of the background noise, drawn for each."""
     strongest: Annotated[StrictInt, Field(ge=1, le=400)] | None = None
     """Number of the line that gets the largest of the drawn levels: 1 for unbalance, 2 for misalignment; any if left out."""
     bursts: Bursts | None = None
     """Bursts of noise locked to the shaft; none if left out."""
 
+    def draw(self, of: Draws) -> Any:
+        """The condition, with its largest level at the place of the strongest line."""
+        drawn = super().draw(of)
+        levels = [*drawn.level_db]
+        if levels and self.strongest is not None:
+            place, largest = min(self.strongest, len(levels)) - 1, int(np.argmax(levels))
+            levels[place], levels[largest] = levels[largest], levels[place]
+        return drawn.model_copy(update={"level_db": tuple(levels)})
+
 
 class MachineConditions(LockedSource):
     """Conditions of the machine other than those of its bearings, drawn per rig and the same for all classes of bearings."""
 
-    place, of_rig, of_record = "machine_conditions", Purpose.MACHINE_CONDITION, Purpose.BURSTS
-    labels = (label_of(lambda drawn: drawn["kind"]),)
+    place = "machine_conditions"
+    labels = (label_of(lambda one: one.entries[0].kind),)
 
     probability: Probability
     """Share of the rigs whose machine has one of the conditions."""
     entries: Annotated[tuple[MachineCondition, ...], Field(min_length=1)]
     """Conditions, one of which a machine has; drawn by weight."""
 
-    def draw_present(self, draws: Draws) -> Drawn:
-        """Kind, order, lines with their phases [rad], and bursts, None for none."""
-        entry = self.entries[weighted_index(tuple(entry.weight for entry in self.entries), draws.u())]
-        drawn = draws.section(entry)
-        levels = [draws.ratio(entry.level_db) for _ in range(round(drawn["count"]))]
-        if levels and entry.strongest is not None:
-            place, largest = min(entry.strongest, len(levels)) - 1, int(np.argmax(levels))
-            levels[place], levels[largest] = levels[largest], levels[place]
-        lines = tuple({"level": level, "phase": draws.angle()} for level in levels)
-        bursts = None
-        if entry.bursts is not None:
-            bursts = draws.section(entry.bursts)
-            bursts |= {"level": decibel_to_ratio(bursts["level"]), "start": draws.angle()}
-        return {"kind": entry.kind, "order": drawn["order"], "lines": lines, "bursts": bursts}
+    def draw(self, of: Draws) -> Any:
+        """Conditions of a rig: one entry; None for a machine that has none."""
+        chosen = weighted_index(tuple(entry.weight for entry in self.entries), of.u("entries"))
+        one = self.model_copy(update={"entries": (self.entries[chosen],)})
+        return super(MachineConditions, one).draw(of)
 
-    @staticmethod
-    def vibrations(drawn: Drawn, angles: FloatArray, fs: float, rng: np.random.Generator) -> list[FloatArray]:  # noqa: ARG004
-        """Lines and bursts of the condition."""
-        bursts = drawn["bursts"]
-        return [lines_of(drawn, angles), *([] if bursts is None else [bursts_of(bursts, angles, rng)])]
+    def vibrations(
+        self,
+        angles: FloatArray,
+        fs: float,  # noqa: ARG002
+        of_rig: np.random.Generator,
+        of_record: np.random.Generator,
+    ) -> list[FloatArray]:
+        """Lines and bursts of the condition; their phases belong to the rig."""
+        (condition,) = self.entries
+        start = 2 * math.pi * of_rig.random()
+        lines = lines_of(condition, angles, of_rig)
+        return [lines] if condition.bursts is None else [lines, bursts_of(condition.bursts, angles, start, of_record)]
 
 
-def lines_of(condition: Drawn, angles: FloatArray) -> FloatArray:
-    """Lines of a condition, shape (time,) [1].
+def lines_of(condition: MachineCondition, angles: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Lines of a drawn condition with random phases, shape (time,) [1].
 
     A line that passes half the sample rate anywhere in the record, where the anti-alias filter would remove it, is left out.
     """
     from scipy.fft import irfft  # loads for half a second, and few recipes need it
 
-    fastest = float(np.abs(np.diff(angles)).max()) * condition["order"]
-    lines = condition["lines"][: math.ceil(math.pi / fastest) - 1] if fastest > 0 else condition["lines"]
-    if not lines:
+    drawn = condition.si()
+    order, levels = drawn["order"], decibel_to_ratio(drawn["level"])
+    fastest = float(np.abs(np.diff(angles)).max()) * order
+    lines = levels * np.exp(2j * math.pi * rng.random(len(levels)))
+    lines = lines[: math.ceil(math.pi / fastest) - 1] if fastest > 0 else lines
+    if not len(lines):
         return np.zeros(len(angles))
-    spectrum = [0.0, *(line["level"] * np.exp(1j * line["phase"]) for line in lines)]
-    period = irfft(spectrum, _PERIOD) * (_PERIOD / math.sqrt(2))
+    period = irfft(np.concatenate([[0.0], lines]), _PERIOD) * (_PERIOD / math.sqrt(2))
     turn = np.arange(_PERIOD + 1) * (2 * math.pi / _PERIOD)
-    return np.interp(condition["order"] * angles % (2 * math.pi), turn, np.append(period, period[0]))
+    return np.interp(order * angles % (2 * math.pi), turn, np.append(period, period[0]))
 
 
-def bursts_of(drawn: Drawn, angles: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Bursts of a condition, shape (time,) [1]."""
+def bursts_of(bursts: Bursts, angles: FloatArray, start: float, rng: np.random.Generator) -> FloatArray:
+    """Bursts of a condition from a phase ``start`` on [rad], shape (time,) [1]."""
+    drawn = bursts.si()
     sharpness = 1 / drawn["length"] ** 2
-    bells = np.exp(sharpness * (np.cos(drawn["order"] * angles + drawn["start"]) - 1))
-    return drawn["level"] * bells / math.sqrt(np.mean(bells**2)) * rng.standard_normal(len(angles))
+    bells = np.exp(sharpness * (np.cos(drawn["order"] * angles + start) - 1))
+    return decibel_to_ratio(drawn["level"]) * bells / math.sqrt(np.mean(bells**2)) * rng.standard_normal(len(angles))

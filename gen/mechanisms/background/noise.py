@@ -5,9 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.drawing import Distribution, Drawn, Section, within
+from gen.drawing import Distribution, Section, within
 from gen.mechanisms.path import Modes, Modulation, transmissibility
 from gen.physics.elementary import power
+from gen.support.units import decibel_to_ratio
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
@@ -15,6 +16,8 @@ Float32Array = NDArray[np.float32]
 
 class Noise(Section):
     """Vibration of the machine without the bearing: drawn per rig, the same for healthy and faulty records."""
+
+    drawn_per = "rig"
 
     slope: Distribution = within(-2, 4, default=0.0)
     """Exponent of the noise: its power spectral density falls with frequency to this power above 10 Hz; 0 is white."""
@@ -28,24 +31,25 @@ class Noise(Section):
     """Magnitude-squared coherence of the noise between two channels: 0 for independent noise, 1 for the same."""
 
 
-def noise_spectrum(drawn: Drawn, frequency: FloatArray) -> FloatArray:
+def noise_spectrum(noise: Noise, frequency: FloatArray) -> FloatArray:
     """Amplitude spectrum of the noise of a machine, with unit mean power, shape (frequency,) [1].
 
     Its PSD is a white floor plus ``f^-slope``, constant below 10 Hz, times the resonances.
     """
+    drawn = noise.si()
     falling = power(np.maximum(frequency, 10.0), -drawn["slope"] / 2)
-    falling *= np.abs(1 + transmissibility(drawn["modes"], frequency))
+    falling *= np.abs(1 + transmissibility(noise.modes, frequency))
     falling[0] = 0.0
-    density = falling**2 / np.mean(falling**2) + drawn["floor"] ** 2
+    density = falling**2 / np.mean(falling**2) + decibel_to_ratio(drawn["floor"]) ** 2
     return np.sqrt(density / np.mean(density))
 
 
-def noise_factors(drawn: Drawn, frequency: FloatArray, chain: FloatArray, n: int) -> Float32Array:
+def noise_factors(noise: Noise, frequency: FloatArray, chain: FloatArray, n: int) -> Float32Array:
     """Factors that turn complex numbers of unit variance into the spectrum of ``n`` samples of noise of unit rms, shape (frequency,) [1].
 
     ``chain``, shape (frequency,), is the amplitude response of the measuring chain [1].
     """
-    factors = noise_spectrum(drawn, frequency) * chain
+    factors = noise_spectrum(noise, frequency) * chain
     factors *= math.sqrt(n / 2) / np.sqrt(np.mean(np.square(factors)))
     # the spectrum is real at 0 Hz, and at the Nyquist frequency of an even n: one number has all of the power there
     factors[:1] *= math.sqrt(2)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from gen.corpus.schema import Variable
-from gen.drawing import Distribution, Drawn, Probability, within
+from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.chain.filtering import recursive
 from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 
@@ -13,7 +13,7 @@ from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 class Drift(SensorFault):
     """A baseline that moves slowly: warming of the sensor, and settling after it was switched on or struck."""
 
-    place, record_stream, noise_stream = "drift", 0, 1
+    place, drawn_per = "drift", "record"
     labels = (
         Variable(
             "drift", "f8", "m s-2", "latent", "largest deviation of the baseline from 0 in any channel, 0 without drift"
@@ -31,12 +31,12 @@ class Drift(SensorFault):
     settling_time_s: Distribution = within(1e-3, 1e3, default=1.0)
     """Time constant of that decay."""
 
-    @staticmethod
-    def disturb(drawn: Drawn, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
         """Signal on a random wander and an exponential settling.
 
         The wander is white noise behind a low-pass filter of first order, stationary from the first sample on.
         """
+        drawn = self.si()
         channels, length = signal.shape
         kept = math.exp(-2 * math.pi * drawn["wander_corner"] / fs)
         noise = rng.standard_normal(signal.shape) * (drawn["wander"] * math.sqrt(1 - kept**2))

@@ -3,14 +3,14 @@
 import numpy as np
 
 from gen.corpus.schema import Variable
-from gen.drawing import Distribution, Drawn, Probability, within
+from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 
 
 class DroppedSamples(SensorFault):
     """Gaps in the data transfer, at the same times in all channels."""
 
-    place, record_stream, noise_stream = "dropped_samples", 1, 3
+    place, drawn_per = "dropped_samples", "record"
     labels = (
         Variable("dropped_samples", "i4", "1", "latent", "times at which all channels have a filling and no sample"),
     )
@@ -31,12 +31,12 @@ class DroppedSamples(SensorFault):
             return None
         return f"gap_s: {longest:g} s leaves nothing of a record; keep it below recording.duration_s {duration:g}."
 
-    @staticmethod
-    def disturb(drawn: Drawn, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
         """Signal with gaps, each filled with the last sample before it or with 0.
 
         The first sample is never lost. Where gaps overlap, the later one is filled from what the earlier one left.
         """
+        drawn = self.si()
         length = signal.shape[1]
         size = min(max(round(drawn["gap"] * fs), 1), length - 1)
         starts = np.sort(rng.integers(1, length - size + 1, size=round(drawn["count"])))

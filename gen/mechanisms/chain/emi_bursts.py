@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from gen.corpus.schema import Variable
-from gen.drawing import Distribution, Drawn, Probability, within
+from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.chain.filtering import recursive
 from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 
@@ -13,7 +13,7 @@ from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 class EmiBursts(SensorFault):
     """Short oscillations that a switching contact or converter induces in the cables, the same in all channels."""
 
-    place, record_stream, noise_stream = "emi_bursts", 3, 2
+    place, drawn_per = "emi_bursts", "record"
     labels = (Variable("emi_bursts", "i4", "1", "latent", "induced bursts that start within the record"),)
 
     probability: Probability
@@ -27,9 +27,9 @@ class EmiBursts(SensorFault):
     peak_m_s2: Distribution = within(0, 1e5, open_low=True)
     """Rms of the peaks of the bursts."""
 
-    @staticmethod
-    def disturb(drawn: Drawn, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
         """Signal with decaying oscillations that start at random times."""
+        drawn = self.si()
         length = signal.shape[1]
         count = int(rng.poisson(drawn["rate"] * length / fs))
         starts = rng.integers(length, size=count)

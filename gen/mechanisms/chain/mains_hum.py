@@ -1,12 +1,11 @@
 """Hum of the power supply."""
 
 import math
-from typing import Any
 
 import numpy as np
 
 from gen.corpus.schema import Variable
-from gen.drawing import Distribution, Drawn, Draws, Probability, within
+from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 from gen.support.units import decibel_to_ratio
 
@@ -14,14 +13,14 @@ from gen.support.units import decibel_to_ratio
 class MainsHum(SensorFault):
     """Hum of the power supply, common to all channels."""
 
-    place, rig_stream, record_stream, noise_stream = "mains_hum", 2, 4, 0
+    place, drawn_per = "mains_hum", "rig"
     labels = (Variable("mains_hum", "f8", "m s-2", "latent", "rms of the hum of the mains, 0 without"),)
 
     probability: Probability
     """Share of the rigs with hum."""
     frequency_hz: Distribution = within(10, 500, default=50.0)
     """Nominal frequency of the mains: 50 or 60 in most countries."""
-    deviation_percent: Distribution = within(-10, 10, default=0.0)
+    deviation_percent: Distribution = within(-10, 10, default=0.0, per="record")
     """Deviation of the mains from its nominal frequency, drawn for each record."""
     rms_m_s2: Distribution = within(0, 1e4, open_low=True)
     """Rms of the hum at the mains frequency."""
@@ -30,18 +29,9 @@ class MainsHum(SensorFault):
     third_db: Distribution = within(-80, 20, default=-10.0)
     """Level of the third multiple relative to the mains frequency; the others fall as one over their order."""
 
-    def draw(self, draws: Draws, channels: int) -> Any:
-        """All but the deviation."""
-        drawn = super().draw(draws, channels)
-        return {key: value for key, value in drawn.items() if key != "deviation"} if isinstance(drawn, dict) else None
-
-    def draw_anew(self, draws: Draws) -> Drawn:
-        """The deviation."""
-        return draws.section(self, keys=("deviation_percent",))
-
-    @staticmethod
-    def disturb(drawn: Drawn, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
         """Signal with the mains frequency and its odd multiples below half the sample rate."""
+        drawn = self.si()
         length = signal.shape[1]
         orders = 1 + 2 * np.arange(round(drawn["count"]) + 1)
         phases = rng.random(len(orders)) * 2 * math.pi

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from gen.corpus.schema import Variable
-from gen.drawing import Distribution, Drawn, Probability, within
+from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.chain.filtering import recursive
 from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 
@@ -13,7 +13,7 @@ from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
 class Saturation(SensorFault):
     """An amplifier whose range ends below the full scale of the converter, so that no clipped count reveals the overload."""
 
-    place, rig_stream, noise_stream = "saturation", 1, 6
+    place, drawn_per = "saturation", "rig"
     labels = (
         Variable("saturated", "i4", "1", "latent", "samples at the limit of the amplifier, all channels together"),
     )
@@ -37,14 +37,14 @@ class Saturation(SensorFault):
             "lower the limit."
         )
 
-    @staticmethod
-    def disturb(drawn: Drawn, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG004
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG002
         """Signal behind the amplifier.
 
         Below the knee the gain is 1; in the knee it falls linearly with the input to 0, where the output reaches the limit. The part of
         the input beyond the limit charges the amplifier, which shifts the baseline to the other side and discharges with the same time
         constant.
         """
+        drawn = self.si()
         limit, knee = drawn["limit"], drawn["knee"] * drawn["limit"]
         if drawn["recovery"] > 0:
             kept = math.exp(-1 / (drawn["recovery"] * fs))

@@ -23,5 +23,3 @@ from gen.mechanisms.faults.worn_race import DistributedFault
 
 KINDS: tuple[type[BearingFault], ...] = (Healthy, RaceFault, BallFault, CageFault, DistributedFault, CompoundFault)
 """In the order in which a recipe lists their keys."""
-LABELS = tuple(label for kind in KINDS for label in kind.labels)
-"""Variables of the corpus that tell the size of a damage."""

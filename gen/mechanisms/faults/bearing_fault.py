@@ -1,55 +1,24 @@
-"""What a fault of a bearing is: the keys that a recipe gives, and the damage that is drawn from them."""
+"""What a fault of a bearing is: the keys that a recipe gives, and what a drawn one does to the bearing."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from gen.corpus.schema import Variable
-from gen.drawing import Drawn, Draws, Known, Section
-from gen.physics.bearing import Bearing, ball_spacing
+from gen.drawing import Section
+from gen.physics.bearing import Bearing
+from gen.physics.inputs import Spall
 
 BALL_SPACING, RACES = "ball_spacing_mm", ("inner", "outer")
-if TYPE_CHECKING:
-    Damage = dict[str, dict[str, Any]]
-else:
-    Damage = dict[str, dict[str, int | float | str | None]]
-"""Drawn values of each kind of fault that a specimen has, beside its spalls, in SI units; ``site`` is the damaged part, if the kind does
-not name it."""
-
-
-@dataclass(frozen=True)
-class Spall:
-    """Drawn dimensions of one spall."""
-
-    site: Literal["inner", "outer", "ball"]
-    width: float
-    """Along the rolling direction [m]."""
-    depth: float
-    """[m]."""
-    angle: float
-    """Angle [rad]; on the outer race it counts from the direction of the load."""
-    ball: int = 0
-    """Number of the damaged ball, if ``site`` is ``ball``."""
-    profile: Literal["geometric", "half_sine", "raised_cosine", "rectangular", "trace"] = "geometric"
-    trace: tuple[float, ...] = ()
-    """Depths of a measured surface from edge to edge, evenly spaced [m]."""
-    roughness: float = 0.0
-    """Rms roughness of the floor [m]."""
-    scatter: float = 0.0
-    """Standard deviation of the logarithm of the drop from passage to passage [1]."""
-
-    def at_severity(self, share: float) -> "Spall":
-        """The same spall with a share of its width and depth; the roughness of its floor stays."""
-        trace = tuple(share * depth for depth in self.trace)
-        return replace(self, width=share * self.width, depth=share * self.depth, trace=trace)
 
 
 class BearingFault(Section):
     """A fault of one part of a bearing."""
 
+    drawn_per = "specimen"
     labels: ClassVar[tuple[Variable, ...]] = ()
-    """Variables of the corpus with the names of drawn values, 0 without the fault. A share of the severity of a fault is a share of these
-    values, and of width and depth of its spalls."""
+    """Variables of the corpus that tell its size, 0 without the fault."""
+    sizes: ClassVar[tuple[str, ...]] = ()
+    """Keys of which a share of its severity is a share."""
 
     if TYPE_CHECKING:
         kind: Any
@@ -69,13 +38,21 @@ class BearingFault(Section):
         """Count of the numbers of traces that each record holds."""
         return 0
 
-    def draw_spalls(self, draws: Draws, bearing: Bearing, known: Known) -> list[Spall]:  # noqa: ARG002 - of some kinds
-        """Spalls of the part; ``known`` are quantities of rig, specimen and part."""
+    def at_severity(self, share: float) -> Self:
+        """The same drawn fault with a share of its sizes."""
+        scaled = {key: _times(share, getattr(self, key)) for key in self.sizes if getattr(self, key) is not None}
+        return self.model_copy(update=scaled)
+
+    def check(self, bearing: Bearing, item: str) -> None:
+        """RecipeError if the drawn fault of an ``item`` does not fit its bearing."""
+
+    def spalls(self, load_angle: float) -> list[Spall]:  # noqa: ARG002 - of some kinds
+        """Spalls of the part, those of the outer race with their angles from the x axis; ``load_angle`` is that of the load [rad]."""
         return []
 
-    def draw(self, draws: Draws, known: Known) -> Drawn:
-        """All other values."""
-        return draws.section(self, known)
+    def turning(self) -> Mapping[str, float]:
+        """Fields of :class:`gen.physics.inputs.Turning` that differ from those of a sound bearing."""
+        return {}
 
 
 class Healthy(BearingFault):
@@ -90,13 +67,5 @@ class Healthy(BearingFault):
         return ()
 
 
-def draw_damage(
-    faults: Iterable[BearingFault], draws: Draws, bearing: Bearing, known: Known
-) -> tuple[tuple[Spall, ...], Damage]:
-    """Spalls and further damage of a specimen; ``known`` are quantities of rig and specimen."""
-    spalls, damage = list[Spall](), Damage()
-    for fault in faults:
-        race = {BALL_SPACING: ball_spacing(bearing, fault.part)} if fault.part in RACES else {}
-        spalls += fault.draw_spalls(draws, bearing, {**known, **race})
-        damage[fault.kind] = fault.draw(draws, {**known, **race})
-    return tuple(spalls), {kind: drawn for kind, drawn in damage.items() if drawn}
+def _times(share: float, value: Any) -> Any:
+    return tuple(share * one for one in value) if isinstance(value, tuple) else share * value

@@ -30,6 +30,10 @@ class CompoundFault(BearingFault):
             )
         return self
 
+    def at_severity(self, share: float) -> Self:
+        """The same with a share of the sizes of each part."""
+        return self.model_copy(update={"parts": tuple(part.at_severity(share) for part in self.parts)})
+
     @property
     def components(self) -> tuple[BearingFault, ...]:
         """Its parts."""

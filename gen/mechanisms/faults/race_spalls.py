@@ -1,12 +1,13 @@
 """Spalls on a race, and the keys that all spalls have."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from gen.drawing import Distribution, Drawn, Draws, Known, Number, Section, within
-from gen.mechanisms.faults.bearing_fault import BearingFault, Spall
-from gen.physics.bearing import Bearing
+from gen.drawing import Distribution, Draws, Number, Section, within
+from gen.mechanisms.faults.bearing_fault import BALL_SPACING, RACES, BearingFault
+from gen.physics.bearing import Bearing, ball_spacing
+from gen.physics.inputs import Spall
 from gen.support.errors import RecipeError
 from gen.support.units import from_si, to_si
 
@@ -25,19 +26,21 @@ class JaggedEdge(Section):
 class Spalls(BearingFault):
     """Spalls of one part."""
 
+    counted, sizes = "n_spalls", ("width_mm", "depth_um", "trace_um")
+
     n_spalls: Distribution = within(1, MAX_SPALLS, default=1)
     """Number of spalls, each with its own draws; rounded to a whole number."""
-    width_mm: Distribution = within(0, 60, open_low=True)
+    width_mm: Distribution = within(0, 60, open_low=True, each=True)
     """Width of a spall along the rolling direction; it sets how far the ball drops, and how hard it hits the trailing edge."""
-    depth_um: Distribution = within(0, 5000, open_low=True, default=280.0)
+    depth_um: Distribution = within(0, 5000, open_low=True, each=True, default=280.0)
     """Depth of the floor of a spall. A ball that bridges a narrow spall does not reach the floor."""
-    angle_deg: Distribution = within(-360, 360, default=0.0)
+    angle_deg: Distribution = within(-360, 360, each=True, default=0.0)
     """Position of a spall: on the outer race from the direction of the load, on the inner race and on a ball from a mark that turns."""
     profile: Literal["geometric", "half_sine", "raised_cosine", "rectangular", "trace"] = "geometric"
     """Path of a ball through the spall: a rigid ball over two edges and a floor, a formula, or a measured trace."""
     trace_um: Trace | None = None
     """Measured depths of the surface from edge to edge, evenly spaced; for `profile: trace`, which scales them to `width_mm`."""
-    roughness_um: Distribution = within(0, 50, default=0.0)
+    roughness_um: Distribution = within(0, 50, each=True, default=0.0)
     """Rms roughness of the floor of a geometric or traced spall."""
     jagged_edge: JaggedEdge | None = None
     """Edge that each ball meets a little differently; the same for all balls if left out."""
@@ -55,28 +58,36 @@ class Spalls(BearingFault):
         """Of the traces of its spalls."""
         return round(self.n_spalls.support()[1]) * len(self.trace_um or ())
 
-    def draw_spalls(self, draws: Draws, bearing: Bearing, known: Known) -> list[Spall]:
-        """Spalls of one part, on balls all of one.
+    def draw(self, of: Draws) -> Any:
+        """Spalls of one part of a bearing, whose widths can be shares of the distance between balls."""
+        if self.part in RACES:
+            of = of._replace(known={**of.known, BALL_SPACING: ball_spacing(of.bearing, self.part)})
+        return super().draw(of)
 
-        Raises
-        ------
-        RecipeError
-            If one does not fit the bearing, or a share is outside the range of its key.
-        """
-        carrier = int(draws.u() * bearing.n_balls)
+    def check(self, bearing: Bearing, item: str) -> None:
+        """RecipeError if a spall is too wide for its race or ball."""
+        radius, widest = bearing.radius(self.part), widest_spall(self.part, bearing)
+        for width in self.si()["width"]:
+            if width > widest:
+                raise RecipeError(
+                    f"{item}: a spall of {from_si(width, 'mm'):g} mm does not fit the {self.part} radius of "
+                    f"{from_si(radius, 'mm'):.3g} mm; keep width_mm below {from_si(widest, 'mm'):.3g}."
+                )
+
+    def spalls(self, load_angle: float) -> list[Spall]:
+        """Spalls of the part, those of the outer race with their angles from the x axis."""
+        drawn = self.si()
         trace = tuple(to_si(depth, "um") for depth in self.trace_um or ())
-        spalls = []
-        for _ in range(round(draws.value(self.n_spalls))):
-            drawn = draws.section(self, known, ("width_mm", "depth_um", "angle_deg", "roughness_um"))
-            edge = {} if self.jagged_edge is None else draws.section(self.jagged_edge)
-            drawn |= {"depth": max(trace, default=drawn["depth"])} | edge
-            spalls.append(Spall(self.part, ball=carrier, profile=self.profile, trace=trace, **drawn))
-            check_fits(spalls[-1], bearing, draws.item)
-        return spalls
-
-    def draw(self, draws: Draws, known: Known) -> Drawn:  # noqa: ARG002
-        """Nothing but spalls."""
-        return {}
+        scatter = 0.0 if self.jagged_edge is None else self.jagged_edge.si()["scatter"]
+        first = load_angle if self.part == "outer" else 0.0
+        sizes = zip(*(drawn[name].tolist() for name in ("width", "depth", "angle", "roughness")), strict=True)
+        return [
+            Spall(
+                self.part, width, max(trace, default=depth), first + angle, getattr(self, "ball", 0) or 0, self.profile,
+                scatter=scatter, roughness=roughness, trace=trace,
+            )
+            for width, depth, angle, roughness in sizes
+        ]  # fmt: skip
 
 
 class RaceFault(Spalls):
@@ -89,13 +100,3 @@ class RaceFault(Spalls):
 def widest_spall(site: str, bearing: Bearing) -> float:
     """Largest width of a spall of a race or ball [m]."""
     return _WIDEST[site] * bearing.radius(site)
-
-
-def check_fits(spall: Spall, bearing: Bearing, item: str) -> None:
-    """Refuse a spall that is too wide for its race or ball."""
-    radius, widest = bearing.radius(spall.site), widest_spall(spall.site, bearing)
-    if spall.width > widest:
-        raise RecipeError(
-            f"{item}: a spall of {from_si(spall.width, 'mm'):g} mm does not fit the {spall.site} radius of {from_si(radius, 'mm'):.3g} mm; "
-            f"keep width_mm below {from_si(widest, 'mm'):.3g}."
-        )

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, StrictInt
 
 from gen.corpus.schema import Variable
-from gen.drawing import Distribution, Drawn, Draws, Known, within
+from gen.drawing import Distribution, within
 from gen.mechanisms.faults.bearing_fault import BearingFault
 from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
 
@@ -13,7 +13,11 @@ from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
 class DistributedFault(BearingFault):
     """A race worn over its whole circumference; records are labelled with the race."""
 
-    labels = (Variable("wear", "f8", "m", "label", "rms waviness of a worn race, 0 if none is"),)
+    labels = (
+        Variable("wear", "f8", "m", "label", "rms waviness of a worn race, 0 if none is", lambda one: one.si()["waviness"]),
+    )  # fmt: skip
+
+    sizes = ("waviness_um",)
 
     kind: Literal["distributed"]
     """Adds waviness to a whole race: noise at low frequency, no line in the envelope spectrum."""
@@ -23,7 +27,3 @@ class DistributedFault(BearingFault):
     """Rms waviness of the worn race, in addition to that of the specimen."""
     order: Annotated[StrictInt, Field(ge=LOWEST_ORDER, le=HIGHEST_ORDER)] | None = None
     """Waves per turn, if all wear has one order; if left out, orders 2 to 60 with amplitudes that fall as 1/order."""
-
-    def draw(self, draws: Draws, known: Known) -> Drawn:
-        """Race, rms, and the only order if there is one."""
-        return {"site": self.site, "wear": draws.section(self, known)["waviness"], "order": self.order}

@@ -8,7 +8,7 @@ import shutil
 import pytest
 
 from gen import copy
-from gen.corpus import open_corpus, part_name, read_manifest, write_manifest
+from gen.corpus import SignalCounts, open_corpus, part_name, read_manifest, write_manifest
 from gen.generation import sources as sources_of_records
 from gen.generation.corpus import generate
 from gen.generation.sources import sources_sha256
@@ -38,8 +38,8 @@ def set_facts(path, **facts):
 
 def unfinished(folder):
     """The corpus as a killed call leaves it before its last steps."""
-    content = manifest_content(folder) | {"complete": False, "records": 0, "parts_sha256": "0" * 64, "parts": []}
-    write_manifest(folder, content)
+    nothing = {"records": 0, "signals": SignalCounts()._asdict(), "parts_sha256": "0" * 64, "parts": []}
+    write_manifest(folder, manifest_content(folder) | {"complete": False} | nothing)
     for name in ("index.nc", "README.md", "croissant.json"):
         (folder / name).unlink()
     return folder

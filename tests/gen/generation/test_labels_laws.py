@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from gen.corpus import FAULTS, LIFE, SCHEMA, SIMULATED, SPLITS
-from gen.generation.labels import LABELS, part_dataset
+from gen.corpus import FAULTS, SPLITS
+from gen.generation.labels import part_dataset
 from gen.measurement.measure import measure
 from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.recipe import corpus_identity
-from gen.scenarios import draw_scenarios, read_scenario, settings_of
+from gen.scenarios import draw_scenarios, read_scenario
 from gen.simulation.timeline import timeline
 from tests.responses import response_of
 
@@ -131,7 +131,7 @@ def test_what_the_run_found_stands_beside_its_record(recipe_with):
 
 def test_signal_ratio_and_clipped_samples_are_those_that_were_measured(recipe_with):
     recipe = recipe_with({"records": 3, "recording.converter": {"kind": "adc", "full_scale_m_s2": 2.0}})
-    scenarios, n = draw_scenarios(recipe), timeline(settings_of(recipe)).lead + recipe.n_samples
+    scenarios, n = draw_scenarios(recipe), timeline(recipe).lead + recipe.n_samples
     hiss = 4 * np.random.default_rng(0).standard_normal((3, 1, n)).astype(np.float32)
     measured = measure(hiss, scenarios)
     found = part_dataset(measured, response_of(scenarios, recipe))
@@ -150,8 +150,8 @@ def test_a_record_knows_its_place(recipe_with):
     assert found["rig"].values.tolist() == [number // 8 for number in range(24)]
     assert found["source"].values.tolist() == [f"small/{number}" for number in range(24)]
     assert found["bearing"].values.tolist() == ["6205"] * 24
-    assert [SPLITS[code] for code in found["split"].values] == [scenario.specimen.split for scenario in scenarios]
-    assert [FAULTS[code] for code in found["fault"].values] == [scenario.specimen.fault for scenario in scenarios]
+    assert [SPLITS[code] for code in found["split"].values] == [scenario.origin.split for scenario in scenarios]
+    assert [FAULTS[code] for code in found["fault"].values] == [scenario.fault for scenario in scenarios]
     for scenario, text in zip(scenarios, found["draws"].values, strict=True):
         assert read_scenario(text) == scenario
 
@@ -174,12 +174,6 @@ def test_a_gear_is_labelled_by_its_teeth(labels_with):
     assert labels_with({})["gear_mesh"].values.tolist() == [0] * 24
 
 
-def test_two_stages_or_mechanisms_with_one_label_mean_the_same_by_it():
-    meanings = {}
-    for label in SCHEMA + SIMULATED + LIFE + LABELS:
-        assert meanings.setdefault(label.name, label)._replace(value=None) == label._replace(value=None)
-
-
 def test_every_label_of_the_measuring_chain_is_a_variable_and_0_without_faults(labels_with):
     found = labels_with({})
-    assert all((found[label.name].values == 0).all() for fault in CHAIN for label in fault.labels)
+    assert all((found[label.name].values == 0).all() for mechanism in CHAIN for label in mechanism.labels)

@@ -6,8 +6,18 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gen import draw_scenarios, generate, open_corpus, read_recipe, read_scenarios, replay, write_corpus
-from gen.corpus import SIGNAL, finish_corpus, part_name, write_part
+from gen import (
+    draw_scenarios,
+    generate,
+    open_corpus,
+    read_recipe,
+    read_scenarios,
+    replay,
+    validate_corpus,
+    write_corpus,
+)
+from gen.corpus import FAULTS, SIGNAL, finish_corpus, part_name, write_part
+from gen.corpus.joining import NUMBERS
 from gen.support.errors import CorpusError
 from tests import corpora
 from tests.tampering import edited, seal
@@ -99,6 +109,53 @@ def test_the_stored_scenario_of_every_record_is_the_drawn_one(tiny_corpus):
         assert read_scenarios(corpus) == [drawn[number] for number in corpus["recording"].values]
 
 
+@pytest.fixture(scope="module")
+def one_record(write_recipe, tmp_path_factory):
+    """A record with a fault from the middle of a corpus, and the file of its recipe."""
+    folder = tmp_path_factory.mktemp("one")
+    level = {"kind": "snr", "faulty_db": "uniform(-20, 10)", "healthy_db": "uniform(-15, 10)"}
+    changes = {"level": level, "recording.duration_s": 0.25, "truth.undetected": "redraw", "storage.codec": "none"}
+    made = generate(write_recipe(folder / "r.yaml", changes), folder / "whole")
+    with open_corpus(made.path) as corpus:
+        tried = (corpus["level_tries"].values > 0) & (corpus["fault"].values == FAULTS.index("outer"))
+        record = corpus.isel(record=np.flatnonzero(tried)[[-1]]).load()
+    (scenario,) = read_scenarios(record)
+    (folder / "record.yaml").write_text(scenario.text, encoding="utf-8")
+    return record, scenario, folder / "record.yaml"
+
+
+def test_the_recipe_of_a_record_gives_the_record_again(one_record, tmp_path):
+    """In a corpus of its own, in which all its numbers are 0."""
+    record, _, path = one_record
+    for name in ("folder", "file.nc"):
+        first, second = (generate(path, tmp_path / name) for _ in range(2))
+        assert (first.records, first.kept, second.kept) == (1, 0, 1)
+        assert validate_corpus(tmp_path / name) == []
+        with open_corpus(tmp_path / name) as corpus:
+            assert [int(corpus[number][0]) for number in NUMBERS] == [0, 0, 0, -1]
+            assert int(record["recording"][0]) > 8
+            for variable in set(record.variables) - {*NUMBERS, "channel", "elapsed_time", "step_error"}:
+                np.testing.assert_array_equal(corpus[variable].values, record[variable].values, variable)
+        assert replay(tmp_path / name, 0).identical
+
+
+def test_an_edited_recipe_of_a_record_gives_another_record_with_its_labels(one_record, tmp_path):
+    record, scenario, path = one_record
+    (width,), rpm = scenario.recipe.faults[0].width_mm, scenario.recipe.operation.shaft_rpm
+    for key, value, written, factor, label in (
+        ("width_mm", width, f"[{width:g}]", 2.0, "width"),
+        ("shaft_rpm", rpm, f"{rpm!r}", 1.25, "true_shaft_rate"),
+    ):
+        text = path.read_text(encoding="utf-8")
+        edited = text.replace(f"{key}: {written}", f"{key}: {factor * value!r}")
+        assert edited != text
+        (tmp_path / "edited.yaml").write_text(edited, encoding="utf-8")
+        generate(tmp_path / "edited.yaml", tmp_path / key)
+        with open_corpus(tmp_path / key) as corpus:
+            assert corpus[label].values == pytest.approx(factor * record[label].values, rel=1e-3)
+            assert not np.array_equal(corpus[SIGNAL].values, record[SIGNAL].values)
+
+
 def test_a_corpus_without_its_recipe_still_replays(tiny_corpus, tmp_path):
     copied = shutil.copytree(tiny_corpus, tmp_path / "corpus")
     (copied / "recipe.yaml").unlink()
@@ -112,7 +169,7 @@ def test_a_record_that_is_not_there_is_not_replayed(tiny_corpus, record):
 
 
 def test_a_stored_text_that_is_no_scenario_is_refused_with_corpus_and_record(nine):
-    with pytest.raises(CorpusError, match=r"c: record 4: stored scenario: the whole text: Invalid JSON"):
+    with pytest.raises(CorpusError, match=r"c: record 4: stored scenario: is not the JSON text of a recipe"):
         replay(nine / "c", 4)
 
 

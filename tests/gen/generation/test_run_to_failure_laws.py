@@ -12,7 +12,7 @@ from gen.generation.corpus import generate
 from gen.generation.replaying import replay
 from gen.measurement.lives import velocity_rms
 from gen.physics.trace import spall_positions
-from gen.scenarios import draw_scenarios
+from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import spall_paths
 from tests.recipes import LIVES
 from tests.same_corpora import files
@@ -95,13 +95,17 @@ def test_two_workers_and_an_interrupted_call_give_the_same_files(lives, recipe_w
 
 
 def test_a_spall_that_grows_lays_bare_more_of_the_same_floor(recipe_with):
-    one = next(of for of in draw_scenarios(recipe_with(LIVES)) if of.specimen.fault == "inner")
-    (spall,) = one.specimen.spalls
-    point = replace(one.specimen.bearing, ball_diameter=1e-9)  # a ball that reaches every point of the floor
+    one = next(of for of in draw_scenarios(recipe_with(LIVES)) if of.fault == "inner")
+
+    class PointBall(Scenario):
+        """A scenario with a ball that reaches every point of the floor."""
+
+        bearing = replace(one.bearing, ball_diameter=1e-9)
 
     def floor_at(places, width):
-        grown = replace(one.specimen, bearing=point, spalls=(replace(spall, width=width, depth=1e-4),))
-        (path,) = spall_paths(replace(one, specimen=grown), 0)
+        grown = {"width_mm": (1e3 * width,), "depth_um": (100.0,)}
+        fault = one.recipe.faults[0].model_copy(update=grown)
+        (path,) = spall_paths(PointBall(one.recipe).edited(faults=(fault,)), 0)
         return np.interp(places, spall_positions(width), path)
 
     places = np.linspace(-4e-4, 4e-4, 100)

@@ -8,7 +8,7 @@ from gen.generation.labels import part_dataset
 from gen.generation.undetected import FAULT_TRIES, made_from, make_records
 from gen.measurement.measure import measure
 from gen.recipe.sensing import FloatConverter
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, further_ratios
 from gen.simulation import simulate as simulation
 from gen.simulation.hits import felt_places
 from gen.simulation.simulate import simulate
@@ -36,25 +36,24 @@ def redrawing(recipe_with):
 
 def test_every_fault_of_a_recipe_that_redraws_can_be_seen(redrawing):
     recipe, made = redrawing
-    faulty = np.array([scenario.specimen.fault != "healthy" for scenario in made.measured.scenarios])
+    faulty = np.array([scenario.fault != "healthy" for scenario in made.measured.scenarios])
     kept = [place for place in np.flatnonzero(faulty) if place not in made.response.failures]
     assert len(kept) > 10
     assert (made.measured.detectable[kept] == 1).all()
-    assert any(scenario.specimen.fault_try for scenario in made.measured.scenarios)
-    assert any(scenario.record.level_try for scenario in made.measured.scenarios)
+    assert any(scenario.origin.fault_try for scenario in made.measured.scenarios)
+    assert any(scenario.origin.level_try for scenario in made.measured.scenarios)
     assert recipe.truth.undetected == "redraw"
 
 
 def test_a_fault_that_is_drawn_again_leaves_everything_else_as_it_was(redrawing):
     recipe, made = redrawing
     for first, final in zip(draw_scenarios(recipe), made.measured.scenarios, strict=True):
-        assert final.rig == first.rig
-        assert final.record.conditions == first.record.conditions
-        assert final.specimen.properties == first.specimen.properties
-        assert final.specimen.fault == first.specimen.fault
-        assert (final.specimen.spalls == first.specimen.spalls) == (
-            final.specimen.fault_try == 0 or not first.specimen.spalls
-        )
+        others = set(type(recipe).model_fields) - {"faults", "level", "origin"}
+        for section in others:
+            assert getattr(final.recipe, section) == getattr(first.recipe, section)
+        assert final.fault == first.fault
+        assert (final.recipe.level == first.recipe.level) == (final.origin.level_try == 0)
+        assert (final.spalls == first.spalls) == (final.origin.fault_try == 0 or not first.spalls)
 
 
 def test_a_fault_that_is_drawn_again_keeps_the_conditions_of_its_entry(recipe_with):
@@ -62,18 +61,19 @@ def test_a_fault_that_is_drawn_again_keeps_the_conditions_of_its_entry(recipe_wi
     slow = OUTER | {"operation": {"shaft_rpm": 600}}
     recipe = recipe_with({"faults": [OUTER, slow], "corpus.rigs": 8})
     first = draw_scenarios(recipe)
-    assert len({scenario.specimen.entry for scenario in first}) == 2
+    assert len({scenario.origin.entry for scenario in first}) == 2
     for fault_try in (1, 2):
         again = draw_scenarios(recipe, fault_tries=dict.fromkeys(range(32), fault_try))
-        assert [one.record.conditions for one in again] == [one.record.conditions for one in first]
-        assert [one.specimen.spalls for one in again] != [one.specimen.spalls for one in first]
+        assert [one.conditions for one in again] == [one.conditions for one in first]
+        assert [one.spalls for one in again] != [one.spalls for one in first]
 
 
 def test_all_records_of_a_specimen_have_the_same_fault(redrawing):
     _, made = redrawing
     found = {}
     for scenario in made.measured.scenarios:
-        assert found.setdefault(scenario.specimen.number, scenario.specimen) == scenario.specimen
+        own = scenario.recipe.specimen, scenario.recipe.faults, scenario.origin.fault_try
+        assert found.setdefault(scenario.origin.specimen, own) == own
 
 
 @pytest.mark.parametrize("cut", [range(3, 9), range(24, 32)])
@@ -88,7 +88,7 @@ def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing, cut
 def test_the_last_record_of_a_specimen_made_alone_has_the_fault_that_all_its_records_show(redrawing):
     recipe, whole = redrawing
     per_specimen = recipe.corpus.records_per_specimen
-    redrawn = {one.specimen.number for one in whole.measured.scenarios if one.specimen.fault_try}
+    redrawn = {one.origin.specimen for one in whole.measured.scenarios if one.origin.fault_try}
     assert redrawn
     for specimen in redrawn:
         number = (specimen + 1) * per_specimen - 1
@@ -100,9 +100,9 @@ def test_the_last_record_of_a_specimen_made_alone_has_the_fault_that_all_its_rec
 def test_the_ratio_of_a_fault_is_the_drawn_one(redrawing):
     _, made = redrawing
     for place, scenario in enumerate(made.measured.scenarios):
-        if scenario.specimen.fault != "healthy" and place not in made.response.failures:
-            found = made.measured.fault_snr[place]
-            assert found == pytest.approx(scenario.record.snr, abs=0.05) or found < scenario.record.snr
+        if scenario.fault != "healthy" and place not in made.response.failures:
+            found, drawn = made.measured.fault_snr[place], scenario.recipe.level.faulty_db
+            assert found == pytest.approx(drawn, abs=0.05) or found < drawn
             power = 10 ** (found / 10)
             assert made.measured.fault_share[place] == pytest.approx(power / (1 + power), rel=1e-6)
 
@@ -115,7 +115,7 @@ def test_the_twin_of_a_record_is_the_record_without_its_fault(recipe_with, wavin
     scenarios = draw_scenarios(recipe, 0, 2 * len(kinds))
     twins = simulate(scenarios).twins
     alone = simulate([scenario.without_fault() for scenario in scenarios])
-    assert {scenario.specimen.fault for scenario in scenarios} == set(kinds)
+    assert {scenario.fault for scenario in scenarios} == set(kinds)
     np.testing.assert_array_equal([twin.acceleration for twin in twins], alone.acceleration)
 
 
@@ -163,7 +163,7 @@ def test_without_truth_nothing_is_simulated_twice_and_nothing_judged(recipe_with
     recipe = recipe_with({"truth.twins": False})
     made = make_records(recipe, range(8))
     assert made.response.twins == []
-    healthy = np.array([scenario.specimen.fault == "healthy" for scenario in made.measured.scenarios])
+    healthy = np.array([scenario.fault == "healthy" for scenario in made.measured.scenarios])
     assert np.isnan(made.measured.fault_snr).all()
     assert (made.measured.detectable[~healthy] == 2).all()
     assert (made.measured.detectable[healthy] == 0).all()
@@ -201,7 +201,7 @@ def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(
 def test_a_fault_that_was_not_judged_is_not_called_healthy(recipe_with):
     recipe = recipe_with({"truth.twins": False, "truth.undetected": "healthy"})
     made = make_records(recipe, range(8))
-    faults = [FAULTS.index(scenario.specimen.fault) for scenario in made.measured.scenarios]
+    faults = [FAULTS.index(scenario.fault) for scenario in made.measured.scenarios]
     assert any(faults)
     assert labelled(made)["fault"].values.tolist() == faults
 
@@ -230,8 +230,8 @@ def ladders(recipe_with, request):
 def groups_of(made):
     found = {}
     for place, scenario in enumerate(made.measured.scenarios):
-        if scenario.record.pair >= 0:
-            found.setdefault(scenario.record.pair, []).append(place)
+        if scenario.origin.pair >= 0:
+            found.setdefault(scenario.origin.pair, []).append(place)
     return list(found.values())
 
 
@@ -251,10 +251,12 @@ def test_records_of_a_group_differ_in_what_the_fault_adds_alone(ladders):
 
 
 def test_the_largest_severity_of_a_group_has_the_drawn_level(ladders):
-    _, made = ladders
+    recipe, made = ladders
     for *_, largest in groups_of(made):
-        drawn = made.measured.scenarios[largest].record.snr
-        assert made.measured.fault_snr[largest] == pytest.approx(drawn, abs=0.05)
+        (drawn,) = draw_scenarios(recipe, largest, largest + 1)
+        level_try = made.measured.scenarios[largest].origin.level_try
+        ratios = [drawn.recipe.level.faulty_db, *further_ratios(recipe, drawn, level_try)]
+        assert made.measured.fault_snr[largest] == pytest.approx(ratios[-1], abs=0.05)
 
 
 def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with):
@@ -263,11 +265,12 @@ def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with)
     made = make_records(recipe, range(18))
     tried = 0
     for group in groups_of(made):
-        levels = {(one.snr, one.level_try) for one in (made.measured.scenarios[place].record for place in group)}
+        scenarios = [made.measured.scenarios[place] for place in group]
+        levels = {(one.recipe.level.gain, one.recipe.level.background_m_s2, one.origin.level_try) for one in scenarios}
         assert len(levels) == 1
         again = made_from([made.measured.scenarios[group[0]]])
         np.testing.assert_array_equal(again.measured.signal[0], made.measured.signal[group[0]])
-        tried += levels.pop()[1] > 0
+        tried += levels.pop()[-1] > 0
     assert tried > 0
 
 
@@ -277,24 +280,25 @@ def test_a_smaller_severity_that_misses_the_load_zone_does_not_change_the_fault_
     changes = {"faults": [{"kind": "outer", "width_mm": 12, "angle_deg": angles}], "truth.undetected": "redraw"}
     recipe = recipe_with(LADDER | {"corpus.rungs": [0.1, 1], "corpus.rigs": 6} | changes)
     made = make_records(recipe, range(recipe.n_records))
-    tries = {one.specimen.number: one.specimen.fault_try for one in made.measured.scenarios}
+    tries = {one.origin.specimen: one.origin.fault_try for one in made.measured.scenarios}
     drawn = draw_scenarios(recipe, fault_tries=tries)
-    missed = {one.record.number for one, felt in zip(drawn, felt_places(drawn), strict=True) if not felt}
+    missed = {one.origin.record for one, felt in zip(drawn, felt_places(drawn), strict=True) if not felt}
     assert any(
-        one.record.number in missed and one.record.number + 1 not in missed for one in drawn if one.record.rung == 0
+        one.origin.record in missed and one.origin.record + 1 not in missed for one in drawn if one.origin.rung == 0
     )
 
 
 def test_the_rest_of_a_group_has_the_level_of_its_largest_severity_that_did_not_diverge(recipe_with):
     recipe = recipe_with(LADDER)
-    scenarios = [one for one in draw_scenarios(recipe, 0, 18) if one.record.pair >= 0][:6]
+    scenarios = [one for one in draw_scenarios(recipe, 0, 18) if one.origin.pair >= 0][:6]
     response = simulate(scenarios)
     response.acceleration[2] = np.nan
     measured = measure(response.acceleration, scenarios, [twin for twin in response.twins if twin.place != 2])
-    assert measured.fault_snr[1] == pytest.approx(measured.scenarios[1].record.snr, abs=0.05)
+    drawn = scenarios[1].recipe.level
+    assert measured.fault_snr[1] == pytest.approx(drawn.faulty_db, abs=0.05)
     scale = recipe.recording.converter.full_scale_m_s2 / 32767
     rms = np.sqrt(np.mean((measured.signal[1] * scale) ** 2))
-    assert rms == pytest.approx(scenarios[1].record.rms, rel=1e-3)
+    assert rms == pytest.approx(drawn.rms_m_s2, rel=1e-3)
     assert measured.signal[0].any()
     assert not measured.signal[2].any()
 
@@ -316,7 +320,7 @@ def test_with_a_physical_level_a_larger_spall_is_a_larger_signal(recipe_with):
     recipe = recipe_with({"level": level, "corpus.rungs": rungs, "corpus.specimens_per_rig": 1, "faults": [width]})
     made = make_records(recipe, range(16))
     dataset = labelled(made)
-    assert dataset["gain"].values.tolist() == [scenario.rig.gain for scenario in made.measured.scenarios]
+    assert dataset["gain"].values.tolist() == [scenario.recipe.level.gain for scenario in made.measured.scenarios]
     assert dataset["background_rms"].values == pytest.approx(0.2)
     signal = made.measured.signal.astype(float) / made.measured.counts_per_unit
     rms = np.sqrt(np.mean(signal**2, axis=(1, 2))) / dataset["gain"].values

@@ -26,10 +26,10 @@ def loud(write_recipe, tmp_path_factory):
     return recipe, generate(recipe, folder / "corpus")
 
 
-def test_a_usable_corpus_counts_nothing(whole):
-    assert whole.signals == SignalCounts()
-    assert part_counts(whole.path) == [SignalCounts()] * 3
-    assert "Records that cannot be used: none." in (whole.path / "README.md").read_text()
+def test_a_usable_corpus_counts_nothing(tiny_corpus):
+    assert read_manifest(tiny_corpus).signals == SignalCounts()
+    assert part_counts(tiny_corpus) == [SignalCounts()] * 4
+    assert "Records that cannot be used: none." in (tiny_corpus / "README.md").read_text()
 
 
 def test_each_part_has_its_own_count(loud):

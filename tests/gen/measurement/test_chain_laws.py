@@ -1,7 +1,5 @@
 """All of a record passes one measuring chain: high pass of the sensor, anti-alias filter, offset, converter."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.signal import welch
@@ -10,23 +8,20 @@ from gen.measurement.measure import measure
 from gen.measurement.rig import high_pass
 from gen.physics.kernel.decimate import decimation, pass_band
 from gen.scenarios import draw_scenarios
-from tests.measuring import mode, path, quiet, tone
+from gen.simulation.timeline import timeline
+from tests.measuring import FLOAT, direct, lines, quiet
 
 FS = 12_000.0
-DIRECT = path(1.0)
-SOUND = quiet(floor=0.0)
-LONG = {"recording.converter": {"kind": "float32"}, "recording.duration_s": 10.0, "operation.shaft_rpm": 1800}
-GEAR = {
-    "teeth": 150, "mate_teeth": 300, "lines": ({"level": 3.0, "phase": 0.0},) * 2, "shaft_modulation": 0.9, "mate_modulation": 0.0,
-    "phase_modulation": 0.0, "high_point": 0.0, "lead_point": 0.0,
-}  # fmt: skip
+LONG = FLOAT | direct() | {"recording.duration_s": 10.0, "operation.shaft_rpm": 1800}
+LOUD = 9.5  # dB
+GEAR = {"teeth": 150, "mate_teeth": 300, "shaft_modulation": 0.9} | lines([LOUD, LOUD])
 NOISY = {
-    "noise": SOUND,
-    "modes": quiet(floor=0.0, modes=(mode(5900.0, 0.01, 3.0),)),
-    "tones": quiet(floor=0.0, tones=(tone(5950.0, 3.0), tone(7000.0, 3.0))),
-    "impulses": quiet(floor=0.0, impulses=tone(40.0, 30.0)),
-    "knocks": quiet(floor=0.0, knocks=tone(3.0, 30.0)),
-    "gear": quiet(floor=0.0, gear_mesh=GEAR),
+    "noise": {},
+    "modes": {"modes": {"count": 1, "frequency_hz": 5900, "damping_percent": 1, "gain_db": LOUD, "sign": 1}},
+    "tones": {"tones": lines([LOUD, LOUD]) | {"frequency_hz": [5950, 7000]}},
+    "impulses": {"impulses": {"rate_hz": 40, "level_db": 30}},
+    "knocks": {"knocks": {"orders": 3, "level_db": 30}},
+    "gear": {"gear_mesh": GEAR},
 }
 
 
@@ -39,18 +34,17 @@ def line(signal):
     return np.sqrt(2) * abs(np.mean(signal * np.exp(-2j * np.pi * 30 / FS * np.arange(len(signal)))))
 
 
-def recorded(recipe_with, background, bearing=None, **of_rig):
-    scenario = draw_scenarios(recipe_with(LONG), 0, 1)[0]
-    rig = replace(scenario.rig, background=background, background_rms=1.0, gain=1.0, path=DIRECT, **of_rig)
-    n = round((0.05 + 10.0) * FS)
-    silence = np.zeros(n, np.float32) if bearing is None else bearing(n)
-    return measure(silence[None, None], [replace(scenario, rig=rig)]).signal[0, 0].astype(float)
+def recorded(recipe_with, changes, bearing=np.zeros):
+    """Record of a machine whose bearing vibrates as a function of the number of samples says."""
+    recipe = recipe_with(LONG | quiet() | changes)
+    moved = np.float32(bearing(timeline(recipe).returned))
+    return measure(moved[None, None], draw_scenarios(recipe, 0, 1)).signal[0, 0].astype(float)
 
 
 @pytest.mark.parametrize("source", NOISY)
 def test_nothing_of_the_machine_gets_past_the_anti_alias_filter(recipe_with, source):
     """Where the filter of the kernel lets less than 0.3 % of the bearing through, no source of the machine is stronger."""
-    frequency, density = welch(recorded(recipe_with, NOISY[source]), FS, nperseg=4096)
+    frequency, density = welch(recorded(recipe_with, quiet(**NOISY[source])), FS, nperseg=4096)
     assert pass_band(np.array([0.985])) < 3e-3
     beyond, below = density[frequency > 0.985 * FS / 2].max(), density[(frequency > 3000) & (frequency < 4500)].mean()
     assert beyond < 0.01 * below
@@ -75,12 +69,14 @@ def test_a_sensor_loses_three_decibels_at_its_corner_and_six_an_octave_below_it(
 
 def test_bearing_and_machine_pass_the_same_sensor(recipe_with):
     """A slow line loses as much whether the bearing makes it or the shaft, at 30 Hz behind a corner of 40 Hz."""
-    of_shaft = line(recorded(recipe_with, quiet(floor=0.0, harmonics=(tone(1.0, 1.0),)), high_pass=40.0))
-    of_bearing = line(recorded(recipe_with, SOUND, wave, high_pass=40.0))
+    slow = {"recording.high_pass_hz": 40}
+    of_shaft = line(recorded(recipe_with, quiet(harmonics=lines([0])) | slow))
+    of_bearing = line(recorded(recipe_with, slow, wave))
     expected = abs(high_pass(40.0, np.array([30.0])))[0]
     assert of_shaft == pytest.approx(expected, abs=0.03)
     assert of_bearing == pytest.approx(expected, abs=0.03)
 
 
 def test_the_offset_is_the_mean_of_a_record_behind_a_sensor_that_measures_no_mean(recipe_with):
-    assert recorded(recipe_with, SOUND, high_pass=5.0, offset=0.7).mean() == pytest.approx(0.7, abs=1e-4)
+    sensor = {"recording.high_pass_hz": 5, "recording.offset_m_s2": 0.7}
+    assert recorded(recipe_with, sensor).mean() == pytest.approx(0.7, abs=1e-4)

@@ -7,9 +7,11 @@ from hypothesis import strategies as st
 
 from gen.corpus.schema import signal_attributes
 from gen.measurement.measure import LARGEST_COUNT, measure
-from gen.scenarios import draw_scenarios, settings_of
+from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
-from tests.measuring import FLOAT, QUIET, hiss, response, silence, with_rig
+from tests.measuring import FLOAT, direct, hiss, physical, quiet, response, silence
+
+PLAIN = direct() | quiet() | physical(0.0)
 
 
 @given(st.floats(1.0, 1000.0))
@@ -34,7 +36,7 @@ def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recip
 def test_the_converter_rounds_in_steps_of_exactly_the_stored_scale_factor(recipe_with, full_scale):
     """The factor is in single precision, so it can differ from that of the full scale by 6e-8."""
     recipe = recipe_with(PLAIN | {"recording.converter": {"kind": "adc", "full_scale_m_s2": full_scale}})
-    found = measure(silence(recipe, 1), plain(recipe))
+    found = measure(silence(recipe, 1), draw_scenarios(recipe, 0, 1))
     scale = signal_attributes(found.counts_per_unit)["scale_factor"]
     assert scale.dtype == np.float32
     assert found.counts_per_unit == 1 / float(scale)
@@ -46,59 +48,50 @@ def test_counts_at_the_default_full_scale_are_those_of_packing_in_double_precisi
 
 
 def test_without_a_converter_nothing_is_rounded_or_clipped(recipe_with):
-    recipe = recipe_with(FLOAT | {"path.modes": None, "path.direct": 1.0})
-    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=QUIET, background_rms=0.0, gain=1.0)
+    recipe = recipe_with(FLOAT | PLAIN)
     moved = response(recipe, 1, lambda time: 1e5 * np.cos(2 * np.pi * 500 * time))
-    measured = measure(moved, scenarios)
+    measured = measure(moved, draw_scenarios(recipe, 0, 1))
     assert measured.counts_per_unit is None
     assert measured.clipped.tolist() == [0]
-    expected = moved[:, :, timeline(settings_of(recipe)).lead :]
+    expected = moved[:, :, timeline(recipe).lead :]
     np.testing.assert_allclose(measured.signal, expected, rtol=1e-6, atol=1e-2)
 
 
-PLAIN = {"path.modes": None, "path.direct": 1.0}
 COUNT = 500 / LARGEST_COUNT  # m s-2
 
 
-def pure_tone(recipe, amplitude):
-    """A response that is a tone of this amplitude, whole cycles of it in the record [m s-2]."""
-    return response(recipe, 1, lambda time: amplitude * np.cos(2 * np.pi * 500 * time))
-
-
-def plain(recipe, **changes):
-    quiet = {"background": QUIET, "background_rms": 0.0, "gain": 1.0}
-    return with_rig(draw_scenarios(recipe, 0, 1), **(quiet | changes))
+def measured_tone(recipe_with, amplitude, background=0.0, changes=PLAIN):
+    """Record of a bearing that is a tone of this amplitude [m s-2], whole cycles of it, over a background of this rms [m s-2]."""
+    recipe = recipe_with(changes | physical(background))
+    moved = response(recipe, 1, lambda time: amplitude * np.cos(2 * np.pi * 500 * time))
+    return measure(moved, draw_scenarios(recipe, 0, 1))
 
 
 def test_a_sample_at_full_scale_is_not_clipped_and_one_count_beyond_it_is(recipe_with):
     recipe = recipe_with(PLAIN)
-    moved, start = silence(recipe, 1), timeline(settings_of(recipe)).lead
+    moved, start = silence(recipe, 1), timeline(recipe).lead
     at_full_scale = COUNT * np.array([LARGEST_COUNT, -LARGEST_COUNT])
     moved[0, 0, start : start + 2] = at_full_scale
-    found = measure(moved, plain(recipe))
+    found = measure(moved, draw_scenarios(recipe, 0, 1))
     assert found.signal[0, 0, :3].tolist() == [LARGEST_COUNT, -LARGEST_COUNT, 0]
     assert found.clipped.tolist() == [0]
     moved[0, 0, start : start + 2] = at_full_scale * (1 + 1 / LARGEST_COUNT)
-    found = measure(moved, plain(recipe))
+    found = measure(moved, draw_scenarios(recipe, 0, 1))
     assert found.signal[0, 0, :3].tolist() == [LARGEST_COUNT, -LARGEST_COUNT, 0]
     assert found.clipped.tolist() == [2]
 
 
 def test_without_a_background_the_bearing_stands_over_the_rounding_of_the_converter(recipe_with):
     """Rounding to counts has an error of 1/sqrt(12) count, which is the only background of such a record."""
-    recipe = recipe_with(PLAIN)
-    found = measure(pure_tone(recipe, 100.0), plain(recipe))
-    exact = measure(pure_tone(recipe, 100.0), plain(recipe_with(FLOAT | PLAIN))).signal[0, 0].astype(float)
+    found = measured_tone(recipe_with, 100.0)
+    exact = measured_tone(recipe_with, 100.0, changes=FLOAT | PLAIN).signal[0, 0].astype(float)
     error = found.signal[0, 0] * COUNT - exact
     assert found.snr[0] == pytest.approx(20 * np.log10(100 / np.sqrt(2) / (COUNT / np.sqrt(12))), abs=1e-3)
     assert found.snr[0] == pytest.approx(20 * np.log10(np.std(exact) / np.std(error)), abs=1.5)
 
 
 def test_a_background_below_the_rounding_of_the_converter_does_not_raise_the_ratio(recipe_with):
-    recipe = recipe_with(PLAIN)
-    without, with_little, with_more = (
-        measure(pure_tone(recipe, 100.0), plain(recipe, background_rms=rms)).snr[0] for rms in (0.0, 1e-6, 1.0)
-    )
+    without, with_little, with_more = (measured_tone(recipe_with, 100.0, rms).snr[0] for rms in (0.0, 1e-6, 1.0))
     assert without == with_little
     assert with_more == pytest.approx(20 * np.log10(100 / np.sqrt(2)), abs=0.3)
 
@@ -110,16 +103,14 @@ def test_a_background_below_the_rounding_of_the_converter_does_not_raise_the_rat
 )
 def test_the_ratio_is_not_a_number_where_there_is_nothing_to_compare(recipe_with, amplitude, background, converter):
     """A bearing below half a count without background is stored as zeros; it was once labelled with 515 dB."""
-    recipe = recipe_with(PLAIN | converter)
-    found = measure(pure_tone(recipe, amplitude), plain(recipe, background_rms=background))
+    found = measured_tone(recipe_with, amplitude, background, PLAIN | converter)
     assert np.isnan(found.snr[0])
     assert found.signal.any() == (background > 0 or (bool(converter) and amplitude > 0))
 
 
 def test_a_quiet_bearing_in_a_background_has_the_ratio_it_has(recipe_with):
     """A signal of a tenth of a count is still in the record, because the background acts as dither."""
-    recipe = recipe_with(PLAIN)
-    found = measure(pure_tone(recipe, 0.1 * COUNT), plain(recipe, background_rms=1.0))
+    found = measured_tone(recipe_with, 0.1 * COUNT, 1.0)
     assert found.snr[0] == pytest.approx(20 * np.log10(0.1 * COUNT / np.sqrt(2)), abs=0.3)
 
 

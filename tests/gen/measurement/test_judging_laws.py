@@ -8,8 +8,8 @@ from scipy.signal import fftconvolve
 
 from gen.measurement import judging
 from gen.measurement.judging import FALSE_ALARM, bands_of, judges_of
+from gen.measurement.levels import Gains
 from gen.measurement.mixing import Parts, Products
-from gen.scenarios import Gains
 
 FS, N, RATE, ORDER = 12_000, 6000, 30.0, 3.58
 ANGLES = 2 * np.pi * RATE * np.arange(N) / FS

@@ -5,9 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.measurement.levels import fault_over_rest, gains_of, rms_of
+from gen.measurement.levels import Gains, fault_over_rest, gains_of, rms_of
 from gen.measurement.mixing import Products
-from gen.scenarios import Gains
 
 
 def products_of(fault, healthy, noise):

@@ -1,7 +1,5 @@
 """Laws of the sensor chain: levels, path and background, on responses that need no simulation."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,23 +7,21 @@ from hypothesis import strategies as st
 from scipy.signal import welch
 
 from gen.measurement.measure import measure
-from gen.scenarios import draw_scenarios, further_ratios, settings_of
+from gen.scenarios import draw_scenarios, further_ratios
 from gen.simulation.simulate import Twin
 from gen.simulation.timeline import timeline
 from tests.measuring import (
     FLOAT,
     FS,
-    QUIET,
     background_of,
+    direct,
     hiss,
-    mode,
-    path,
+    lines,
+    physical,
     quiet,
     response,
     rms,
     silence,
-    tone,
-    with_rig,
 )
 
 
@@ -37,10 +33,16 @@ def levelled(recipe_with):
     return recipe, draw_scenarios(recipe)
 
 
+def at_ratio(scenario, ratio):
+    """The same record at another signal-to-noise ratio [dB]."""
+    level = scenario.recipe.level.model_copy(update={"faulty_db": ratio, "healthy_db": ratio})
+    return scenario.edited(level=level)
+
+
 def test_every_try_of_a_level_is_a_draw_of_its_own_and_moves_nothing_else(levelled):
     recipe, scenarios = levelled
-    faulty = next(place for place, scenario in enumerate(scenarios) if scenario.specimen.fault != "healthy")
-    ratios = [scenarios[faulty].record.snr, *further_ratios(recipe, scenarios[faulty], 7)]
+    faulty = next(place for place, scenario in enumerate(scenarios) if scenario.fault != "healthy")
+    ratios = [scenarios[faulty].recipe.level.si()["faulty"], *further_ratios(recipe, scenarios[faulty], 7)]
     assert len(set(ratios)) == 8
     assert -10 <= min(ratios) < max(ratios) <= 25
     assert further_ratios(recipe, scenarios[faulty], 3) == ratios[1:4]
@@ -50,15 +52,18 @@ def test_every_try_of_a_level_is_a_draw_of_its_own_and_moves_nothing_else(levell
 def test_the_first_ratio_at_which_the_fault_is_seen_is_taken_and_nothing_else_moves(levelled, rise, tries):
     """A fault that raises the rms is seen above some ratio; one that adds nothing is seen at none, and the drawn ratio stays."""
     recipe, scenarios = levelled
-    place = next(place for place, scenario in enumerate(scenarios) if scenario.specimen.fault != "healthy")
-    scenario = replace(scenarios[place], record=replace(scenarios[place].record, snr=-30.0))
+    place = next(place for place, scenario in enumerate(scenarios) if scenario.fault != "healthy")
+    scenario = at_ratio(scenarios[place], -30.0)
     bearing = np.float32(hiss(recipe, 1)[0])
     twin = Twin(0, np.float32(1e-3) * bearing, ())
     whole = twin.acceleration + np.float32(rise) * bearing[:, ::-1]
     measured = measure(whole[None], [scenario], [twin], ratios={0: [-20.0, 10.0, 20.0]})
     ratio = (-30.0, -20.0, 10.0)[tries]
     assert measured.detectable.tolist() == [int(tries > 0)]
-    assert measured.scenarios == [replace(scenario, record=replace(scenario.record, snr=ratio, level_try=tries))]
+    (taken,) = measured.scenarios
+    assert taken.recipe.level.faulty_db == ratio
+    assert taken.origin == scenario.origin.model_copy(update={"level_try": tries})
+    assert taken.edited(level=scenario.recipe.level, origin=scenario.origin) == scenario
 
 
 def test_the_gain_of_the_sensor_scales_bearing_and_background_alike(recipe_with):
@@ -87,10 +92,12 @@ def test_wear_is_seen_if_it_raises_the_rms_by_a_quarter(recipe_with, rise, seen)
 def test_the_bearing_stands_over_the_background_by_the_drawn_ratio(levelled):
     recipe, scenarios = levelled
     measured = measure(hiss(recipe, len(scenarios)), scenarios)
-    loud = [replace(scenario, record=replace(scenario.record, snr=200.0)) for scenario in scenarios]
+    loud = [at_ratio(scenario, 200.0) for scenario in scenarios]
     bearing = measure(hiss(recipe, len(scenarios)), loud).signal.astype(float)
     background = measure(silence(recipe, len(scenarios)), scenarios).signal.astype(float)
-    drawn = [scenario.record.snr for scenario in scenarios]
+    drawn = [
+        scenario.recipe.level.si()["healthy" if scenario.fault == "healthy" else "faulty"] for scenario in scenarios
+    ]
     for row, ratio in enumerate(drawn):
         alone = np.stack([bearing[row].ravel(), background[row].ravel()], axis=1)
         gains, *_ = np.linalg.lstsq(alone, measured.signal[row].ravel().astype(float), rcond=None)
@@ -110,9 +117,8 @@ def test_the_background_does_not_know_the_class(recipe_with):
 
 
 def test_records_of_one_rig_share_the_spectrum_of_their_noise_but_not_its_samples(recipe_with):
-    recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0})
-    scenarios = with_rig(draw_scenarios(recipe, 0, 2), background=quiet(slope=1.0, floor=1e-3))
-    one, other = measure(silence(recipe, 2), scenarios).signal[:, 0]
+    recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0} | quiet(slope=1, floor_db=-60))
+    one, other = background_of(recipe, 2)[0][:, 0]
     assert abs(np.corrcoef(one, other)[0, 1]) < 0.1
     densities = welch(np.stack([one, other]), FS, nperseg=512)[1][:, 5:-5]
     assert np.corrcoef(np.log(densities))[0, 1] > 0.98
@@ -128,40 +134,42 @@ def test_a_record_is_measured_alike_alone_and_among_others(recipe_with):
         np.testing.assert_array_equal(alone.signal[0], together.signal[place])
 
 
-def tone_through(recipe, scenarios, frequency):
+def tone_through(recipe, frequency):
     """Amplitude and phase of a tone of amplitude 1 behind the path, as a complex number."""
-    n = timeline(settings_of(recipe)).lead + recipe.n_samples
-    tone = round(frequency * n / FS) * FS / n  # whole cycles: the filter runs around the ends
+    axis = timeline(recipe)
+    tone = round(frequency * axis.returned / FS) * FS / axis.returned  # whole cycles: the filter runs around the ends
     moved = response(recipe, 1, lambda time: np.cos(2 * np.pi * tone * time))
-    seen = measure(moved, scenarios).signal[0, 0].astype(float)
-    time = (timeline(settings_of(recipe)).lead + np.arange(recipe.n_samples)) / FS
+    seen = measure(moved, draw_scenarios(recipe, 0, 1)).signal[0, 0].astype(float)
+    time = np.arange(axis.returned)[axis.kept] / FS
     model = np.stack([np.cos(2 * np.pi * tone * time), -np.sin(2 * np.pi * tone * time)], axis=1)
     real, imaginary = np.linalg.lstsq(model, seen)[0]
     return tone, complex(real, imaginary)
 
 
-@given(
-    st.floats(100, 5500),
-    st.floats(0, 2),
-    st.lists(st.builds(mode, st.floats(500, 5500), st.floats(0.006, 0.08), st.floats(-3, 3)), max_size=3),
-)
+resonances = st.tuples(st.floats(500, 5500), st.floats(0.6, 8), st.floats(-40, 9.5), st.sampled_from([-1, 1]))
+
+
+@given(st.floats(100, 5500), st.floats(0.01, 2), st.lists(resonances, max_size=3))
 def test_a_tone_comes_through_the_path_with_the_transmissibility_of_its_resonances(
-    recipe_with, frequency, direct, modes
+    recipe_with, frequency, gain, resonances
 ):
-    recipe = recipe_with(FLOAT)
-    scenarios = with_rig(draw_scenarios(recipe, 0, 1), path=path(direct, modes), gain=1.0, background_rms=0.0)
-    tone, found = tone_through(recipe, scenarios, frequency)
-    expected = complex(direct)
-    for one in modes:
-        stiff = one["frequency"] ** 2 + 2j * one["damping"] * one["frequency"] * tone
-        expected += one["gain"] * stiff / (stiff - tone**2)
+    frequencies, dampings, gains, signs = zip(*resonances, strict=True) if resonances else [()] * 4
+    modes = {
+        "count": len(resonances), "frequency_hz": [*frequencies], "damping_percent": [*dampings], "gain_db": [*gains], "sign": [*signs],
+    }  # fmt: skip
+    recipe = recipe_with(FLOAT | physical(0.0) | direct(gain, modes=modes))
+    tone, found = tone_through(recipe, frequency)
+    expected = complex(gain)
+    for natural, damping, level, sign in resonances:
+        stiff = natural**2 + 2j * damping / 100 * natural * tone
+        expected += sign * 10 ** (level / 20) * stiff / (stiff - tone**2)
     assert found == pytest.approx(expected, abs=1e-4 * (1 + abs(expected)))
 
 
 @pytest.mark.parametrize("slope", [-0.3, 0.0, 1.0, 2.0])
 def test_the_noise_falls_with_the_drawn_slope_and_has_the_drawn_rms(recipe_with, slope):
-    recipe = recipe_with(FLOAT | {"recording.duration_s": 20.0})
-    noise = background_of(recipe, quiet(slope=slope), background_rms=0.3)[0][0, 0]
+    recipe = recipe_with(FLOAT | {"recording.duration_s": 20.0} | quiet(slope=slope) | physical(0.3))
+    noise = background_of(recipe)[0][0, 0]
     frequency, density = welch(noise, FS, nperseg=4096)
     band = (frequency > 100) & (frequency < 4700)  # what the anti-alias filter passes
     fitted = np.polyfit(np.log(frequency[band]), np.log(density[band]), 1)[0]
@@ -178,14 +186,12 @@ def line(signal, frequency):
 
 
 def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
-    recipe = recipe_with(
-        FLOAT | {"recording.duration_s": 5.0, "operation.shaft_rpm": 1800, "path.modes": None, "path.direct": 1.0}
-    )
-    counts, powers = {}, {}
-    for kind, sound in (("knocks", tone(2.0, 1e3)), ("impulses", tone(40.0, 1e4))):
-        signal = background_of(recipe, quiet(**{kind: sound}))[0][0, 0]
+    counts, powers, steady = {}, {}, {"recording.duration_s": 5.0, "operation.shaft_rpm": 1800}
+    for kind, often in (("knocks", {"orders": 2}), ("impulses", {"rate_hz": 40})):
+        struck = quiet(**{kind: {**often, "level_db": 60}})
+        ((signal,),), _ = background_of(recipe_with(FLOAT | steady | direct() | struck))
         counts[kind] = np.count_nonzero(np.abs(signal) > 300)
-        powers[kind] = np.sum((signal / sound["level"]) ** 2)
+        powers[kind] = np.sum((signal / 1000) ** 2)
     assert counts["knocks"] == pytest.approx(2 * 30 * 5, abs=1)
     # a knock and an impulse of one size have one energy; the square of the size of a knock is 1 + 0.2^2 on average
     energy = powers["knocks"] / (1.04 * counts["knocks"])
@@ -194,27 +200,21 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
 
 def test_a_gear_and_impulses_are_both_in_a_record_whose_transform_is_longer(recipe_with):
     """A response of 6,600 samples, whose Fourier transform has 6,750."""
-    recipe = recipe_with(FLOAT | {"recording.duration_s": 0.5, "operation.shaft_rpm": 1800})
-    lines = ({"level": 1.0, "phase": 0.0},)
-    gear = {"teeth": 20, "mate_teeth": 40, "lines": lines}
-    gear |= dict.fromkeys(("shaft_modulation", "mate_modulation", "phase_modulation", "high_point", "lead_point"), 0.0)
-    impulses = tone(40.0, 1e3)
+    changes = FLOAT | {"recording.duration_s": 0.5, "operation.shaft_rpm": 1800}
+    gear, impulses = {"teeth": 20, "mate_teeth": 40} | lines([0]), {"rate_hz": 40, "level_db": 60}
     sources = {"gear_mesh": gear}, {"impulses": impulses}, {"gear_mesh": gear, "impulses": impulses}
-    powers = [rms(background_of(recipe, quiet(**some))[0]) ** 2 for some in sources]
+    powers = [rms(background_of(recipe_with(changes | quiet(**some)))[0]) ** 2 for some in sources]
     assert powers[2] == pytest.approx(powers[0] + powers[1], rel=0.05)
 
 
+MODULATION = {"modulation": {"probability": 1, "first": 0.6, "second": 0.2}}
+
+
 def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
-    recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800})
-    plain = with_rig(
-        draw_scenarios(recipe, 0, 1),
-        path=path(1.0),
-        background=QUIET,
-        background_rms=0.0,
-        gain=1.0,
-    )
+    changes = {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800}
+    recipe = recipe_with(FLOAT | changes | direct(**MODULATION) | physical(0.0))
     moved = response(recipe, 1, lambda time: np.sqrt(2) * np.cos(2 * np.pi * 2000 * time))
-    signal = measure(moved, with_rig(plain, path=path(1.0, (), 0.6, 0.2))).signal[0, 0].astype(float)
+    signal = measure(moved, draw_scenarios(recipe, 0, 1)).signal[0, 0].astype(float)
     assert line(signal, 2000) == pytest.approx(1.0, abs=1e-3)
     for order, depth in ((1, 0.6), (2, 0.2)):
         assert line(signal, 2000 + 30 * order) == pytest.approx(depth / 2, abs=1e-3)
@@ -222,12 +222,10 @@ def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
 
 
 def test_channels_on_the_common_path_share_its_modulation_and_a_path_of_its_own_has_another(recipe_with):
-    three = [{"name": name, "body": "sensor"} for name in ("first", "second", "third")]
-    recipe = recipe_with(FLOAT | {"recording.channels": three})
-    modulated = path(1.0, (), 0.6, 0.2)
-    changes = {"path": modulated, "own_paths": (None, None, modulated), "background": QUIET, "background_rms": 0.0}
-    scenarios = with_rig(draw_scenarios(recipe, 0, 1), **changes)
-    first, second, third = measure(response(recipe, 1, np.ones_like), scenarios).signal[0]
+    of_its_own = {"path": {"direct": 1.0, **MODULATION}}
+    three = [{"name": "first"}, {"name": "second"}, {"name": "third", **of_its_own}]
+    recipe = recipe_with(FLOAT | {"recording.channels": three} | direct(**MODULATION) | physical(0.0))
+    first, second, third = measure(response(recipe, 1, np.ones_like), draw_scenarios(recipe, 0, 1)).signal[0]
     assert first.std() > 0.1
     np.testing.assert_array_equal(first, second)
     assert np.abs(first - third).max() > 0.1

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gen.measurement.measure import measure
 from gen.recipe import Recipe
-from gen.scenarios import draw_scenarios, settings_of
+from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
 from tests.gen.conftest import small_with
 
@@ -36,9 +36,9 @@ def stored(measured):
 def check(acceleration, scenarios):
     """Every record that is not clipped has the drawn rms beside the offset of its sensor, up to the rounding of the converter."""
     measured = measure(acceleration, scenarios)
-    offsets = np.array([scenario.rig.offset for scenario in scenarios])[:, None, None]
+    offsets = np.array([scenario.recipe.recording.si()["offset"] for scenario in scenarios])[:, None, None]
     found = np.sqrt(np.mean((stored(measured) - offsets) ** 2, axis=(1, 2)))
-    drawn = np.array([scenario.record.rms for scenario in scenarios])
+    drawn = np.array([scenario.recipe.level.si()["rms"] for scenario in scenarios])
     rounding = 0.0 if measured.counts_per_unit is None else 1 / (measured.counts_per_unit * np.sqrt(12))
     kept = (measured.clipped == 0) & np.isfinite(acceleration).all(axis=(1, 2))
     assert kept.any()
@@ -49,8 +49,8 @@ def lines_of_the_shaft(recipe, scenarios, orders, seed):
     """Bearings that vibrate at multiples of the shaft rate alone, shape (record, channel, time) [m s-2]."""
     rng = np.random.default_rng(seed)
     turns = np.outer(
-        [scenario.record.conditions.shaft_rate for scenario in scenarios],
-        timeline(settings_of(recipe)).response_times(),
+        [scenario.conditions["shaft_rate"] for scenario in scenarios],
+        timeline(recipe).response_times(),
     )
     phases = rng.uniform(0, 2 * np.pi, (len(orders), len(scenarios), len(recipe.recording.channels), 1))
     waves = (np.cos(2 * np.pi * n * turns[:, None] + phase) for n, phase in zip(orders, phases, strict=True))
@@ -72,5 +72,5 @@ def test_a_record_of_noise_has_the_drawn_rms_too():
     """Independent noises correlate by chance, by the more the shorter the record."""
     recipe = Recipe.model_validate(small_with({"level": LEVEL, "recording.converter": {"kind": "float32"}}))
     scenarios = draw_scenarios(recipe)
-    shape = len(scenarios), 1, timeline(settings_of(recipe)).returned
+    shape = len(scenarios), 1, timeline(recipe).returned
     check(np.random.default_rng(0).standard_normal(shape).astype(np.float32), scenarios)

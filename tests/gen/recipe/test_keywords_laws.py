@@ -122,7 +122,7 @@ def test_each_fault_has_n_records_or_the_error_is_about_n(n, n_faults, rigs, per
         assert sentences_of(lambda: gen.make_recipe(faults, n, **keys)).startswith("n: ")
         return
     recipe = gen.make_recipe(faults, n, **keys)
-    entries = [scenario.specimen.entry for scenario in gen.draw_scenarios(recipe)]
+    entries = [scenario.origin.entry for scenario in gen.draw_scenarios(recipe)]
     assert [entries.count(place) for place in range(n_faults)] == [n] * n_faults
     assert recipe.corpus.rigs == rigs
 
@@ -138,8 +138,8 @@ def test_faults_in_turn_have_no_weights():
 def test_a_fault_in_turn_that_is_drawn_again_keeps_its_entry():
     recipe = gen.make_recipe([gen.outer(width_mm=gen.uniform(0.1 + n, 0.5 + n)) for n in range(3)], n=4)
     first, again = gen.draw_scenarios(recipe), gen.draw_scenarios(recipe, fault_tries=dict.fromkeys(range(12), 1))
-    assert [one.specimen.entry for one in first] == [one.specimen.entry for one in again] == [0, 1, 2] * 4
-    assert all(a.specimen.spalls[0].width != b.specimen.spalls[0].width for a, b in zip(first, again, strict=True))
+    assert [one.origin.entry for one in first] == [one.origin.entry for one in again] == [0, 1, 2] * 4
+    assert all(a.spalls[0].width != b.spalls[0].width for a, b in zip(first, again, strict=True))
 
 
 def test_numbers_and_arrays_of_numpy_are_taken_as_numbers():

@@ -115,4 +115,4 @@ def test_no_shipped_recipe_asks_for_a_load_near_the_limit(name):
         return
     drawn = draw_scenarios(recipe, 0, min(recipe.n_records, 500))
     highest = 0.35 if recipe.life is None else 0.6  # bearings tire under higher loads alone
-    assert max(one.record.conditions.load / static_rating(one.rig.bearing) for one in drawn) < highest
+    assert max(one.conditions["load"] / static_rating(one.drawing) for one in drawn) < highest

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gen.measurement.measure import measure
-from gen.scenarios import draw_scenarios, settings_of
+from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
 
@@ -43,7 +43,7 @@ def signal_of(recipe_with):
         recipe = recipe_with(STEADY | changes)
         response = simulate(draw_scenarios(recipe, 0, 1))
         assert response.failures == {}
-        return response.acceleration[0, 0, timeline(settings_of(recipe)).lead :]
+        return response.acceleration[0, 0, timeline(recipe).lead :]
 
     return made
 
@@ -105,7 +105,7 @@ def test_a_channel_with_a_path_of_its_own_hears_by_that_path(recipe_with):
         }
     )
     scenarios = draw_scenarios(recipe, 0, 2)
-    moved = np.random.default_rng(1).normal(size=(2, 1, timeline(settings_of(recipe)).lead + recipe.n_samples))
+    moved = np.random.default_rng(1).normal(size=(2, 1, timeline(recipe).lead + recipe.n_samples))
     measured = measure(np.repeat(moved, 4, axis=1), scenarios).signal
     np.testing.assert_allclose(measured[:, 1], 0.5 * measured[:, 0], atol=1e-5)
     np.testing.assert_allclose(measured[:, 3], 4 * measured[:, 0], atol=1e-5)

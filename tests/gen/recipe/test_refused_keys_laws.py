@@ -6,13 +6,24 @@ import pytest
 
 from gen.recipe import Recipe
 from gen.recipe.keys import recipe_keys
+from gen.scenarios import draw_scenarios
 from gen.support.errors import RecipeError
 from tests.cases import for_each
+from tests.gen.conftest import small_with
 
 KEYS = {key.key: key for key in recipe_keys() if not key.key.startswith("distribution.")}
 LEAVES = [key for key in KEYS.values() if not key.key.endswith("kind")]
 RANGE = re.compile(r"(?P<low_end>[\[(])(?P<low>[^,]+), (?P<high>[^\])]+)(?P<high_end>[\])])")
 QUANTITY = "is neither a number nor a distribution"
+EACH = (
+    *(f"modes.{key}" for key in ("frequency_hz", "damping_percent", "gain_db", "sign")),
+    *(f"{of}.{key}" for of in ("faults", "parts") for key in ("width_mm", "depth_um", "angle_deg", "roughness_um")),
+    *(f"tones.{key}" for key in ("frequency_hz", "level_db", "modulation")),
+    *(f"loose_mount.{key}" for key in ("frequency_hz", "damping_percent", "holding_m_s2")),
+    *(f"{of}.level_db" for of in ("harmonics", "gear_mesh", "entries")),
+    "gain_steps.step_db",
+)
+"""Keys that can be lists, with a number for each item that their section counts."""
 named = for_each(LEAVES, lambda key: "-".join([key.key, *key.kinds]))
 
 
@@ -70,7 +81,8 @@ def wrong_values(key):
         return [("wide", "it must be a "), ([1], "it must be a "), (float("nan"), "it must be "), *halves, *outside]
     if RANGE.fullmatch(allowed):
         outside = [(value, f"is not in {allowed}") for value in beside(allowed)]
-        return [("wide", QUANTITY), ([1, 2], QUANTITY), (True, QUANTITY), (float("nan"), "finite"), *outside]
+        listed = [] if key.key.endswith(EACH) else [([1, 2], "is a list; give one number or distribution")]
+        return [("wide", QUANTITY), *listed, (True, QUANTITY), (float("nan"), "finite"), *outside]
     return [({"odd": 1}, ""), ([], "")]
 
 
@@ -108,3 +120,11 @@ def test_a_missing_key_is_told(key):
     with pytest.raises(RecipeError) as caught:
         Recipe(section)
     assert f"{place}: is missing; give it." in str(caught.value).split("\n")
+
+
+def test_a_list_has_as_many_numbers_as_its_section_counts():
+    modes = {"count": 3, "frequency_hz": [500, 900], "damping_percent": 3}
+    with pytest.raises(RecipeError, match=r"frequency_hz: is a list of 2 numbers, so count must say 2 too"):
+        Recipe(small_with({"path.modes": modes}))
+    for scenario in draw_scenarios(Recipe(small_with({"path.modes": modes | {"count": 2}}))):
+        assert scenario.recipe.path.modes.frequency_hz == (500, 900)

@@ -67,8 +67,10 @@ def test_over_the_seeds_the_classes_of_a_rig_have_the_shares_of_their_weights(re
 def test_the_shipped_training_recipe_has_equal_classes_whatever_its_specimens_per_rig(specimens):
     recipe = read_recipe("domain_randomised")
     corpus = recipe.corpus.model_copy(update={"specimens_per_rig": specimens, "rigs": 1000})
-    counts = counted(recipe.model_copy(update={"corpus": corpus}), 1000).sum(axis=0)
-    assert np.abs(counts - 250 * specimens).max() < 8
+    for seed in range(3):
+        excess = counted(recipe.model_copy(update={"corpus": corpus, "seed": seed}), 1000).sum(axis=0) - 250 * specimens
+        assert np.abs(excess[0]) < 5
+        assert np.abs(excess).max() < 12
 
 
 def test_healthy_and_faulty_classes_meet_on_a_rig_in_every_combination(recipe_with):
@@ -88,7 +90,7 @@ def test_healthy_and_faulty_classes_meet_on_a_rig_in_every_combination(recipe_wi
 @pytest.mark.parametrize("by", ["specimen", "rig"])
 def test_rigs_of_a_single_specimen_have_every_class_on_both_sides_of_the_split(recipe_with, by):
     corpus = {"rigs": 300, "specimens_per_rig": 1, "records_per_specimen": 1, "split": {"by": by, "test": 0.25}}
-    sides = Counter((one.specimen.fault, one.specimen.split) for one in draw_scenarios(recipe_with({"corpus": corpus})))
+    sides = Counter((one.fault, one.origin.split) for one in draw_scenarios(recipe_with({"corpus": corpus})))
     for kind in CLASSES:
         assert sides[kind, "test"] == pytest.approx(300 / 16, abs=12)
         assert sides[kind, "train"] == pytest.approx(3 * 300 / 16, abs=12)
@@ -116,6 +118,6 @@ def test_the_first_record_of_each_class_is_the_first_one_drawn_with_it(recipe_wi
     records = None if groups is None else groups * len(rungs or [1])
     changes = {"corpus.specimens_per_rig": specimens, "records": records, "faults": faults((4, 1, 1, 1))}
     recipe = recipe_with(changes | {"corpus.rungs": rungs})
-    drawn = [(one.specimen.fault, one.record.number) for one in draw_scenarios(recipe)]
+    drawn = [(one.fault, one.origin.record) for one in draw_scenarios(recipe)]
     assert first_records(recipe) == dict(reversed(drawn))
     assert set(first_specimens(recipe)) >= set(first_records(recipe)) - {"healthy"}

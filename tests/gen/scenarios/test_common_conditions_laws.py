@@ -1,6 +1,5 @@
 """Laws of conditions that a rig or a specimen has in common, and of conditions that one fault changes."""
 
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -10,19 +9,15 @@ from gen import uniform
 from gen.recipe import Recipe, recipe_hash
 from gen.scenarios import draw_scenarios
 from gen.support.units import split_unit
+from tests.drawn_values import anywhere, with_key_of
 from tests.gen.conftest import small_with
-
-
-def drawn_values(scenario):
-    """A scenario without the settings of its recipe."""
-    return scenario.rig, scenario.specimen, scenario.record
 
 
 def of_each(scenarios, level, name):
     """Values of an operating quantity of each rig or specimen."""
     found = {}
     for scenario in scenarios:
-        found.setdefault(getattr(scenario, level).number, []).append(getattr(scenario.record.conditions, name))
+        found.setdefault(getattr(scenario.origin, level), []).append(scenario.conditions[name])
     return [np.array(values) for values in found.values()]
 
 
@@ -38,9 +33,7 @@ def test_a_rig_or_specimen_has_one_value(recipe_with, level, key, sampling):
     assert all(len(set(of_one)) == 1 for of_one in values)
     assert len({of_one[0] for of_one in values}) == len(values)
     for one, other in zip(draw_scenarios(common), draw_scenarios(usual), strict=True):
-        value = getattr(other.record.conditions, name)
-        assert replace(one.record.conditions, **{name: value}) == other.record.conditions
-        assert (one.rig, one.specimen) == (other.rig, other.specimen)
+        assert with_key_of(one, other, "operation", key) == anywhere(other)
 
 
 @pytest.mark.parametrize("level", ["rig", "specimen"])
@@ -73,8 +66,8 @@ def test_a_common_value_is_a_share_of_the_quantity_of_each_record(recipe_with):
     scenarios = draw_scenarios(recipe_with({"specimen.contact_angle_deg": 10, "operation.axial_load_n": axial}))
     shares = {}
     for scenario in scenarios:
-        conditions = scenario.record.conditions
-        shares.setdefault(scenario.rig.number, []).append(conditions.axial_load / conditions.load)
+        conditions = scenario.conditions
+        shares.setdefault(scenario.origin.rig, []).append(conditions["axial_load"] / conditions["load"])
     for found in shares.values():
         assert found == pytest.approx([found[0]] * len(found))
 
@@ -90,10 +83,10 @@ def test_grids_of_a_rig_enumerate_all_combinations_with_those_of_its_machine(rec
     scenarios = draw_scenarios(recipe_with(changes))
     rigs = {}
     for one in scenarios:
-        conditions = one.record.conditions
-        rigs[one.rig.number] = (one.rig.machine["shaft_mass"], round(60 * conditions.shaft_rate), conditions.load)
+        conditions = one.conditions
+        rigs[one.origin.rig] = (one.machine["shaft_mass"], round(60 * conditions["shaft_rate"]), conditions["load"])
     assert sorted(rigs.values()) == sorted(product([2, 3], [600, 900, 1200], [100, 200]))
-    slips = [100 * one.record.conditions.slip for one in scenarios]
+    slips = [100 * one.conditions["slip"] for one in scenarios]
     assert slips == pytest.approx([1, 2] * (len(scenarios) // 2))
 
 
@@ -119,11 +112,11 @@ GRIDS = {
 
 @pytest.mark.parametrize(
     "value",
-    [7.0, uniform(5, 9), "grid(5, 9)", uniform(5, 9, per="rig", scatter_percent=1)],
-    ids=["number", "uniform", "grid", "per rig"],
+    [7.0, uniform(5, 9), uniform(5, 9, per="rig", scatter_percent=1)],
+    ids=["number", "uniform", "per rig"],
 )
 @pytest.mark.parametrize(
-    ("key", "sampling"), [("load_n", "random"), ("slip_percent", "sobol"), ("mean_slip_percent", "halton")]
+    ("key", "sampling"), [("load_n", "random"), ("spin_wander_percent", "sobol"), ("mean_slip_percent", "halton")]
 )
 def test_a_change_is_of_its_fault_alone_and_moves_no_other_quantity(recipe_with, key, value, sampling):
     usual, name = GRIDS | {"corpus.sampling": sampling}, split_unit(key)[0]
@@ -131,18 +124,19 @@ def test_a_change_is_of_its_fault_alone_and_moves_no_other_quantity(recipe_with,
     without = draw_scenarios(recipe_with(usual | {"faults": changed()}))
     drawn = draw_scenarios(recipe_with(usual | {"faults": changed(operation={key: value})}))
     for one, other in zip(drawn, without, strict=True):
-        if one.specimen.fault != "outer":
-            assert drawn_values(one) == drawn_values(other)
+        if one.fault != "outer":
+            assert anywhere(one) == anywhere(other)
             continue
-        assert (one.rig, one.specimen) == (other.rig, other.specimen)
-        value = getattr(other.record.conditions, name)
-        assert replace(one.record.conditions, **{name: value}) == other.record.conditions
-        assert 4.9 * factor < getattr(one.record.conditions, name) < 9.1 * factor
-        assert (one.record.snr, one.record.rms) == (other.record.snr, other.record.rms)
-        assert (one.record.speed_profile, one.record.load_profile) == (
-            other.record.speed_profile,
-            other.record.load_profile,
-        )
+        assert with_key_of(one, other, "operation", key) == anywhere(other)
+        assert 4.9 * factor < one.conditions[name] < 9.1 * factor
+
+
+def test_a_grid_of_a_fault_moves_no_grid_of_the_conditions(recipe_with):
+    usual = GRIDS | {"operation.load_n": "grid(100, 200, per=specimen)", "corpus.rigs": 6}
+    without = draw_scenarios(recipe_with(usual | {"faults": changed()}))
+    drawn = draw_scenarios(recipe_with(usual | {"faults": changed(width_mm="grid(0.4, 0.5, 0.6)")}))
+    for one, other in zip(drawn, without, strict=True):
+        assert anywhere(one.edited(faults=other.recipe.faults)) == anywhere(other)
 
 
 def test_a_changed_profile_moves_no_other_draw(recipe_with):
@@ -151,43 +145,43 @@ def test_a_changed_profile_moves_no_other_draw(recipe_with):
     drawn = draw_scenarios(recipe_with(GRIDS | {"faults": changed(operation={"speed_profile": profile})}))
     none = draw_scenarios(recipe_with(GRIDS | {"faults": changed(operation={"speed_profile": None})}))
     for one, steady, other in zip(drawn, none, without, strict=True):
-        if one.specimen.fault != "outer":
-            assert drawn_values(one) == drawn_values(steady) == drawn_values(other)
+        if one.fault != "outer":
+            assert anywhere(one) == anywhere(steady) == anywhere(other)
             continue
-        assert one.record.speed_profile.smooth
-        assert 0.2 < one.record.speed_profile.shares[0] < 0.3
-        assert steady.record.speed_profile is None
-        assert one.record.load_profile == steady.record.load_profile == other.record.load_profile
-        assert one.record.conditions == other.record.conditions
+        assert one.speed_profile.smooth
+        assert 0.2 < one.speed_profile.shares[0] < 0.3
+        assert steady.speed_profile is None
+        for changed_one in (one, steady):
+            assert with_key_of(changed_one, other, "operation", "speed_profile") == anywhere(other)
 
 
 def test_a_changed_level_is_of_its_fault_alone(recipe_with):
-    level = {"faulty_db": uniform(20, 30), "rms_m_s2": "grid(7, 8)"}
+    level = {"faulty_db": uniform(20, 30), "rms_m_s2": uniform(7, 8)}
     without = draw_scenarios(recipe_with(GRIDS | {"faults": changed()}))
     drawn = draw_scenarios(recipe_with(GRIDS | {"faults": changed(level=level)}))
     for one, other in zip(drawn, without, strict=True):
-        if one.specimen.fault != "outer":
-            assert drawn_values(one) == drawn_values(other)
+        if one.fault != "outer":
+            assert anywhere(one) == anywhere(other)
             continue
-        assert 20 < one.record.snr < 30
-        assert (one.record.snr - 20) / 10 == pytest.approx((other.record.snr + 5) / 10)  # at the same quantile
-        assert one.record.rms in (7, 8)
-        assert one.record.conditions == other.record.conditions
-        assert one.record.speed_profile == other.record.speed_profile
+        level, usual = one.recipe.level, other.recipe.level
+        assert 20 < level.faulty_db < 30
+        assert (level.faulty_db - 20) / 10 == pytest.approx((usual.faulty_db + 5) / 10)  # at the same quantile
+        assert 7 < level.rms_m_s2 < 8
+        assert anywhere(one.edited(level=usual)) == anywhere(other)
 
 
 def test_the_balance_grade_holds_at_the_highest_speed_of_all_faults(recipe_with):
     fast = draw_scenarios(recipe_with({"faults": changed(operation={"shaft_rpm": 4000})}), 0, 1)[0]
     slow = draw_scenarios(recipe_with({"faults": changed()}), 0, 1)[0]
-    assert fast.rig.machine["unbalance"] == pytest.approx(slow.rig.machine["unbalance"] / 2)
+    assert fast.recipe.machine.unbalance == pytest.approx(slow.recipe.machine.unbalance / 2)
 
 
 def test_a_specimen_knows_its_entry(recipe_with):
     recipe = recipe_with({"faults": [*changed(), {"kind": "outer", "width_mm": 2, "operation": {"load_n": 77}}]})
     for scenario in draw_scenarios(recipe):
-        entry = recipe.faults[scenario.specimen.entry]
-        assert scenario.specimen.fault == entry.kind
-        assert (scenario.record.conditions.load == 77) == (scenario.specimen.entry == 4)
+        entry = recipe.faults[scenario.origin.entry]
+        assert scenario.fault == entry.kind
+        assert (scenario.conditions["load"] == 77) == (scenario.origin.entry == 4)
 
 
 def test_equal_changes_and_no_changes_have_different_hashes():

@@ -1,7 +1,6 @@
 """Laws of pairs and ladders: the records of a group differ in the severity of their fault alone, and stay on one side of every split."""
 
 from collections import Counter
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +18,7 @@ from tests.responses import input_of
 RUNGS = (0, 0.25, 0.5, 1)
 MANY_HEALTHY = [{"kind": "healthy", "weight": 10}, *EVERY_FAULT[1:]]
 LADDERS = {"corpus.rungs": RUNGS, "corpus.rigs": 8, "corpus.records_per_specimen": 3, "faults": MANY_HEALTHY}
+SIZES = ("width_mm", "depth_um", "trace_um", "waviness_um", "pitch_error_deg", "knock_n")
 SAMPLINGS = ("random", "sobol", "halton")
 
 
@@ -26,9 +26,14 @@ def groups_of(scenarios):
     """Scenarios of each pair, by its number."""
     found = {}
     for scenario in scenarios:
-        if scenario.record.pair >= 0:
-            found.setdefault(scenario.record.pair, []).append(scenario)
+        if scenario.origin.pair >= 0:
+            found.setdefault(scenario.origin.pair, []).append(scenario)
     return found
+
+
+def at_place_of(scenario, other):
+    """The other scenario with the place in the corpus of a scenario."""
+    return other.edited(origin=scenario.origin)
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
@@ -38,30 +43,30 @@ def test_the_records_of_a_group_differ_in_severity_alone(recipe_with, sampling):
     assert len(groups) > 20
     for group in groups.values():
         last = group[-1]
-        assert [one.record.rung for one in group] == [0, 1, 2, 3]
+        assert [one.origin.rung for one in group] == [0, 1, 2, 3]
         for one in group:
-            unnumbered = replace(one.record, number=last.record.number, rung=last.record.rung)
-            assert (one.settings, one.rig, unnumbered) == (last.settings, last.rig, last.record)
-            assert one.specimen == last.specimen.at_severity(RUNGS[one.record.rung])
-            for purpose in (7, 8, 12, 13):  # motion, noise, load wander, knocks
-                assert one.rng(purpose).random() == last.rng(purpose).random()
+            assert at_place_of(last, one) == at_place_of(last, last.at_severity(RUNGS[one.origin.rung]))
+            for name in ("motion", "noise", "load wander", "knocks"):
+                assert one.stream(name).random() == last.stream(name).random()
 
 
 def test_a_rung_is_its_share_of_the_severity(recipe_with):
     faults_seen = set()
     for group in groups_of(draw_scenarios(recipe_with(LADDERS))).values():
-        whole = group[-1].specimen
+        whole = group[-1]
         faults_seen.add(whole.fault)
-        assert group[0] == replace(group[-1].without_fault(), record=group[0].record)
-        assert group[0].specimen.fault == "healthy"
+        assert at_place_of(whole, group[0]) == whole.without_fault()
+        assert group[0].fault == "healthy"
         for one, share in zip(group[1:], RUNGS[1:], strict=True):
-            assert one.specimen.fault == whole.fault
-            for spall, of_whole in zip(one.specimen.spalls, whole.spalls, strict=True):
+            assert one.fault == whole.fault
+            for spall, of_whole in zip(one.spalls, whole.spalls, strict=True):
                 assert (spall.width, spall.depth) == pytest.approx((share * of_whole.width, share * of_whole.depth))
                 assert max(spall.trace, default=spall.depth) == pytest.approx(spall.depth)
-            for kind, drawn in whole.damage.items():
-                sizes = {name: share * x for name, x in drawn.items() if name in ("wear", "pitch_error", "knock")}
-                assert one.specimen.damage[kind] == pytest.approx(drawn | sizes)
+            for part, of_whole in zip(one.components, whole.components, strict=True):
+                sizes = {key: value for key in SIZES if (value := getattr(of_whole, key, None)) is not None}
+                for key, value in sizes.items():
+                    assert getattr(part, key) == pytest.approx(share * np.array(value))
+                assert part.model_copy(update=sizes) == of_whole
     assert faults_seen == set(FAULTS) - {"healthy"}
 
 
@@ -79,14 +84,14 @@ def test_groups_are_neighbours_and_specimens_are_whole(recipe_with):
     recipe = recipe_with(LADDERS)
     scenarios = draw_scenarios(recipe)
     assert recipe.n_records == len(scenarios) == 8 * 4 * 3 * 4
-    assert [one.record.number for one in scenarios] == list(range(len(scenarios)))
-    assert [one.specimen.number for one in scenarios] == [number // 12 for number in range(len(scenarios))]
+    assert [one.origin.record for one in scenarios] == list(range(len(scenarios)))
+    assert [one.origin.specimen for one in scenarios] == [number // 12 for number in range(len(scenarios))]
     for pair, group in groups_of(scenarios).items():
-        assert [one.record.number for one in group] == list(range(4 * pair, 4 * pair + 4))
-    healthy = [one for one in scenarios if one.record.pair < 0]
-    assert {one.specimen.fault for one in healthy} == {"healthy"}
-    assert {one.record.rung for one in healthy} == {-1}
-    speeds = Counter(one.record.conditions.shaft_rate for one in healthy)
+        assert [one.origin.record for one in group] == list(range(4 * pair, 4 * pair + 4))
+    healthy = [one for one in scenarios if one.origin.pair < 0]
+    assert {one.fault for one in healthy} == {"healthy"}
+    assert {one.origin.rung for one in healthy} == {-1}
+    speeds = Counter(one.conditions["shaft_rate"] for one in healthy)
     assert max(speeds.values()) == 1  # each record of a healthy specimen has conditions of its own
     assert sum(len(recipe.records_of_part(part)) for part in range(recipe.n_parts)) == recipe.n_records
 
@@ -96,8 +101,9 @@ def test_the_last_rung_of_a_ladder_is_the_record_without_rungs(recipe_with):
     without = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}]})
     ladder = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}], "corpus.rungs": (0.5, 1)})
     for one, other in zip(draw_scenarios(without), draw_scenarios(ladder)[1::2], strict=True):
-        assert (one.rig, one.specimen) == (other.rig, other.specimen)
-    assert all(one.record.pair == one.record.rung == -1 for one in draw_scenarios(without))
+        drawn_per_record = {"operation": other.recipe.operation, "level": other.recipe.level, "origin": other.origin}
+        assert one.edited(**drawn_per_record) == other
+    assert all(one.origin.pair == one.origin.rung == -1 for one in draw_scenarios(without))
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
@@ -115,8 +121,8 @@ def test_the_conditions_of_faulty_specimens_cover_their_ranges(recipe_with, samp
         {"corpus.rungs": (0, 1), "corpus.rigs": 32, "corpus.sampling": sampling, "faults": MANY_HEALTHY}
     )
     drawn = draw_scenarios(recipe)
-    for groups in ([one for one in drawn if one.record.pair >= 0], [one for one in drawn if one.record.pair < 0]):
-        quantiles = [(60 * one.record.conditions.shaft_rate - 1500) / 500 for one in groups]
+    for groups in ([one for one in drawn if one.origin.pair >= 0], [one for one in drawn if one.origin.pair < 0]):
+        quantiles = [(60 * one.conditions["shaft_rate"] - 1500) / 500 for one in groups]
         assert set(np.digitize(quantiles, np.arange(1, 8) / 8)) == set(range(8))
 
 
@@ -125,7 +131,7 @@ def test_grids_run_through_all_their_values_on_faulty_specimens(recipe_with):
     changes = {"corpus.rungs": (0, 1), "corpus.records_per_specimen": 1, "faults": MANY_HEALTHY}
     recipe = recipe_with(changes | {"operation.shaft_rpm": gen.grid(*speeds)})
     groups = groups_of(draw_scenarios(recipe)).values()
-    assert {round(60 * group[0].record.conditions.shaft_rate) for group in groups} == set(speeds)
+    assert {round(60 * group[0].conditions["shaft_rate"]) for group in groups} == set(speeds)
 
 
 @pytest.mark.parametrize("by", ["specimen", "rig"])
@@ -133,10 +139,10 @@ def test_the_rungs_of_a_pair_are_on_one_side_of_every_split(recipe_with, by):
     recipe = recipe_with(LADDERS | {"corpus.split": {"by": by, "test": 0.25, "validation": 0.25}})
     scenarios = draw_scenarios(recipe)
     for group in groups_of(scenarios).values():
-        assert len({one.specimen.split for one in group}) == 1
-    fault = np.array([FAULTS.index(one.specimen.fault) for one in scenarios])
-    unit = np.array([getattr(one, by).number for one in scenarios])
-    pair = np.array([one.record.pair for one in scenarios])
+        assert len({one.origin.split for one in group}) == 1
+    fault = np.array([FAULTS.index(one.fault) for one in scenarios])
+    unit = np.array([getattr(one.origin, by) for one in scenarios])
+    pair = np.array([one.origin.pair for one in scenarios])
     for train, test in grouped_splits(fault, unit, 3, 0):
         assert not set(pair[train][pair[train] >= 0]) & set(pair[test])
 
@@ -166,5 +172,5 @@ def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_p
     for record in (int(np.flatnonzero(in_pair)[0]), int(np.flatnonzero(in_pair)[-1])):
         again = replay(made.path, record)
         assert again.identical
-        assert read_scenarios(found.isel(record=record))[0].record.rung == int(found["rung"][record])
+        assert read_scenarios(found.isel(record=record))[0].origin.rung == int(found["rung"][record])
         assert again.dataset["pair"][0] == found["pair"][record].item()

@@ -9,9 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gen
+from gen.drawing import stream
 from gen.recipe import Recipe
-from gen.scenarios import Purpose, draw_scenarios, stream
+from gen.scenarios import draw_scenarios
 from gen.support.errors import RecipeError
+from gen.support.units import decibel_to_ratio
+from tests.drawn_values import anywhere
 from tests.gen.conftest import small_with
 
 SAMPLINGS = ("random", "sobol", "halton")
@@ -29,13 +32,10 @@ def test_nothing_but_the_fault_knows_the_fault(recipe_with, only, sampling):
     changes = {"corpus.sampling": sampling}
     mixed = draw_scenarios(recipe_with(changes))
     alike = draw_scenarios(recipe_with(changes | {"faults": faults(**{only: 1.0})}))
-    assert {scenario.specimen.fault for scenario in alike} == {only}
+    assert {scenario.fault for scenario in alike} == {only}
     for one, other in zip(mixed, alike, strict=True):
-        assert one.rig == other.rig
-        assert (one.specimen.number, one.specimen.bearing) == (other.specimen.number, other.specimen.bearing)
-        assert one.specimen.properties == other.specimen.properties
-        assert one.specimen.split == other.specimen.split
-        assert one.record == other.record
+        origin = one.origin.model_copy(update={"entry": other.origin.entry})
+        assert anywhere(one.edited(faults=other.recipe.faults, origin=origin)) == anywhere(other)
 
 
 @given(*[st.integers(1, 5)] * 5, st.integers(2, 3) | st.none())
@@ -63,7 +63,7 @@ def test_rigs_specimens_records_and_parts_are_numbered_without_gaps(rigs, per_ri
 def test_the_end_of_a_large_corpus_can_be_drawn_alone(recipe_with, sampling):
     recipe = recipe_with({"corpus.sampling": sampling, "corpus.rigs": 10**6})
     last = draw_scenarios(recipe, recipe.n_records - 3)
-    assert [scenario.record.number for scenario in last] == list(range(recipe.n_records - 3, recipe.n_records))
+    assert [scenario.origin.record for scenario in last] == list(range(recipe.n_records - 3, recipe.n_records))
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
@@ -88,9 +88,9 @@ def test_what_was_drawn_for_a_rig_or_a_specimen_says_nothing_about_what_runs_on_
     values = np.array(
         [
             (
-                np.log(scenario.rig.machine["shaft_mass"]),
-                scenario.specimen.properties["diametral_clearance"],
-                scenario.record.conditions.shaft_rate,
+                np.log(scenario.machine["shaft_mass"]),
+                scenario.properties["diametral_clearance"],
+                scenario.conditions["shaft_rate"],
             )
             for scenario in draw_scenarios(recipe_with(size | {"corpus.sampling": sampling}))
         ]
@@ -102,18 +102,18 @@ def test_what_was_drawn_for_a_rig_or_a_specimen_says_nothing_about_what_runs_on_
 def test_another_seed_gives_other_rigs_specimens_and_records(recipe_with):
     one, other = (draw_scenarios(recipe_with({"seed": seed})) for seed in (1, 2))
     for here, there in zip(one, other, strict=True):
-        assert here.rig.machine != there.rig.machine
-        assert here.specimen.properties != there.specimen.properties
-        assert here.record.conditions != there.record.conditions
+        assert here.machine != there.machine
+        assert here.properties != there.properties
+        assert here.conditions != there.conditions
 
 
 def test_records_of_a_specimen_share_it_and_specimens_of_a_rig_share_it(recipe_with):
     whole = draw_scenarios(recipe_with())
     for scenario in whole:
-        specimen, rig = divmod(scenario.record.number, 2)[0], scenario.record.number // 8
-        assert (scenario.specimen.number, scenario.rig.number) == (specimen, rig)
-    assert len({id(scenario.specimen) for scenario in whole}) == 12
-    assert len({id(scenario.rig) for scenario in whole}) == 3
+        specimen, rig = divmod(scenario.origin.record, 2)[0], scenario.origin.record // 8
+        assert (scenario.origin.specimen, scenario.origin.rig) == (specimen, rig)
+    assert len({id(scenario.recipe.specimen) for scenario in whole}) == 12
+    assert len({id(scenario.recipe.machine) for scenario in whole}) == 3
 
 
 @pytest.mark.parametrize("by", ["specimen", "rig"])
@@ -122,7 +122,7 @@ def test_no_specimen_or_rig_is_on_both_sides_of_a_split(recipe_with, by):
     recipe = recipe_with({"corpus.rigs": 20, "corpus.split": split})
     sides: dict[int, set[str]] = {}
     for scenario in draw_scenarios(recipe):
-        sides.setdefault(getattr(scenario, by).number, set()).add(scenario.specimen.split)
+        sides.setdefault(getattr(scenario.origin, by), set()).add(scenario.origin.split)
     assert all(len(side) == 1 for side in sides.values())
     shares = Counter(next(iter(side)) for side in sides.values())
     assert shares["test"] / len(sides) == pytest.approx(0.25, abs=0.02)
@@ -133,7 +133,7 @@ def test_no_specimen_or_rig_is_on_both_sides_of_a_split(recipe_with, by):
 def test_a_single_rig_sets_aside_the_whole_number_of_specimens_nearest_to_the_share(recipe_with, share, expected):
     split = {"by": "specimen", "test": share}
     corpus = {"rigs": 1, "specimens_per_rig": 8, "records_per_specimen": 1, "split": split}
-    splits = [scenario.specimen.split for scenario in draw_scenarios(recipe_with({"corpus": corpus}))]
+    splits = [scenario.origin.split for scenario in draw_scenarios(recipe_with({"corpus": corpus}))]
     assert splits.count("test") == expected == round(8 * share)
 
 
@@ -146,9 +146,7 @@ def test_the_first_rigs_of_a_corpus_set_aside_the_share_of_their_specimens_whate
         "split": {"by": "specimen", "test": share},
     }
     scenarios = draw_scenarios(recipe_with({"corpus": corpus}))
-    chosen = (
-        np.array([scenario.specimen.split == "test" for scenario in scenarios]).reshape(n_rigs, per_rig).sum(axis=1)
-    )
+    chosen = np.array([scenario.origin.split == "test" for scenario in scenarios]).reshape(n_rigs, per_rig).sum(axis=1)
     excess = np.cumsum(chosen) - share * per_rig * np.arange(1, n_rigs + 1)
     assert np.abs(excess).max() < 1.5
 
@@ -157,7 +155,7 @@ def test_the_first_rigs_of_a_corpus_set_aside_the_share_of_their_specimens_whate
 def test_quasi_random_records_fill_the_range_of_a_value_evenly(recipe_with, sampling):
     changes = {"corpus.sampling": sampling, "corpus.rigs": 8, "operation.shaft_rpm": "uniform(1, 64)"}
     drawn = draw_scenarios(recipe_with(changes))
-    quantiles = [(scenario.record.conditions.shaft_rate * 60 - 1) / 63 for scenario in drawn]
+    quantiles = [(scenario.conditions["shaft_rate"] * 60 - 1) / 63 for scenario in drawn]
     assert len(quantiles) == 64
     assert Counter(int(64 * u) for u in quantiles) == dict.fromkeys(range(64), 1)
 
@@ -176,26 +174,25 @@ def test_grids_of_one_level_give_every_combination_once_before_they_come_again(r
     combinations: dict[int, list[tuple[float, float]]] = {}
     clearances: dict[int, set[float]] = {}
     for scenario in draw_scenarios(recipe):
-        conditions = scenario.record.conditions
-        found = round(conditions.shaft_rate * 60), conditions.load
-        combinations.setdefault(scenario.specimen.number, []).append(found)
-        of_rig = clearances.setdefault(scenario.rig.number, set())
-        of_rig.add(round(scenario.specimen.properties["diametral_clearance"] * 1e6))
+        conditions = scenario.conditions
+        found = round(conditions["shaft_rate"] * 60), conditions["load"]
+        combinations.setdefault(scenario.origin.specimen, []).append(found)
+        of_rig = clearances.setdefault(scenario.origin.rig, set())
+        of_rig.add(round(scenario.properties["diametral_clearance"] * 1e6))
     assert all(sorted(found) == sorted(product(rpm, load)) for found in combinations.values())
     assert all(found == set(clearance) for found in clearances.values())
 
 
-def test_streams_of_different_places_and_purposes_are_different():
+def test_streams_of_different_places_and_names_are_different():
     keys = [
-        (rig, specimen, record, purpose)
-        for rig in (0, 1)
-        for specimen in (0, 1)
-        for record in (0, 1)
-        for purpose in Purpose
+        (level, of, name)
+        for level in ("corpus", "rig", "specimen", "record")
+        for of in (0, 1, 11)
+        for name in ("noise", "motion", "motion.1")
     ]
     first = {tuple(stream(7, *key).integers(0, 2**63, 2)) for key in keys}
     assert len(first) == len(keys)
-    assert stream(7, 1, 1, 1, Purpose.NOISE).random() == stream(7, 1, 1, 1, Purpose.NOISE).random()
+    assert stream(7, "record", 1, "noise").random() == stream(7, "record", 1, "noise").random()
 
 
 def test_values_are_in_si_units(recipe_with):
@@ -203,27 +200,27 @@ def test_values_are_in_si_units(recipe_with):
         {"operation.shaft_rpm": 1800, "specimen.diametral_clearance_um": 8, "operation.slip_percent": 2}
     )
     scenario = draw_scenarios(recipe, 0, 1)[0]
-    assert scenario.record.conditions.shaft_rate == pytest.approx(30.0)
-    assert scenario.record.conditions.slip == pytest.approx(0.02)
-    assert scenario.specimen.properties["diametral_clearance"] == pytest.approx(8e-6)
+    assert scenario.conditions["shaft_rate"] == pytest.approx(30.0)
+    assert scenario.conditions["slip"] == pytest.approx(0.02)
+    assert scenario.properties["diametral_clearance"] == pytest.approx(8e-6)
 
 
 def test_resonances_are_damping_ratios_and_amplitudes(recipe_with):
     modes = {"count": 8, "frequency_hz": 2500, "damping_percent": 3, "gain_db": 6}
     recipe = recipe_with({"path.modes": modes, "background.modes": modes, "machine.resonator.damping_percent": 4})
-    rig = draw_scenarios(recipe, 0, 1)[0].rig
-    for found in (rig.path["modes"], rig.background["modes"]):
-        assert len(found) == 8
-        assert {mode["frequency"] for mode in found} == {2500.0}
-        assert [mode["damping"] for mode in found] == pytest.approx([0.03] * 8)
-        assert [abs(mode["gain"]) for mode in found] == pytest.approx([10 ** (6 / 20)] * 8)
-    assert rig.resonator["damping"] == pytest.approx(0.04)
+    rig = draw_scenarios(recipe, 0, 1)[0].recipe
+    for found in (rig.path.modes.si(), rig.background.modes.si()):
+        assert found["frequency"].tolist() == [2500.0] * 8
+        assert found["damping"] == pytest.approx([0.03] * 8)
+        assert np.abs(found["sign"]).tolist() == [1.0] * 8
+        assert decibel_to_ratio(found["gain"]) == pytest.approx([10 ** (6 / 20)] * 8)
+    assert rig.machine.resonator.si()["damping"] == pytest.approx(0.04)
 
 
 def test_a_profile_of_steps_changes_within_the_step_time_between_equal_intervals(recipe_with):
     steps = {"kind": "steps", "levels_percent": [50, 100, 80], "step_s": 0.01}
     recipe = recipe_with({"recording.duration_s": 0.3, "operation.speed_profile": steps})
-    profile = draw_scenarios(recipe, 0, 1)[0].record.speed_profile
+    profile = draw_scenarios(recipe, 0, 1)[0].speed_profile
     assert profile.times == pytest.approx((0.095, 0.105, 0.195, 0.205))
     assert profile.shares == (0.5, 1.0, 1.0, 0.8)
 

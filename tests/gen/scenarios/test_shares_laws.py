@@ -2,7 +2,6 @@
 
 import math
 from contextlib import nullcontext
-from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -16,7 +15,7 @@ from gen.physics.rating import static_rating
 from gen.scenarios import draw_scenarios
 from gen.simulation.machine import machine_of
 from gen.support.errors import RecipeError
-from gen.support.units import split_unit
+from tests.drawn_values import anywhere, with_key_of
 
 SAMPLINGS = ("random", "sobol", "halton")
 SLANTED = {"specimen.contact_angle_deg": 10}
@@ -32,8 +31,8 @@ def test_an_axial_load_is_its_share_of_the_radial_load_of_the_same_record(recipe
     numbers = {"operation.axial_load_n": uniform(0.1, 0.6), "corpus.sampling": sampling}
     drawn, own = (draw_scenarios(recipe_with(SLANTED | changes)) for changes in (axial, numbers))
     for one, other in zip(drawn, own, strict=True):
-        expected = other.record.conditions.axial_load * one.record.conditions.load
-        assert one.record.conditions.axial_load == pytest.approx(expected)
+        expected = other.conditions["axial_load"] * one.conditions["load"]
+        assert one.conditions["axial_load"] == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
@@ -50,19 +49,11 @@ def test_to_make_a_quantity_a_share_moves_no_other(recipe_with, key, named):
     usual = SLANTED | {"machine.bow_n": 1000.0, "operation.speed_profile": profile}
     without = draw_scenarios(recipe_with(usual))
     drawn = draw_scenarios(recipe_with(usual | {f"operation.{key}": share(named, 0.05, 0.06)}))
-    name = split_unit(key)[0]
     for one, other in zip(drawn, without, strict=True):
-        conditions = replace(one.record.conditions, **{name: getattr(other.record.conditions, name)})
-        assert conditions == other.record.conditions
-        assert getattr(one.record.conditions, name) != getattr(other.record.conditions, name)
-        assert one.record.speed_profile == other.record.speed_profile
-        unbalance = {"unbalance": other.rig.machine["unbalance"]}  # follows the highest speed of the recipe
-        assert one.rig.machine | unbalance == other.rig.machine
-        assert (one.specimen, one.rig.path, one.rig.background) == (
-            other.specimen,
-            other.rig.path,
-            other.rig.background,
-        )
+        assert getattr(one.recipe.operation, key) != getattr(other.recipe.operation, key)
+        # the balance grade holds at the highest speed of the recipe
+        balanced = one.recipe.machine.model_copy(update={"balance_rpm": other.recipe.machine.balance_rpm})
+        assert with_key_of(one.edited(machine=balanced), other, "operation", key) == anywhere(other)
 
 
 def test_a_share_can_name_quantities_of_every_level_above(recipe_with):
@@ -80,14 +71,14 @@ def test_a_share_can_name_quantities_of_every_level_above(recipe_with):
         }
     )
     for scenario in draw_scenarios(recipe):
-        machine, properties, conditions = scenario.rig.machine, scenario.specimen.properties, scenario.record.conditions
+        machine, properties, conditions = scenario.machine, scenario.properties, scenario.conditions
         assert machine["misalignment"] == pytest.approx(machine["bow"] / 2)
-        assert scenario.rig.resonator["mass"] == pytest.approx(machine["shaft_mass"] / 50)
+        assert scenario.recipe.machine.resonator.si()["mass"] == pytest.approx(machine["shaft_mass"] / 50)
         assert properties["waviness"] == pytest.approx(1e-6 * CATALOGUE["6205"].ball_diameter)
         assert properties["ball_waviness"] == pytest.approx(properties["waviness"] / 4)
-        assert conditions.load == pytest.approx(8 * machine["bow"])
-        assert conditions.jitter == pytest.approx(math.radians(1))
-        assert scenario.rig.lubricant["viscosity_100"] == pytest.approx(68e-6 / 8)
+        assert conditions["load"] == pytest.approx(8 * machine["bow"])
+        assert conditions["jitter"] == pytest.approx(math.radians(1))
+        assert scenario.recipe.contact.lubricant.si()["viscosity_100"] == pytest.approx(68e-6 / 8)
 
 
 def test_the_dimensions_of_a_bearing_by_geometry_can_be_shares(recipe_with):
@@ -99,15 +90,15 @@ def test_the_dimensions_of_a_bearing_by_geometry_can_be_shares(recipe_with):
     }
     geometry["roller_length_mm"] = share("pitch_diameter_mm", 0.3, 0.3)
     for scenario in draw_scenarios(recipe_with({"bearing": geometry})):
-        assert scenario.rig.bearing.roller_length == pytest.approx(0.3 * scenario.rig.bearing.pitch_diameter)
+        assert scenario.drawing.roller_length == pytest.approx(0.3 * scenario.drawing.pitch_diameter)
 
 
 def test_a_chain_of_shares_is_a_product_in_any_order(recipe_with):
     chain = {"operation.load_n": share("axial_load_n", 4, 4), "operation.axial_load_n": share("bow_n", 2, 2)}
     recipe = recipe_with(SLANTED | chain | {"machine.bow_n": uniform(10, 20)})
     for scenario in draw_scenarios(recipe):
-        assert scenario.record.conditions.axial_load == pytest.approx(2 * scenario.rig.machine["bow"])
-        assert scenario.record.conditions.load == pytest.approx(8 * scenario.rig.machine["bow"])
+        assert scenario.conditions["axial_load"] == pytest.approx(2 * scenario.machine["bow"])
+        assert scenario.conditions["load"] == pytest.approx(8 * scenario.machine["bow"])
     assert recipe.operation.load_n.support() == pytest.approx((80, 160))
 
 
@@ -122,11 +113,11 @@ def test_the_contact_angle_of_a_specimen_is_that_of_its_clearance_and_grooves(re
     )
     angles = set()
     for scenario in draw_scenarios(recipe):
-        drawn = scenario.specimen.properties
+        drawn = scenario.properties
         apart = (2.01 * drawn["inner_conformity"] - 1) * CATALOGUE["6205"].ball_diameter
         expected = math.acos(1 - max(drawn["diametral_clearance"], 0) / 2 / apart)
         assert drawn["contact_angle"] == pytest.approx(expected, rel=1e-6, abs=1e-9)
-        assert scenario.specimen.bearing.contact_angle == drawn["contact_angle"]
+        assert scenario.bearing.contact_angle == drawn["contact_angle"]
         angles.add(drawn["contact_angle"])
     assert 0.0 in angles  # some specimens have no clearance
     assert max(angles) > math.radians(5)
@@ -142,7 +133,7 @@ def test_a_bearing_with_a_contact_angle_on_its_drawing_has_no_free_angle(recipe_
         "contact_angle_deg": 15,
     }
     for scenario in draw_scenarios(recipe_with(free | {"bearing": geometry})):
-        assert scenario.specimen.properties["contact_angle"] == 0
+        assert scenario.properties["contact_angle"] == 0
 
 
 @pytest.mark.parametrize("site", ["inner", "outer"])
@@ -153,12 +144,8 @@ def test_a_spall_can_be_a_share_of_the_arc_between_two_balls(recipe_with, site):
         "depth_um": share("width_mm", 0.01, 0.01),
         "n_spalls": 3,
     }
-    spalls = [
-        (one.specimen, spall)
-        for one in draw_scenarios(recipe_with({"faults": [entry]}))
-        for spall in one.specimen.spalls
-    ]
-    shares = [spall.width / ball_spacing(specimen.bearing, site) for specimen, spall in spalls]
+    spalls = [(one, spall) for one in draw_scenarios(recipe_with({"faults": [entry]})) for spall in one.spalls]
+    shares = [spall.width / ball_spacing(one.bearing, site) for one, spall in spalls]
     assert 0.1 <= min(shares) < 0.15 < 0.25 < max(shares) <= 0.3
     assert [spall.depth for _, spall in spalls] == pytest.approx([0.01 * spall.width for _, spall in spalls])
 
@@ -169,9 +156,9 @@ BY_SIZE = {"bearing": {"kind": "catalogue", "designations": ["6203", "6311"]}}
 def test_a_load_can_be_a_share_of_the_static_rating_of_the_bearing(recipe_with):
     recipe = recipe_with(BY_SIZE | {"corpus.rigs": 8, "operation.load_n": share("static_rating_n", 0.1, 0.1)})
     scenarios = draw_scenarios(recipe)
-    assert len({scenario.rig.bearing.designation for scenario in scenarios}) == 2
+    assert len({scenario.drawing.designation for scenario in scenarios}) == 2
     for scenario in scenarios:
-        assert scenario.record.conditions.load == pytest.approx(0.1 * static_rating(scenario.rig.bearing))
+        assert scenario.conditions["load"] == pytest.approx(0.1 * static_rating(scenario.drawing))
 
 
 @pytest.mark.parametrize("of_drawing", [0, 25])
@@ -186,8 +173,8 @@ def test_a_share_above_1_of_the_least_axial_load_holds_the_rings_together(recipe
     for times, possible in ((1.001, True), (0.999, False)):
         recipe = recipe_with(changes | {"operation.axial_load_n": share("least_axial_load_n", times, times)})
         for scenario in draw_scenarios(recipe, 0, 6):
-            conditions, angle = scenario.record.conditions, scenario.specimen.bearing.contact_angle
-            assert conditions.axial_load == pytest.approx(times * 1.25 * math.tan(angle) * conditions.load)
+            conditions, angle = scenario.conditions, scenario.bearing.contact_angle
+            assert conditions["axial_load"] == pytest.approx(times * 1.25 * math.tan(angle) * conditions["load"])
             with nullcontext() if possible else pytest.raises(ValueError, match="too small to hold its rings together"):
                 machine_of(scenario)
 
@@ -196,8 +183,8 @@ def test_the_shares_of_the_parts_of_a_compound_are_those_of_the_part(recipe_with
     width = {"width_mm": share("ball_spacing_mm", 0.1, 0.1)}
     parts = [{"kind": "inner", **width}, {"kind": "outer", **width}]
     for scenario in draw_scenarios(recipe_with({"faults": [{"kind": "compound", "parts": parts}]})):
-        for spall in scenario.specimen.spalls:
-            assert spall.width == pytest.approx(0.1 * ball_spacing(scenario.specimen.bearing, spall.site))
+        for spall in scenario.spalls:
+            assert spall.width == pytest.approx(0.1 * ball_spacing(scenario.bearing, spall.site))
 
 
 @given(st.tuples(*[st.floats(0.01, 2)] * 2), st.tuples(*[st.floats(10, 1000)] * 2), st.integers(0, 2**31))
@@ -207,7 +194,7 @@ def test_every_product_lies_in_its_support(recipe_with, shares, loads, seed):
     low, high = recipe.operation.axial_load_n.support()
     assert (low, high) == pytest.approx((min(shares) * min(loads), max(shares) * max(loads)))
     for scenario in draw_scenarios(recipe, 0, 4):
-        assert low * (1 - 1e-9) <= scenario.record.conditions.axial_load <= high * (1 + 1e-9)
+        assert low * (1 - 1e-9) <= scenario.conditions["axial_load"] <= high * (1 + 1e-9)
 
 
 def test_the_support_of_a_share_that_is_known_only_when_drawn_is_that_of_its_field(recipe_with):
@@ -230,7 +217,7 @@ def test_the_unbalance_follows_the_highest_product_of_a_speed_that_is_a_share(re
     one, other = (
         draw_scenarios(recipe_with(rated | {"operation.shaft_rpm": speed}), 0, 1)[0] for speed in (share_of_it, plain)
     )
-    assert one.rig.machine["unbalance"] == pytest.approx(other.rig.machine["unbalance"])
+    assert one.recipe.machine.unbalance == pytest.approx(other.recipe.machine.unbalance)
 
 
 def test_every_distribution_can_be_a_share():
@@ -247,5 +234,5 @@ def test_every_distribution_can_be_a_share():
 def test_quantiles_of_a_share_are_as_even_as_those_of_any_quantity(recipe_with):
     changes = {"corpus.sampling": "sobol", "corpus.rigs": 8, "machine.bow_n": 100}
     recipe = recipe_with(changes | {"operation.load_n": share("bow_n", 1, 65)})
-    quantiles = [one.record.conditions.load / 100 - 1 for one in draw_scenarios(recipe)]
+    quantiles = [one.conditions["load"] / 100 - 1 for one in draw_scenarios(recipe)]
     assert sorted(int(found) for found in quantiles) == list(range(64))

@@ -39,10 +39,10 @@ def drawn(recipe_file):
     return draw_scenarios(read_recipe(recipe_file))
 
 
-def kind_of(specimen):
-    """Class of a specimen, or the site of its wear."""
-    worn = specimen.damage.get("distributed")
-    return specimen.fault if worn is None else f"worn {worn['site']}"
+def kind_of(scenario):
+    """Class of the fault, or the site of the wear."""
+    (fault,) = scenario.recipe.faults
+    return f"worn {fault.site}" if fault.kind == "distributed" else scenario.fault
 
 
 # parts, number of spalls, wear [m], pitch error [rad], knock [N], width of the widest spall [m] and what passes it [m]
@@ -60,11 +60,11 @@ LABELS = {
 
 def test_every_class_is_labelled_by_what_is_damaged_and_how_much(whole, drawn):
     assert whole.failures == ()
-    assert {kind_of(scenario.specimen) for scenario in drawn} == set(LABELS)
+    assert {kind_of(scenario) for scenario in drawn} == set(LABELS)
     with open_corpus(whole.path) as corpus:
         found = {name: corpus[name].values for name in (*KNOWN, "width", "largest_drop", "angle")}
     for place, scenario in enumerate(drawn):
-        kind = kind_of(scenario.specimen)
+        kind = kind_of(scenario)
         parts, n_spalls, wear, pitch_error, knock, width, passed = LABELS[kind]
         label = {name: values[place] for name, values in found.items()}
         assert (FAULTS[label["fault"]], label["parts"], label["n_spalls"]) == (kind.split()[-1], parts, n_spalls)
@@ -80,9 +80,9 @@ def test_the_largest_drop_is_that_over_the_widest_spall(whole, drawn):
     with open_corpus(whole.path) as corpus:
         found = corpus["largest_drop"].values
     for place, scenario in enumerate(drawn):
-        if scenario.specimen.fault == "compound":
+        if scenario.fault == "compound":
             assert found[place] == largest_drop_over(scenario, 1) < 12e-6
-        elif kind_of(scenario.specimen) == "outer":
+        elif kind_of(scenario) == "outer":
             assert found[place] == pytest.approx(15e-6, rel=1e-4)
 
 
@@ -106,10 +106,10 @@ def test_a_twin_without_the_fault_is_what_healthy_bearings_alone_would_be(write_
 
 
 def test_the_fault_alone_tells_a_record_from_its_twin(drawn):
-    some = list({kind_of(scenario.specimen): scenario for scenario in drawn}.values())
+    some = list({kind_of(scenario): scenario for scenario in drawn}.values())
     damaged, sound = (simulate(batch).acceleration for batch in (some, [scenario.without_fault() for scenario in some]))
     for scenario, one, other in zip(some, damaged, sound, strict=True):
-        assert np.array_equal(one, other) == (scenario.specimen.fault == "healthy")
+        assert np.array_equal(one, other) == (scenario.fault == "healthy")
 
 
 def test_everything_at_once_has_one_shape_for_healthy_and_damaged(drawn):
@@ -120,16 +120,15 @@ def test_everything_at_once_has_one_shape_for_healthy_and_damaged(drawn):
 def test_a_broken_cage_displaces_one_ball_and_knocks_and_wear_is_on_its_race_alone(drawn):
     for scenario in drawn:
         damaged, twin = (input_of(one) for one in (scenario, scenario.without_fault()))
-        if "cage" in scenario.specimen.damage:
+        if "cage" in scenario.damaged_parts:
             assert damaged.turning.late_by == pytest.approx(math.radians(3))
             assert damaged.turning.late_ball == 0
             assert damaged.turning.knock > 0 == twin.turning.knock
         grown = damaged.waviness.races - twin.waviness.races
         rms = np.sqrt(np.sum(np.abs(grown) ** 2, axis=1) / 2)
-        worn = scenario.specimen.damage.get("distributed", {})
-        expected = [0.3e-6 * (worn.get("site") == site) for site in ("inner", "outer")]
+        expected = [0.3e-6 * (kind_of(scenario) == f"worn {site}") for site in ("inner", "outer")]
         assert rms == pytest.approx(expected, rel=1e-9, abs=1e-18)
-        if worn.get("order") == 10:
+        if kind_of(scenario) == "worn inner":
             assert np.flatnonzero(np.abs(grown[0]) > 1e-12).tolist() == [8]  # orders start at 2
 
 
@@ -144,13 +143,13 @@ def test_classes_come_by_weight_and_wear_counts_as_its_site(recipe_with):
     recipe = recipe_with({"corpus.specimens_per_rig": 17, "corpus.rigs": 40, "faults": faults})
     counts = Counter(fault for rig in range(40) for fault in fault_of_each_specimen(recipe, rig))
     assert counts == {"healthy": 160, "inner": 320, "cage": 160, "compound": 40}
-    inner = [s for s in draw_scenarios(recipe) if s.specimen.fault == "inner" and s.record.number % 2 == 0]
-    worn = [scenario for scenario in inner if "distributed" in scenario.specimen.damage]
-    assert all(not scenario.specimen.spalls for scenario in worn)
+    inner = [s for s in draw_scenarios(recipe) if s.fault == "inner" and s.origin.record % 2 == 0]
+    worn = [scenario for scenario in inner if kind_of(scenario) == "worn inner"]
+    assert all(not scenario.spalls for scenario in worn)
     assert len(worn) / len(inner) == pytest.approx(3 / 4, abs=0.08)  # 3 sigma of 320 coins
 
 
 def test_records_of_every_class_replay_bit_for_bit(whole, drawn):
-    numbers = {kind_of(scenario.specimen): scenario.record.number for scenario in drawn}
+    numbers = {kind_of(scenario): scenario.origin.record for scenario in drawn}
     for number in numbers.values():
         assert replay(whole.path, number).identical

@@ -78,7 +78,7 @@ def envelopes(recipe):
     scenarios = draw_scenarios(recipe)
     signals = measure(simulate(scenarios).acceleration, scenarios).signal[:, 0]
     return [
-        (scenario.specimen.fault, Envelope(signal, scenario.record.conditions.shaft_rate))
+        (scenario.fault, Envelope(signal, scenario.conditions["shaft_rate"]))
         for scenario, signal in zip(scenarios, signals, strict=True)
     ]
 
@@ -149,6 +149,6 @@ def test_a_wider_spall_is_louder(recipe_with):
     recipe = recipe_with(STEADY | ladder)
     scenarios = draw_scenarios(recipe)
     loudness = simulate(scenarios).acceleration.std(axis=(1, 2)).reshape(3, 4)
-    drawn_widths = np.array([scenario.specimen.spalls[0].width for scenario in scenarios]).reshape(3, 4)
+    drawn_widths = np.array([scenario.spalls[0].width for scenario in scenarios]).reshape(3, 4)
     np.testing.assert_allclose(drawn_widths, 1e-3 * np.tile(widths, (3, 1)))
     assert (np.diff(np.median(loudness, axis=0)) > 0).all()

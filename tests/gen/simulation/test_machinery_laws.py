@@ -162,9 +162,9 @@ def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, profi
         found = truth(scenario)
         angles = turned(input_of(scenario), 1 / FS, start + n)[0]
         shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
-        assert shaft * FS / n == pytest.approx(found.true_shaft_rate, rel=2e-5)
-        assert found.true_shaft_rate == pytest.approx(30 * mean, rel=0.05)
-        assert cage / shaft == pytest.approx(found.true_ftf, rel=2e-4)
+        assert shaft * FS / n == pytest.approx(found.mean_rate, rel=2e-5)
+        assert found.mean_rate == pytest.approx(30 * mean, rel=0.05)
+        assert cage / shaft == pytest.approx(found.orders.ftf, rel=2e-4)
 
 
 def test_a_profile_starts_with_the_record_and_not_with_its_settling(record_of):

@@ -30,5 +30,5 @@ def test_a_folder_with_somebody_elses_manifest_is_left_alone(tmp_path):
 def test_two_rigs_are_enough_to_set_one_aside(recipe_with):
     split = {"by": "rig", "test": 0.2, "validation": 0}
     recipe = recipe_with({"corpus.rigs": 2, "corpus.split": split})
-    by_rig = {scenario.rig.number: scenario.specimen.split for scenario in draw_scenarios(recipe)}
+    by_rig = {scenario.origin.rig: scenario.origin.split for scenario in draw_scenarios(recipe)}
     assert sorted(by_rig.values()) == ["test", "train"]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gen import open_corpus, shaft_angles
-from gen.scenarios import draw_scenarios, read_scenarios, settings_of
+from gen.scenarios import draw_scenarios, read_scenarios
 from gen.simulation.inputs import kernel_input
 from gen.simulation.motion import draw_motion
 from gen.simulation.shaft import angles_of
@@ -30,7 +30,7 @@ courses = pytest.mark.parametrize("changes", COURSES.values(), ids=COURSES)
 @courses
 def test_the_angle_is_that_by_which_the_kernel_turns_the_bearing(recipe_with, changes):
     recipe = recipe_with({"recording.settle_s": 0.2} | changes)
-    axis = timeline(settings_of(recipe))
+    axis = timeline(recipe)
     for scenario in draw_scenarios(recipe, 0, 4):
         in_kernel = turned(kernel_input(scenario, axis), 1 / axis.fs, axis.knots)[0][:, 0]
         in_kernel = in_kernel[axis.dropped : axis.dropped + axis.returned]
@@ -41,7 +41,7 @@ def test_the_angle_is_that_by_which_the_kernel_turns_the_bearing(recipe_with, ch
 def test_records_of_a_corpus_have_the_angle_of_their_scenarios_and_imported_ones_that_of_their_label(tiny_corpus):
     with open_corpus(tiny_corpus) as corpus:
         some = corpus.isel(record=[3, 17]).load()
-    axis = timeline(read_scenarios(some)[0].settings)
+    axis = timeline(read_scenarios(some)[0].recipe)
     angles = shaft_angles(some)
     assert angles.dims == ("record", "elapsed_time")
     for found, scenario in zip(angles.values, read_scenarios(some), strict=True):

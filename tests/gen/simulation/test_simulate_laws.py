@@ -123,9 +123,9 @@ def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_wi
 def test_records_of_a_group_share_the_integration_without_their_fault(recipe_with):
     faults = [{"kind": "healthy", "weight": 1}, {"kind": "outer", "width_mm": 1}, {"kind": "ball", "width_mm": 1}]
     recipe = recipe_with({"corpus.rungs": [0, 0.5, 1], "corpus.specimens_per_rig": 3, "faults": faults})
-    scenarios = [one for one in draw_scenarios(recipe) if one.record.pair >= 0][:9]
+    scenarios = [one for one in draw_scenarios(recipe) if one.origin.pair >= 0][:9]
     runs = runs_of(scenarios)
-    assert len({one.record.pair for one in scenarios}) == 3
+    assert len({one.origin.pair for one in scenarios}) == 3
     assert len(open_integrations(runs)) == 9
     assert all(run.healthy is runs[place // 3 * 3].own for place, run in enumerate(runs))
     together = simulate(scenarios)

@@ -23,6 +23,7 @@ ROUGH = {
     "recording.oversampling": 1,
     "recording.sample_rate_hz": 24000,
     "machine.shaft_mass_kg": 2,
+    "specimen.diametral_clearance_um": 5,
     "specimen.waviness_nm": "grid(10, 10, 10, 10, 10000, 10000, 10000, 10000, 10, 10, 10, 10)",
     "operation.load_n": 20,
 }
@@ -43,7 +44,7 @@ def checked(recipe_with):
 
 def test_the_first_record_of_every_class_is_tried_at_half_the_step(checked):
     _, scenarios, _, errors = checked
-    faults = [scenario.specimen.fault for scenario in scenarios]
+    faults = [scenario.fault for scenario in scenarios]
     assert errors.shape == (len(scenarios),)
     assert np.isfinite(errors[[faults.index(fault) for fault in FAULTS if fault in faults]]).all()
 
@@ -87,7 +88,7 @@ LAYOUTS = {
 @pytest.mark.parametrize("layout", LAYOUTS.values(), ids=LAYOUTS)
 def test_every_class_and_a_batch_of_every_eighth_part_are_tried_whatever_the_layout(recipe_with, layout):
     recipe = recipe_with({"corpus.rigs": 60, "records": 397} | layout)
-    faults = [one.specimen.fault for one in draw_scenarios(recipe)]
+    faults = [one.fault for one in draw_scenarios(recipe)]
     checked = checked_records(recipe, faults)
     assert len(set(faults)) == len(recipe.faults)
     assert {faults[number] for numbers in checked.values() for number in numbers} == set(faults)
@@ -116,7 +117,7 @@ def test_a_batch_is_checked_where_its_turn_comes_and_of_records_that_share_a_ker
 def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
     recipe = recipe_with({"storage.records_per_part": 24})
     scenarios = draw_scenarios(recipe)
-    faults = [scenario.specimen.fault for scenario in scenarios]
+    faults = [scenario.fault for scenario in scenarios]
     failed = faults.index("inner")
     made = {place: place for place in range(len(scenarios)) if place != failed}
     tried = checked_places(recipe, range(24), faults, made)
@@ -128,7 +129,7 @@ def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
 @pytest.mark.parametrize("specimens", [2, 4, 5])
 def test_the_first_specimen_of_each_class_is_the_first_one_drawn_with_it(recipe_with, specimens, records):
     recipe = recipe_with({"corpus.specimens_per_rig": specimens, "records": records})
-    drawn = [(scenario.specimen.fault, scenario.specimen.number) for scenario in draw_scenarios(recipe)]
+    drawn = [(scenario.fault, scenario.origin.specimen) for scenario in draw_scenarios(recipe)]
     assert first_specimens(recipe) == dict(reversed(drawn))
 
 

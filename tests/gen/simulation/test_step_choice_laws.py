@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gen.physics.bearing import orders
 from gen.physics.rotor import likely_stiffness
-from gen.scenarios import draw_scenarios, settings_of
+from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import runs_of
 from gen.simulation.steps import (
     ENOUGH,
@@ -26,12 +26,16 @@ from tests.responses import input_of
 
 @pytest.fixture
 def drawn(recipe_with):
-    """A recipe, a scenario of it and its record, without a spall and a mode that is faster than that of the contacts."""
-    recipe = recipe_with()
-    (scenario,) = draw_scenarios(recipe, 0, 1)
+    """A scenario and its record, without a spall and a mode that is faster than that of the contacts."""
+    (scenario,) = draw_scenarios(recipe_with(), 0, 1)
     record = input_of(scenario)
     machine = record.machine._replace(sensor_mass=0.0, half_clearance=1e-6, contact_damping=0.0)
-    return recipe, scenario, record._replace(machine=machine, spalls=())
+    return scenario, record._replace(machine=machine, spalls=())
+
+
+def sampled(scenario, rate):
+    """The scenario at another sample rate."""
+    return scenario.edited(recording=scenario.recipe.recording.model_copy(update={"sample_rate_hz": rate}))
 
 
 def stiffness_of_three_balls(record):
@@ -43,7 +47,7 @@ def stiffness_of_three_balls(record):
 
 
 def test_the_assumed_stiffness_is_that_of_three_balls_under_three_times_the_stribeck_load(drawn):
-    _, _, record = drawn
+    _, record = drawn
     found = likely_stiffness(record.machine, record.bearing.n_balls, largest_pull(record))
     assert found == pytest.approx(stiffness_of_three_balls(record), rel=1e-12)
 
@@ -51,7 +55,7 @@ def test_the_assumed_stiffness_is_that_of_three_balls_under_three_times_the_stri
 @pytest.mark.parametrize(("share", "steps"), [(1.005, 4), (0.995, 6)])
 def test_the_step_resolves_the_mode_of_that_stiffness_and_is_no_finer(drawn, share, steps):
     """Four steps per sample are enough up to a sample rate where the mode turns by ``FINE_STEP`` in a step; a little lower, six are."""
-    recipe, scenario, record = drawn
+    scenario, record = drawn
     machine = record.machine
     square = (stiffness_of_three_balls(record) + max(machine.ring_stiffness_x, machine.ring_stiffness_y)) * (
         1 / machine.shaft_mass + 1 / machine.housing_mass
@@ -59,17 +63,15 @@ def test_the_step_resolves_the_mode_of_that_stiffness_and_is_no_finer(drawn, sha
     square += machine.shaft_stiffness / machine.shaft_mass
     square += max(machine.support_stiffness_x, machine.support_stiffness_y) / machine.housing_mass
     rate = share * math.sqrt(square) / (4 * FINE_STEP)
-    sampled = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"sample_rate_hz": rate})})
-    assert steps_per_sample(record, scenario.record, settings_of(sampled)) == steps
+    assert steps_per_sample(record, sampled(scenario, rate)) == steps
 
 
 @pytest.mark.parametrize(("mode", "steps"), [(0.49, ENOUGH), (0.71, ENOUGH), (0.73, 8), (0.95, 8)])
 def test_a_mode_above_half_the_sample_rate_is_followed_and_not_resolved(drawn, mode, steps):
     """The anti-alias filter removes it; ``mode`` is its frequency over the sample rate, and 0.75 / 2 pi of it a step."""
-    recipe, scenario, record = drawn
+    scenario, record = drawn
     rate = fastest_rate(record) / (2 * math.pi * mode)
-    sampled = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"sample_rate_hz": rate})})
-    assert steps_per_sample(record, scenario.record, settings_of(sampled)) == steps
+    assert steps_per_sample(record, sampled(scenario, rate)) == steps
     assert 2 * math.pi * mode / steps < FOLLOWED_STEP
 
 
@@ -80,16 +82,16 @@ def test_a_ball_rolls_over_the_narrowest_spall_in_some_steps(recipe_with, width)
     spalls = [{"kind": site, "width_mm": width} for site in ("inner", "outer", "ball")]
     recipe = recipe_with(fast | {"faults": spalls})
     for scenario in draw_scenarios(recipe, 0, 3):
-        record, bearing = input_of(scenario), scenario.rig.bearing
+        record, bearing = input_of(scenario), scenario.drawing
         of = orders(bearing)
         speed = {
             "outer": of.ftf * bearing.outer_radius,
             "inner": (1 - of.ftf) * bearing.inner_radius,
             "ball": of.bsf * bearing.ball_diameter / 2,
-        }[scenario.specimen.fault]
+        }[scenario.fault]
         rate = 2 * math.pi * record.turning.shaft_rate * speed / (1e-3 * width)
         assert passage_rate(record) == pytest.approx(rate, rel=0.05)
-        steps = steps_per_sample(record, scenario.record, settings_of(recipe))
+        steps = steps_per_sample(record, scenario)
         assert steps * 12_000 >= PASSAGE_STEPS * passage_rate(record)
 
 
@@ -108,7 +110,7 @@ def test_the_records_of_a_group_have_one_step_together_and_alone(recipe_with, sh
     scenarios = draw_scenarios(recipe, 0, 12 * len(shares))
     for scenario, run in zip(scenarios, runs_of(scenarios), strict=True):
         (alone,) = runs_of([scenario])
-        steps[scenario.record.pair] |= {one.group.steps for one in (*run.integrations, *alone.integrations)}
+        steps[scenario.origin.pair] |= {one.group.steps for one in (*run.integrations, *alone.integrations)}
     steps.pop(-1, None)
     assert steps
     assert all(len(of_group) == 1 for of_group in steps.values())

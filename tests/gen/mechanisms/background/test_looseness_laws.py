@@ -5,18 +5,23 @@ import pytest
 
 from gen.mechanisms.background.looseness import Looseness
 from gen.mechanisms.background.machine_conditions import MACHINE_CONDITIONS
-from gen.mechanisms.background.section import labels_of
+from gen.mechanisms.labels import label_values
 from gen.scenarios import draw_scenarios
-from tests.measuring import background_of, quiet
+from tests.measuring import FLOAT, background_of, drawn, quiet
 
 FS, RATE, N = 12_000.0, 25.0, 48_000  # four seconds: 100 turns of the shaft
 STEADY = 2 * np.pi * RATE / FS * np.arange(N)
-LOOSE = {"lift": 1.5, "frequency": 400.0, "damping": 0.7, "level": 2.0, "phase": 1.0}
-SECTION = {"probability": 1, "lift": 1.5, "frequency_hz": 400, "level_db": 6}
+LOOSE = {"probability": 1, "lift": 1.5, "frequency_hz": 400, "level_db": 6}
+LIFTED_MOST = 2 * np.pi * np.random.default_rng(0).random()  # angle of the shaft, of the rig
+
+
+def vibrations(angles, **changes):
+    rngs = np.random.default_rng(0), np.random.default_rng(1)
+    return drawn(Looseness, **(LOOSE | changes)).vibrations(angles, FS, *rngs)
 
 
 def vibration(**changes):
-    (found,) = Looseness.vibrations(LOOSE | changes, STEADY, FS, np.random.default_rng(0))
+    (found,) = vibrations(STEADY, **changes)
     return found
 
 
@@ -41,40 +46,41 @@ def test_a_short_flight_follows_the_weight_and_the_force_of_the_shaft():
     """Until it lands, the acceleration is ``g (lift cos(angle - phase) - 1)``; its level is its rms."""
     lift = 1.1
     found = vibration(lift=lift)
-    expected = 9.80665 * (lift * np.cos(STEADY - 1.0) - 1)
+    expected = 9.80665 * (lift * np.cos(STEADY - LIFTED_MOST) - 1)
     aloft = expected > 0.02
     scale = np.median(found[aloft] / expected[aloft])
     np.testing.assert_allclose(found[aloft], scale * expected[aloft], atol=1e-6 * scale)
-    assert np.sqrt(np.mean(found**2)) == pytest.approx(2.0)
+    assert np.sqrt(np.mean(found**2)) == pytest.approx(10 ** (6 / 20))
 
 
 def test_a_record_without_a_flight_has_no_vibration():
-    standing = np.full(100, 1.0 + np.pi)  # the force of the shaft presses the machine down
-    assert Looseness.vibrations(LOOSE, standing, FS, np.random.default_rng(0)) == []
+    standing = np.full(100, LIFTED_MOST + np.pi)  # the force of the shaft presses the machine down
+    assert vibrations(standing) == []
 
 
 def test_a_stiffer_ground_makes_harder_impacts():
     frequencies = np.fft.rfftfreq(N, 1 / FS)
-    powers = [np.abs(np.fft.rfft(vibration(frequency=frequency))) ** 2 for frequency in (300.0, 1200.0)]
+    powers = [np.abs(np.fft.rfft(vibration(frequency_hz=frequency))) ** 2 for frequency in (300.0, 1200.0)]
     soft, stiff = (np.sum(frequencies * power) / power.sum() for power in powers)
     assert stiff > 2 * soft
 
 
 def test_a_loose_machine_moves_no_other_draw_and_is_labelled(recipe_with):
-    plain = draw_scenarios(recipe_with({}), 0, 4)
-    loose = draw_scenarios(recipe_with({"background.looseness": SECTION}), 0, 4)
+    plain = draw_scenarios(recipe_with(), 0, 4)
+    loose = draw_scenarios(recipe_with({"background.looseness": LOOSE}), 0, 4)
     for one, other in zip(plain, loose, strict=True):
-        drawn = other.rig.background["looseness"]
-        assert MACHINE_CONDITIONS[labels_of(other.rig.background)["machine_condition"]] == "looseness"
-        assert labels_of(other.rig.background)["looseness"] == 1.5
-        assert drawn["level"] == pytest.approx(10 ** (6 / 20))
-        assert {**other.rig.background, "looseness": None} == one.rig.background
-        assert (one.record, one.specimen) == (other.record, other.specimen)
+        labels = label_values(other.recipe, {})
+        assert MACHINE_CONDITIONS[labels["machine_condition"]] == "looseness"
+        assert labels["looseness"] == 1.5
+        background = other.recipe.background.model_copy(update={"looseness": None})
+        origin = other.origin.model_copy(update={"corpus": one.origin.corpus})
+        assert other.edited(background=background, origin=origin) == one
 
 
 def test_it_passes_path_and_chain_at_its_level(recipe_with):
-    recipe = recipe_with({"recording.converter": {"kind": "float32"}, "recording.duration_s": 2.0})
+    changes = FLOAT | {"recording.duration_s": 2.0}
     firm, loose = (
-        background_of(recipe, quiet(**some))[0].std() for some in ({}, {"looseness": LOOSE | {"level": 3.0}})
+        background_of(recipe_with(changes | quiet(**some)))[0].std()
+        for some in ({}, {"looseness": LOOSE | {"level_db": 10}})
     )
-    assert np.sqrt(loose**2 - firm**2) == pytest.approx(3.0, rel=0.1)
+    assert np.sqrt(loose**2 - firm**2) == pytest.approx(10 ** (10 / 20), rel=0.1)

@@ -8,39 +8,48 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.mechanisms.background.machine_conditions import MACHINE_CONDITIONS, bursts_of, lines_of
+from gen.mechanisms.background.machine_conditions import (
+    MACHINE_CONDITIONS,
+    Bursts,
+    MachineCondition,
+    bursts_of,
+    lines_of,
+)
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
+from tests.measuring import drawn, lines
 
 TURNS, N = 40, 24_000
 STEADY = 2 * np.pi * TURNS / N * np.arange(N)
 
 
-def condition_of(scenario):
-    return scenario.rig.background["machine_conditions"]
+def kind_of(scenario):
+    conditions = scenario.recipe.machine_conditions
+    return "sound" if conditions is None else conditions.entries[0].kind
 
 
-@given(
-    st.sampled_from([0.5, 1.0, 1.5]), st.lists(st.tuples(st.floats(1e-3, 1), st.floats(0, 6)), min_size=1, max_size=60)
-)
-def test_the_lines_are_at_the_multiples_of_the_order_with_their_levels(order, drawn):
-    lines = tuple({"level": level, "phase": phase} for level, phase in drawn)
-    spectrum = np.sqrt(2) / N * np.abs(np.fft.rfft(lines_of({"order": order, "lines": lines}, STEADY)))
-    places = np.round(order * TURNS * np.arange(1, len(lines) + 1)).astype(int)
-    np.testing.assert_allclose(spectrum[places], [line["level"] for line in lines], rtol=1e-3, atol=1e-5)
+def condition(levels, order=1.0):
+    return drawn(MachineCondition, kind="rub", order=order, **lines(levels))
+
+
+@given(st.sampled_from([0.5, 1.0, 1.5]), st.lists(st.floats(-60, 0), min_size=1, max_size=60))
+def test_the_lines_are_at_the_multiples_of_the_order_with_their_levels(order, levels):
+    found = lines_of(condition(levels, order), STEADY, np.random.default_rng(0))
+    spectrum = np.sqrt(2) / N * np.abs(np.fft.rfft(found))
+    places = np.round(order * TURNS * np.arange(1, len(levels) + 1)).astype(int)
+    np.testing.assert_allclose(spectrum[places], 10 ** (np.array(levels) / 20), rtol=1e-3, atol=1e-5)
     assert np.delete(spectrum, places).max() < 1e-3
 
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
 def test_bursts_come_at_their_order_with_their_rms(order):
-    drawn = {"order": order, "level": 0.3, "length": math.radians(20), "start": 1.0}
-    rng = np.random.default_rng(0)
-    squares = np.mean([bursts_of(drawn, STEADY, rng) ** 2 for _ in range(300)], axis=0)
-    assert np.sqrt(squares.mean()) == pytest.approx(0.3, rel=0.02)
-    lines = np.abs(np.fft.rfft(squares))[1:]
-    assert 1 + np.argmax(lines) == order * TURNS
+    bursts, rng = drawn(Bursts, order=order, level_db=-10, length_deg=20), np.random.default_rng(0)
+    squares = np.mean([bursts_of(bursts, STEADY, 1.0, rng) ** 2 for _ in range(300)], axis=0)
+    assert np.sqrt(squares.mean()) == pytest.approx(10 ** (-10 / 20), rel=0.02)
+    found = np.abs(np.fft.rfft(squares))[1:]
+    assert 1 + np.argmax(found) == order * TURNS
     loud = squares > squares.max() / 2
-    bell = 2 * math.acos(1 - math.log(2) / 2 * drawn["length"] ** 2) / (2 * math.pi)
+    bell = 2 * math.acos(1 - math.log(2) / 2 * math.radians(20) ** 2) / (2 * math.pi)
     assert loud.mean() == pytest.approx(bell, rel=0.2)
 
 
@@ -51,38 +60,35 @@ def test_the_condition_belongs_to_the_machine_and_not_to_the_class_of_its_bearin
     ]
     recipe = recipe_with({"corpus.rigs": 400, "machine_conditions": {"probability": 0.5, "entries": entries}})
     scenarios = draw_scenarios(recipe)
-    of_rig = {scenario.rig.number: condition_of(scenario) for scenario in scenarios}
-    assert all(condition_of(scenario) == of_rig[scenario.rig.number] for scenario in scenarios)
-    kinds = Counter("sound" if one is None else one["kind"] for one in of_rig.values())
+    of_rig = {scenario.origin.rig: scenario.recipe.machine_conditions for scenario in scenarios}
+    assert all(scenario.recipe.machine_conditions == of_rig[scenario.origin.rig] for scenario in scenarios)
+    kinds = Counter({scenario.origin.rig: kind_of(scenario) for scenario in scenarios}.values())
     for kind, share in (("sound", 0.5), ("unbalance", 0.375), ("rub", 0.125)):
         assert kinds[kind] == pytest.approx(share * 400, abs=4 * math.sqrt(400 * share * (1 - share)))
-    for one in of_rig.values():
-        if one is not None and one["kind"] == "rub":
-            assert np.argmax([line["level"] for line in one["lines"]]) == 1
+    rubbing = [found.entries[0] for found in of_rig.values() if found is not None and found.entries[0].kind == "rub"]
+    assert {np.argmax(one.level_db) for one in rubbing} == {1}
 
 
 def test_a_section_of_conditions_moves_no_other_draw(recipe_with):
-    plain = draw_scenarios(recipe_with({}), 0, 5)
+    plain = draw_scenarios(recipe_with(), 0, 5)
     entries = [{"kind": "belt", "order": 0.4, "count": 3}]
     found = draw_scenarios(recipe_with({"machine_conditions": {"probability": 1, "entries": entries}}), 0, 5)
     for one, other in zip(plain, found, strict=True):
-        assert condition_of(other)["kind"] == "belt"
-        assert (one.record, one.specimen, one.rig.machine, one.rig.path) == (
-            other.record, other.specimen, other.rig.machine, other.rig.path,
-        )  # fmt: skip
+        assert kind_of(other) == "belt"
+        origin = other.origin.model_copy(update={"corpus": one.origin.corpus})
+        assert other.edited(machine_conditions=None, origin=origin) == one
 
 
 def test_no_line_aliases_in_a_record_whose_speed_rises():
     """A line at half the sample rate or above would come back as one of no order of the shaft."""
     turns = np.cumsum(np.linspace(20.0, 60.0, N)) / 12_000
-    lines = tuple({"level": 1.0, "phase": 0.0} for _ in range(300))
-    found = lines_of({"order": 1.0, "lines": lines}, 2 * np.pi * turns)
+    found = lines_of(condition([0] * 300), 2 * np.pi * turns, np.random.default_rng(0))
+    phases = 2 * np.pi * np.random.default_rng(0).random(300)
     # 99 lines at 60 Hz lie below 6 kHz
-    kept = sum(np.cos(2 * np.pi * order * turns) for order in range(1, 100))
+    kept = sum(np.cos(2 * np.pi * order * turns + phases[order - 1]) for order in range(1, 100))
     np.testing.assert_allclose(found, np.sqrt(2) * kept, atol=1e-3 * np.abs(kept).max())
 
 
 def test_domain_randomised_has_machines_of_every_condition():
     scenarios = draw_scenarios(read_recipe("domain_randomised"))
-    kinds = {(condition_of(scenario) or {"kind": "sound"})["kind"] for scenario in scenarios}
-    assert kinds == set(MACHINE_CONDITIONS.values()) - {"unknown"}
+    assert {kind_of(scenario) for scenario in scenarios} == set(MACHINE_CONDITIONS.values()) - {"unknown"}

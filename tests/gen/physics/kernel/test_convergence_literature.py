@@ -11,7 +11,7 @@ events are larger than those of the smooth motion.
 import numpy as np
 import pytest
 
-from gen.physics.inputs import SpallInput, Turning
+from gen.physics.inputs import Spall, Turning
 from gen.physics.kernel.compiling import LANES
 from tests.lanes import march_lanes
 from tests.strategies import RIG, record
@@ -46,8 +46,8 @@ def errors(case, seed=0):
             cage_angle=cage,
         )
         spalls = [
-            SpallInput("inner", 0.53e-3, 5e-6, inner, 0, profile),
-            SpallInput("outer", 0.36e-3, 5e-6, -1.5, 0, profile),
+            Spall("inner", 0.53e-3, 5e-6, inner, 0, profile),
+            Spall("outer", 0.36e-3, 5e-6, -1.5, 0, profile),
         ]
         some.append(record(RIG._replace(half_clearance=half_clearance), motion, spalls if profile else ()))
     marches = ([trip.states[:, :6] for trip in march_lanes(some, N_KNOTS, n, KNOT)] for n in [EXACT, *STEPS])

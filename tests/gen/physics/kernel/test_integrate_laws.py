@@ -6,7 +6,7 @@ from scipy.signal import find_peaks, hilbert
 
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.inputs import SpallInput, Turning, at_rest
+from gen.physics.inputs import Spall, Turning, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
@@ -38,7 +38,7 @@ def wandering_rig(rng):
         unbalance=2.75e-5, shaft_angle=start[0], cage_angle=start[1], spin_angle=start[2],
     )  # fmt: skip
     angle = -np.pi / 2 if site == "outer" else rng.uniform(-np.pi, np.pi)
-    spall = SpallInput(site, rng.uniform(0.3e-3, 0.53e-3), 2.8e-4, angle)
+    spall = Spall(site, rng.uniform(0.3e-3, 0.53e-3), 2.8e-4, angle)
     return record(RIG._replace(contact_damping=1.0), motion, [spall], seed=rng.integers(2**32), waviness=2e-8)
 
 
@@ -63,7 +63,7 @@ def turning(site, shaft_rate, rng, *, mean_slip=0.0, load=100.0):
     start = rng.uniform(-np.pi, np.pi, 3)
     motion = Turning(shaft_rate, mean_slip=mean_slip, shaft_angle=start[0], cage_angle=start[1], spin_angle=start[2])
     tight = RIG._replace(half_clearance=-5e-6, contact_damping=50.0, load_x=0.0, load_y=-load)
-    return record(tight, motion, [SpallInput(site, 0.5e-3, 3e-4, rng.uniform(-np.pi, np.pi))])
+    return record(tight, motion, [Spall(site, 0.5e-3, 3e-4, rng.uniform(-np.pi, np.pi))])
 
 
 def envelope(signal):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gen.physics.bearing import Bearing
-from gen.physics.inputs import KernelInput, SpallInput, Turning
+from gen.physics.inputs import KernelInput, Spall, Turning
 from gen.physics.kernel.layout import n_process_terms
 from gen.physics.rotor import Machine
 from tests.lanes import EVERY_ACCELERATION, march_lanes
@@ -26,7 +26,7 @@ def golden_record(half_clearance, *, with_spalls):
         bearing=bearing,
         machine=Machine(**GOLDEN["machine"])._replace(half_clearance=half_clearance),
         turning=Turning(**GOLDEN["motion"]),
-        spalls=tuple(SpallInput(**spall) for spall in GOLDEN["spalls"]) if with_spalls else (),
+        spalls=tuple(Spall(**spall) for spall in GOLDEN["spalls"]) if with_spalls else (),
         frequencies=still,
         phases=still,
         pickups=EVERY_ACCELERATION,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.inputs import SpallInput, Turning
+from gen.physics.inputs import Spall, Turning
 from gen.physics.kernel.compiling import LANES
 from tests.lanes import march_lanes
 from tests.strategies import RIG, machines, record, steady_turnings, wandering_records
@@ -88,7 +88,7 @@ def test_a_damped_contact_never_pulls(speed, deflection):
     damped = record(
         RIG._replace(load_x=0.0, load_y=0.0, contact_damping=600.0, ring_damping=0.0, shaft_damping=0.0),
         Turning(0.0, jitter_rms=1e-9),
-        [SpallInput("outer", 2e-4, 1e-4, 2.0), SpallInput("outer", 2e-4, 1e-4, 2.0)],
+        [Spall("outer", 2e-4, 1e-4, 2.0), Spall("outer", 2e-4, 1e-4, 2.0)],
     )
     start = displaced(along=0.0, by=deflection, clearance=RIG.half_clearance)
     start[6] = -speed  # away from the ball

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gen.physics.hertz import LINE_EXPONENT
-from gen.physics.inputs import SpallInput, Turning, Waviness, at_rest
+from gen.physics.inputs import Spall, Turning, Waviness, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
@@ -29,9 +29,9 @@ TURNING = Turning(
 )  # fmt: skip
 RAMP = tuple(np.linspace(0, 4e-6, 9))
 SPALLS = (
-    SpallInput("inner", 2e-3, 2e-6, -1.7, scatter=0.2, seed=1),
-    SpallInput("outer", 2e-3, 5e-6, -1.4, profile="table", table=(RAMP,), scatter=0.2, seed=2),
-    SpallInput("ball", 2e-3, 2e-6, 0.5, ball=0, scatter=0.2, seed=3),
+    Spall("inner", 2e-3, 2e-6, -1.7, scatter=0.2, seed=1),
+    Spall("outer", 2e-3, 5e-6, -1.4, profile="table", table=(RAMP,), scatter=0.2, seed=2),
+    Spall("ball", 2e-3, 2e-6, 0.5, ball=0, scatter=0.2, seed=3),
 )
 # rows that count or name something, and REACH, which may be larger than it must be: another value that matters
 OTHER = {
