@@ -74,6 +74,12 @@ class _Processes(Subprocess):
         pipe, silent = asyncio.subprocess.PIPE, asyncio.subprocess.DEVNULL
         self.process = await asyncio.create_subprocess_exec(*command, stdin=pipe, stdout=silent, env=environment)
 
+    async def close(self) -> None:
+        """End the processes: the copies too where the program that made them was killed."""
+        if self.process and self.process.stdin:
+            self.process.stdin.close()
+        await super().close()
+
 
 def _suffixes(count: int) -> list[str]:
     return [f"-{number}" for number in range(count)]
@@ -146,6 +152,8 @@ def threads(client: Client) -> Iterator[int]:
         workers = getattr(client.cluster, "workers", {}).values()
         here = [worker for worker in workers if isinstance(worker, _Processes)]
         for ended in (worker.process for worker in here if worker.process and worker.process.returncode is not None):
+            if _threads(client):
+                break  # the program was killed, and its copies work on
             raise ClusterError(
                 f"all worker processes have ended, with code {ended.returncode}; use fewer workers if memory is short."
             )
