@@ -120,7 +120,10 @@ class Section(BaseModel):
         RecipeError
             If a key, whose path begins with ``place``, is a distribution or a share.
         """
-        drawn, values, count = dict[str, Any](), self.__dict__, self.stated_count() or 1
+        drawn, values, stated = dict[str, Any](), self.__dict__, self.stated_count()
+        count = 1 if stated is None else stated
+        if values.get("probability", 1) != 1:
+            raise RecipeError(f"{place}probability: one record has this or not; say 1, or leave the section out.")
         for key, (_, each) in _drawn_keys(type(self)).items():
             value = values[key]
             if isinstance(value, Section):
@@ -133,8 +136,10 @@ class Section(BaseModel):
                     raise RecipeError(
                         f"{place}{key}: {value} is no number; the recipe of one record, with an origin, has numbers alone."
                     )
-                several = value.values if isinstance(value, Listed) else (value.value,) * count
-                drawn[key] = several if each else several[0]
+                if isinstance(value, Listed):
+                    drawn[key] = value.values
+                else:
+                    drawn[key] = (value.value,) * count if each else value.value
         return self.model_copy(update=drawn) if drawn else self
 
     def si(self) -> dict[str, Any]:

@@ -95,6 +95,8 @@ def _corpus_problem(recipe: Sections) -> str | None:
     corpus = recipe.corpus
     if recipe.origin is not None and (recipe.n_records, len(recipe.faults), recipe.life) != (1, 1, None):
         return "origin: is that of one record without life; keep one rig with one specimen, one record and one fault, or leave origin out."
+    if recipe.origin is not None and (several := _several(recipe)) is not None:
+        return f"{several}: one record, with an origin, has one of them; name it, or leave origin out."
     if recipe.truth.undetected == "redraw" and corpus.records_of_a_specimen > recipe.storage.records_per_part:
         return (
             f"truth.undetected: redraw judges all {corpus.records_of_a_specimen} records of a specimen together, and a part has "
@@ -110,7 +112,22 @@ def _corpus_problem(recipe: Sections) -> str | None:
     return None
 
 
+def _several(recipe: Sections) -> str | None:
+    """Key that names several of what one record has one of; None without one."""
+    bearing, conditions = recipe.bearing, recipe.machine_conditions
+    if isinstance(bearing, CatalogueBearing) and len(bearing.designations) > 1:
+        return "bearing.designations"
+    if conditions is not None and len(conditions.entries) > 1:
+        return "machine_conditions.entries"
+    bodies = (sum(weight > 0 for weight in channel.body.values()) for channel in recipe.recording.channels)
+    return "recording.channels.body" if any(count > 1 for count in bodies) else None
+
+
 def _sensor_faults_problem(recipe: Sections) -> str | None:
+    loose = getattr(recipe.sensor_faults, "loose_mount", None)
+    channels = len(recipe.recording.channels)
+    if loose is not None and any(place >= channels for place in loose.loose_channels or ()):
+        return f"sensor_faults.loose_mount.loose_channels: a record has {channels} channels, numbered from 0; name some of them."
     for fault in mechanisms_of(recipe.sensor_faults):
         problem = fault.problem(recipe.recording.full_scale, recipe.recording.duration_s)
         if problem is not None:

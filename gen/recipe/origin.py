@@ -1,6 +1,6 @@
 """Where the record of a drawn recipe comes from: its numbers, on which its random streams depend, and its place among other records."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, StrictInt, StringConstraints
 
@@ -47,7 +47,7 @@ class OriginSection(Section):
     """Number of the record in its corpus, from 0."""
     entry: Place = 0
     """Place of its fault in `faults` of the recipe of the corpus."""
-    split: str = "train"
+    split: Literal["train", "validation", "test"] = "train"
     """Part of the corpus that the record is in: train, validation or test."""
     fault_try: Place = 0
     """Number of faults that were drawn before this one and could not be seen."""
