@@ -1,5 +1,6 @@
 """Laws of replay: every record is made again bit for bit from its stored scenario, and a corpus without one gets a sentence."""
 
+import re
 import shutil
 
 import numpy as np
@@ -13,12 +14,14 @@ from gen import (
     read_recipe,
     read_scenarios,
     replay,
+    simulate,
     validate_corpus,
     write_corpus,
 )
 from gen.corpus import FAULTS, SIGNAL, finish_corpus, part_name, write_part
 from gen.corpus.joining import NUMBERS
-from gen.support.errors import CorpusError
+from gen.support.errors import CorpusError, RecipeError
+from gen.support.yaml_files import parse_yaml
 from tests import corpora
 from tests.tampering import edited, seal
 
@@ -154,6 +157,42 @@ def test_an_edited_recipe_of_a_record_gives_another_record_with_its_labels(one_r
         with open_corpus(tmp_path / key) as corpus:
             assert corpus[label].values == pytest.approx(factor * record[label].values, rel=1e-3)
             assert not np.array_equal(corpus[SIGNAL].values, record[SIGNAL].values)
+
+
+def test_a_recipe_of_a_record_without_its_fault_gives_the_healthy_record(one_record, tmp_path):
+    _, scenario, path = one_record
+    keys = parse_yaml(path.read_text(encoding="utf-8"), "record", RecipeError)
+    generate(keys | {"faults": [{"kind": "healthy"}]}, tmp_path / "healthy")
+    sound = simulate([scenario.without_fault()])
+    with open_corpus(tmp_path / "healthy") as corpus:
+        assert corpus["fault_name"].values.tolist() == ["healthy"]
+        np.testing.assert_array_equal(corpus[SIGNAL].values, sound[SIGNAL].values)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"origin": {"split": "half"}}, "origin.split: 'half' is not allowed here"),
+        ({"origin": {"record": -1}}, "origin.record: -1 is not allowed here"),
+        ({"bearing": ["6205", "6206"]}, "bearing.designations: one record, with an origin, has one of them"),
+        ({"operation": {"shaft_rpm": "uniform(1, 2)"}}, "operation.shaft_rpm: uniform(1, 2) is no number"),
+        ({"path": {"modulation": {"probability": 0.5, "first": 0.1, "second": 0}}}, "path.modulation.probability: one record"),
+        (
+            {"sensor_faults": {"loose_mount": {"probability": 1, "loose_channels": [5], "frequency_hz": [500],
+                "damping_percent": [5], "holding_m_s2": [10]}}},
+            "sensor_faults.loose_mount.loose_channels: a record has",
+        ),
+    ],
+)  # fmt: skip
+def test_what_one_record_cannot_have_is_one_sentence(one_record, change, sentence):
+    with pytest.raises(RecipeError, match=f"^{re.escape(sentence)}") as raised:
+        one_record[1].with_(**change)
+    assert "\n" not in str(raised.value)
+
+
+def test_a_recipe_of_a_record_may_have_no_items(one_record):
+    none = {"modes": {"count": 0, "frequency_hz": 100, "damping_percent": 2, "gain_db": 0, "sign": 1}}
+    assert one_record[1].with_(path=none).recipe.path.modes.frequency_hz == ()
 
 
 def test_a_corpus_without_its_recipe_still_replays(tiny_corpus, tmp_path):

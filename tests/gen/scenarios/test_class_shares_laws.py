@@ -65,6 +65,7 @@ def test_over_the_seeds_the_classes_of_a_rig_have_the_shares_of_their_weights(re
 
 @pytest.mark.parametrize("specimens", [1, 3])
 def test_the_shipped_training_recipe_has_equal_classes_whatever_its_specimens_per_rig(specimens):
+    """Independent draws would leave an excess of 24 to 39 (standard deviation) after 3,000 to 8,000 specimens."""
     recipe = read_recipe("domain_randomised")
     corpus = recipe.corpus.model_copy(update={"specimens_per_rig": specimens, "rigs": 1000})
     for seed in range(3):
