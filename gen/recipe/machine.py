@@ -11,7 +11,8 @@ from gen.drawing import Distribution, Draws, Name, Number, Section, within
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.physics.extent import MAX_BALLS
-from gen.support.units import UNITS, to_si
+from gen.support.errors import RecipeError
+from gen.support.units import UNITS, from_si, to_si
 
 _KNOWN = tuple(
     name for name, bearing in CATALOGUE.items() if bearing.rolling_element == "ball" or bearing.roller_length
@@ -290,6 +291,15 @@ class LubricantSection(Section):
     """Density of the oil; it turns kinematic into dynamic viscosity."""
     pressure_viscosity_per_gpa: Distribution = within(5, 50, default=20.0)
     """Relative rise of the viscosity with pressure, the same at every temperature; it enters the film thickness."""
+
+    def check(self, item: str) -> None:
+        """RecipeError if the drawn oil of an ``item`` does not get thinner when it gets warmer."""
+        drawn = self.si()
+        if drawn["viscosity_100"] >= drawn["viscosity_40"]:
+            raise RecipeError(
+                f"{item}: oil of {from_si(drawn['viscosity_40'], 'mm2_s'):.3g} mm2/s at 40 C has no lower viscosity at 100 C; "
+                f"keep viscosity_100_mm2_s below viscosity_40_mm2_s."
+            )
 
 
 class ContactSection(Section):

@@ -105,12 +105,8 @@ def _draw_rig(recipe: Recipe, draws: Draws) -> Drawn:
     # ISO 21940-11 defines the balance grade at the highest speed of the machine
     highest = machine.balance_rpm or _highest_speed(recipe)
     drawn["machine"] = machine.model_copy(update={"balance_rpm": highest})
-    oil = drawn["contact"].lubricant
-    if oil is not None and oil.viscosity_100_mm2_s >= oil.viscosity_40_mm2_s:
-        raise RecipeError(
-            f"rig {draws.of}: oil of {oil.viscosity_40_mm2_s:.3g} mm2/s at 40 C has no lower viscosity at 100 C; "
-            f"keep viscosity_100_mm2_s below viscosity_40_mm2_s."
-        )
+    if (oil := drawn["contact"].lubricant) is not None:
+        oil.check(f"rig {draws.of}")
     dimensions = {"pitch_diameter_mm": bearing.pitch_diameter, "ball_diameter_mm": bearing.ball_diameter}
     known = {**_known(recipe.machine, machine), **dimensions}
     return Drawn(recipe.model_copy(update=drawn), draws._replace(point=[]), known, bearing)

@@ -184,6 +184,8 @@ def scenario_of(recipe: Recipe) -> Scenario:
         rpm = {"balance_rpm": drawn.operation.shaft_rpm}
         drawn = drawn.model_copy(update={"machine": drawn.machine.model_copy(update=rpm)})
     scenario = Scenario(drawn)
+    if drawn.contact.lubricant is not None:
+        drawn.contact.lubricant.check(f"rig {scenario.origin.rig}")
     check_bearing(scenario.bearing, f"specimen {scenario.origin.specimen}")
     for part in scenario.components:
         part.check(scenario.bearing, f"specimen {scenario.origin.specimen}")

@@ -176,6 +176,7 @@ def test_a_recipe_of_a_record_without_its_fault_gives_the_healthy_record(one_rec
         ({"origin": {"record": -1}}, "origin.record: -1 is not allowed here"),
         ({"bearing": ["6205", "6206"]}, "bearing.designations: one record, with an origin, has one of them"),
         ({"operation": {"shaft_rpm": "uniform(1, 2)"}}, "operation.shaft_rpm: uniform(1, 2) is no number"),
+        ({"contact": {"lubricant": {"viscosity_100_mm2_s": 80}}}, "rig 2: oil of 68 mm2/s at 40 C has no lower viscosity"),
         ({"path": {"modulation": {"probability": 0.5, "first": 0.1, "second": 0}}}, "path.modulation.probability: one record"),
         (
             {"sensor_faults": {"loose_mount": {"probability": 1, "loose_channels": [5], "frequency_hz": [500],
