@@ -97,10 +97,8 @@ class Draws(NamedTuple):
 
         def product(key: str, share: float, item: int = 0) -> float:
             """Value of a share, within the range of its key up to rounding."""
-            bounds, value = (
-                section.model_fields[key].json_schema_extra,
-                share * in_si(shares[key], item) / unit_of(key)[1],
-            )
+            bounds = section.model_fields[key].json_schema_extra
+            value = share * in_si(shares[key], item) / unit_of(key)[1]
             if not any(is_within(value * rounding, bounds) for rounding in (1, 1 - 1e-9, 1 + 1e-9)):
                 raise RecipeError(
                     f"{self.level} {self.of}: {key}: a share of {share:.4g} of {shares[key]} gives {value:.4g}, which is not in "
@@ -111,9 +109,6 @@ class Draws(NamedTuple):
         drawn = dict(numbers)
         for key in shares:
             value = numbers[key]
-            drawn[key] = (
-                tuple(product(key, share, item) for item, share in enumerate(value))
-                if isinstance(value, tuple)
-                else product(key, value)
-            )
+            several = isinstance(value, tuple)
+            drawn[key] = tuple(product(key, *one[::-1]) for one in enumerate(value)) if several else product(key, value)
         return drawn

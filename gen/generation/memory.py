@@ -105,7 +105,7 @@ def simulate(scenarios: Sequence[Scenario]) -> xr.Dataset:
     scenarios : sequence of Scenario
         From :func:`gen.draw_scenarios` or :func:`gen.read_scenarios`, changed or not: ``without_fault()``, ``at_severity(0.5)``,
         ``with_(operation={"shaft_rpm": 1200})``. Random processes such as noise follow from the numbers of their ``origin``, so scenarios
-        with the same numbers have the same noise. In a pair or ladder with a drawn ratio, the last one, of the largest severity, sets the
+        with the same numbers have the same noise. In a pair or ladder with a drawn ratio, the one of the largest severity sets the
         level; a stored scenario has that level already.
 
     Returns

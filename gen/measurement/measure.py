@@ -78,7 +78,7 @@ def measure(
     acceleration : array, shape (record, channel, time)
         Acceleration that each channel measures, from the lead ahead of the record on [m s-2].
     scenarios : list of Scenario
-        The scenarios that were simulated, in the same order; of each group, the last one has the largest severity.
+        The scenarios that were simulated, in the same order; those of a group in any order.
     twins : sequence of Twin, optional
         The same records without their faults, which tell what the faults add.
     motions : sequence of Motion, optional
@@ -177,7 +177,7 @@ def _level(
     ratios at which it can. In a group it becomes a physical level, so that all that differs between its records is the fault.
     """
     finite = [place for place, (parts, _) in group.items() if math.isfinite(sum(parts.products))]
-    place = (finite or [*group])[-1]
+    place = max(finite or group, key=lambda place: scenarios[place].origin.rung)
     (parts, sees), scenario = group[place], scenarios[place]
     level, drawn = scenario.recipe.level, scenario.recipe.level.si()
     if level.kind == "physical":

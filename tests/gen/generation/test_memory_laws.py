@@ -20,6 +20,13 @@ def ladder():
     return gen.records([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
 
 
+def test_the_largest_severity_sets_the_level_of_a_group_in_whatever_order_it_is_given():
+    snr = {"kind": "snr", "faulty_db": 5, "healthy_db": 0}
+    drawn = gen.draw_scenarios(gen.make_recipe(OUTER, rungs=[0, 0.5, 1], level=snr, **SHORT))
+    rising, falling = gen.simulate(drawn), gen.simulate(drawn[::-1])
+    np.testing.assert_array_equal(falling[SIGNAL].values[::-1], rising[SIGNAL].values)
+
+
 def same_but_source(one, other):
     """Whether two Datasets of recipes with different names are the same; sources and settings have the name."""
     return one.drop_vars(["source", "draws"]).identical(other.drop_vars(["source", "draws"]))
