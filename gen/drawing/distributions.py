@@ -192,9 +192,9 @@ class Normal(_Interval):
 
     def draw(self, u: float) -> float:
         """Value at the quantile ``u`` of the truncated distribution."""
-        from scipy.special import ndtr, ndtri  # SciPy loads for 0.2 s, and reading a recipe does not need it
+        from scipy.special import ndtri  # SciPy loads for 0.2 s, and reading a recipe does not need it
 
-        low, high = ndtr((self.low - self.mean) / self.sd), ndtr((self.high - self.mean) / self.sd)
+        low, high = (_quantile((end - self.mean) / self.sd) for end in (self.low, self.high))
         value = self.mean + self.sd * float(ndtri(low + u * (high - low)))
         return min(max(value, self.low), self.high)
 
@@ -267,6 +267,7 @@ class Listed(_Distribution):
 
 
 DISTRIBUTIONS = (Constant, Uniform, LogUniform, Normal, Choice, Grid)
+_TYPES = {*DISTRIBUTIONS, Listed}
 
 
 def weighted_index(weights: tuple[float, ...], u: float) -> int:
@@ -276,6 +277,14 @@ def weighted_index(weights: tuple[float, ...], u: float) -> int:
     [0, 1, 1, 2]
     """
     return min(bisect_right(_edges(weights), u), len(weights) - 1)
+
+
+@functools.lru_cache(maxsize=256)
+def _quantile(value: float) -> float:
+    """Share of a standard normal distribution below a value."""
+    from scipy.special import ndtr
+
+    return ndtr(value)
 
 
 @functools.lru_cache(maxsize=256)
@@ -289,7 +298,7 @@ _TEXT = rf"^({'|'.join(KINDS)})\(.*\)( \* [a-z0-9_]+)?$|^[-+.0-9e]+ \* [a-z0-9_]
 
 
 def _read(value: Any) -> Any:
-    if isinstance(value, _Distribution):
+    if is_distribution(value):
         return value
     if isinstance(value, int | float) and not isinstance(value, bool):
         return {"kind": "constant", "value": value}
@@ -308,7 +317,7 @@ Distribution = Annotated[
 
 def is_distribution(value: Any) -> bool:
     """Whether a value is a distribution of one of the ``KINDS``."""
-    return isinstance(value, _Distribution)
+    return type(value) in _TYPES
 
 
 def within(
@@ -356,6 +365,9 @@ def check_bounds(distribution: Any, bounds: dict[str, Any]) -> Any:
     return distribution
 
 
-def is_within(value: float, bounds: dict[str, Any]) -> bool:
-    """True if a value lies within the bounds of a field."""
-    return bounds["low"] <= value <= bounds["high"] and not (bounds["open_low"] and value == bounds["low"])
+def is_within(value: float, bounds: dict[str, Any], rounding: float = 0.0) -> bool:
+    """True if a value lies within the bounds of a field, up to a relative error from ``rounding``."""
+    low, high = bounds["low"], bounds["high"]
+    if low <= value <= high and not (bounds["open_low"] and value == low):
+        return True
+    return rounding > 0 and any(is_within(value * factor, bounds) for factor in (1 - rounding, 1 + rounding))

@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self, get_origin
 
 import numpy as np
 from pydantic import (
@@ -18,9 +18,11 @@ from pydantic import (
 )
 
 from gen.drawing.distributions import Constant, Listed, Number, check_bounds, is_distribution
-from gen.drawing.draws import Draws, unit_of
+from gen.drawing.draws import Draws
 from gen.drawing.streams import Level
 from gen.support.errors import RecipeError
+from gen.support.sentences import models_in
+from gen.support.units import split_unit
 
 Weight = Annotated[Number, Field(ge=0)]
 Count = Annotated[StrictInt, Field(ge=1)]
@@ -80,35 +82,32 @@ class Section(BaseModel):
 
     def drawn(self, of: Draws) -> Self:
         """The section, which is there, with a number in place of each distribution."""
-        own, values = self.drawn_per or of.own, self.__dict__
-        drawn, distributions, below = dict[str, Any](), dict[str, Any](), dict[str, Any]()
-        for key, (per, each) in _drawn_keys(type(self)).items():
+        own, values, count = self.drawn_per or of.own, self.__dict__, self.stated_count() or 1
+        drawn, shares = dict[str, Any](), dict[str, str]()
+        for key, bounds in bounds_of(type(self)).items():
             value = values[key]
             if not is_distribution(value):
-                if isinstance(value, Section) or (isinstance(value, tuple) and value and isinstance(value[0], Section)):
-                    below[key] = value
-            elif (per or own) == of.level:
-                distributions[key] = value, each
+                continue
+            if bounds.get("per", own) == of.level:
+                drawn[key] = of.values(key, value, count) if "each" in bounds else of.value(key, value)
+                if key == self.counted:
+                    count = round(drawn[key])
+                    drawn[key] = float(count)
+                if value.share_of is not None:
+                    shares[key] = value.share_of
             elif value.per == of.level:
                 drawn[key] = value.about(of.value(key, value))
-        numbers = dict[str, Any]()
-        if self.counted in distributions:
-            numbers[self.counted] = float(round(of.value(self.counted, distributions[self.counted][0])))
-        count = round(numbers[self.counted]) if self.counted in numbers else self.stated_count() or 1
-        for key, (value, each) in distributions.items():
-            if key != self.counted:
-                numbers[key] = of.values(key, value, count) if each else of.value(key, value)
-        shares = {key: value.share_of for key, (value, _) in distributions.items() if value.share_of is not None}
-        drawn |= of.with_shares(type(self), numbers, shares) if shares else numbers
-        known = of.known
-        if below and numbers:
-            known = {
-                **known,
-                **{key: drawn[key] * unit_of(key)[1] for key in numbers if not isinstance(drawn[key], tuple)},
-            }
-        for key, value in below.items():
-            new = _drawn_below(value, of.within(key, own, known))
-            if new is not value:
+        if shares:
+            drawn = of.with_shares(bounds_of(type(self)), drawn, shares)
+        sections, known = self._sections(), of.known
+        if sections and drawn:  # they can name the numbers of this one
+            numbers = {name: value * split_unit(name)[1] for name, value in drawn.items() if isinstance(value, float)}
+            known = {**known, **numbers}
+        for key, value in sections:
+            inner = of.within(key, own, known)
+            if isinstance(value, tuple):
+                drawn[key] = tuple(one.draw(inner.within(_name(one), own)) for one in value)
+            elif (new := value.draw(inner)) is not value:
                 drawn[key] = new
         return self.model_copy(update=drawn) if drawn else self
 
@@ -120,45 +119,55 @@ class Section(BaseModel):
         RecipeError
             If a key, whose path begins with ``place``, is a distribution or a share.
         """
-        drawn, values, stated = dict[str, Any](), self.__dict__, self.stated_count()
-        count = 1 if stated is None else stated
-        if values.get("probability", 1) != 1:
+        drawn, stated = dict[str, Any](), self.stated_count()
+        if getattr(self, "probability", 1) != 1:
             raise RecipeError(f"{place}probability: one record has this or not; say 1, or leave the section out.")
-        for key, (_, each) in _drawn_keys(type(self)).items():
-            value = values[key]
-            if isinstance(value, Section):
-                below = value.as_drawn(f"{place}{key}.")
-                drawn |= {} if below is value else {key: below}
-            elif isinstance(value, tuple) and value and isinstance(value[0], Section):
+        for key, value in quantities(self).items():
+            if not isinstance(value, Constant | Listed) or value.share_of is not None:
+                raise RecipeError(
+                    f"{place}{key}: {value} is no number; the recipe of one record, with an origin, has numbers alone."
+                )
+            if isinstance(value, Listed):
+                drawn[key] = value.values
+            else:
+                each = "each" in bounds_of(type(self))[key]
+                drawn[key] = (value.value,) * (1 if stated is None else stated) if each else value.value
+        for key, value in self._sections():
+            if isinstance(value, tuple):
                 drawn[key] = tuple(one.as_drawn(f"{place}{key}[{number}].") for number, one in enumerate(value))
-            elif is_distribution(value):
-                if not isinstance(value, Constant | Listed) or value.share_of is not None:
-                    raise RecipeError(
-                        f"{place}{key}: {value} is no number; the recipe of one record, with an origin, has numbers alone."
-                    )
-                if isinstance(value, Listed):
-                    drawn[key] = value.values
-                else:
-                    drawn[key] = (value.value,) * count if each else value.value
+            elif (new := value.as_drawn(f"{place}{key}.")) is not value:
+                drawn[key] = new
         return self.model_copy(update=drawn) if drawn else self
+
+    def _sections(self) -> list[tuple[str, Any]]:
+        """Sections, and tuples of them, in this one."""
+        values = self.__dict__
+        return [(key, values[key]) for key in _section_keys(type(self)) if values[key]]
 
     def si(self) -> dict[str, Any]:
         """Drawn values in SI units by the key without its unit, an array for a key that was drawn for each item; levels stay in dB."""
-        stored: Any = self.__dict__
-        found = stored.get("_si")
-        if found is None:
-            found = stored["_si"] = {
+        values: Any = self.__dict__
+        if "_si" not in values:
+            values["_si"] = {
                 name: value * factor if isinstance(value, float) else np.array(value) * factor
-                for key, name, factor in _quantity_keys(type(self))
-                if not is_distribution(value := stored[key])
+                for key in bounds_of(type(self))
+                if not is_distribution(value := values[key])
+                for name, factor in (split_unit(key),)
             }
-        return found
+        return values["_si"]
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Copy of the section with some other values, which are not checked."""
-        copy = super().model_copy(update=update, deep=deep)
-        stored: Any = copy.__dict__
-        stored.pop("_si", None)
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:  # noqa: ARG002 - frozen
+        """Copy of the section with some other values, which are not checked; that of pydantic takes four times as long."""
+        copy, new = object.__new__(type(self)), update or {}
+        values, given = {**self.__dict__, **new}, self.__pydantic_fields_set__
+        values.pop("_si", None)
+        for name, value in (
+            ("__dict__", values),
+            ("__pydantic_fields_set__", given if given >= new.keys() else given | new.keys()),
+            ("__pydantic_extra__", None),
+            ("__pydantic_private__", None),
+        ):
+            object.__setattr__(copy, name, value)
         return copy
 
     def __eq__(self, other: object) -> bool:
@@ -179,35 +188,28 @@ class Section(BaseModel):
         return ((key, value) for key, value in super().__repr_args__() if key in given)
 
 
-def _drawn_below(value: Any, of: Draws) -> Any:
-    """A section, or all of a tuple of them, drawn; the value itself where nothing is drawn."""
-    if isinstance(value, Section):
-        return value.draw(of)
-    new = tuple(one.draw(of.within(_name(one), of.own)) for one in value)
-    return value if all(one is other for one, other in zip(new, value, strict=True)) else new
-
-
 def _name(one: Any) -> str:
     """Name of a section among others, which does not depend on its place."""
     return str(getattr(one, "name", "") or getattr(one, "kind", ""))
 
 
-def _bounds(section: type[Section], key: str) -> dict[str, Any]:
-    extra = section.model_fields[key].json_schema_extra
-    return extra if isinstance(extra, dict) else {}
+@functools.cache
+def bounds_of(section: type[Section]) -> dict[str, dict[str, Any]]:
+    """Bounds of every quantity of a section, by key; the number of items comes first, because others are drawn for each."""
+    bounds: Any = {key: field.json_schema_extra for key, field in section.model_fields.items()}
+    return {key: bounds[key] for key in sorted(bounds, key=lambda key: key != section.counted) if bounds[key]}
 
 
 @functools.cache
-def _drawn_keys(section: type[Section]) -> dict[str, tuple[Level | None, bool]]:
-    """Keys that can hold distributions or sections: level of a key with one of its own, and whether it is drawn for each item."""
-    of_keys = {key: _bounds(section, key) for key in section.model_fields}
-    return {key: (bounds.get("per"), bounds.get("each", False)) for key, bounds in of_keys.items()}
-
-
-@functools.cache
-def _quantity_keys(section: type[Section]) -> list[tuple[str, str, float]]:
-    """Key, name without unit and factor of the unit of every quantity of a section."""
-    return [(key, *unit_of(key)) for key in section.model_fields if "low" in _bounds(section, key)]
+def _section_keys(section: type[Section]) -> list[str]:
+    """Keys that can hold sections or tuples of them."""
+    fields = section.model_fields.items()
+    return [
+        key
+        for key, field in fields
+        if get_origin(field.annotation) is not dict
+        and any(issubclass(one, Section) for one in models_in(field.annotation))
+    ]
 
 
 def composed(name: str, module: str, bases: tuple[type[Section], ...], meaning: str | None, **keys: Any) -> Any:

@@ -130,8 +130,8 @@ class _Cursor:
         return len(self.models) > 1 and self.of_kind(step) is not self
 
     def into(self, key: str) -> "_Cursor":
-        annotations = [model.model_fields[key].annotation for model in self.models if key in model.model_fields]
-        return _Cursor(*_sections(annotations))
+        fields = [model.model_fields[key] for model in self.models if key in model.model_fields]
+        return _Cursor(*(model for field in fields for model in models_in(field.annotation)))
 
     def of_kind(self, kind: str) -> "_Cursor":
         sections = [
@@ -148,13 +148,11 @@ def _other_names(field: FieldInfo) -> list[Any]:
     return field.validation_alias.choices if isinstance(field.validation_alias, AliasChoices) else []
 
 
-def _sections(annotations: list[Any]) -> list[type[BaseModel]]:
-    sections: list[type[BaseModel]] = []
-    for annotation in annotations:
-        if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-            sections.append(annotation)
-        sections += _sections(list(getattr(annotation, "__args__", ())))
-    return sections
+def models_in(annotation: Any) -> list[type[BaseModel]]:
+    """Models that a value of a type can be, or can be made of."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for argument in get_args(annotation) for model in models_in(argument)]
 
 
 def _siblings(location: tuple[int | str, ...], model: type[BaseModel]) -> list[str]:

@@ -6,6 +6,7 @@ drawn values, lengths and angles are multiplied by the factor of their unit; per
 a labelled speed is divided by 60.
 """
 
+import functools
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -78,6 +79,7 @@ def unit_suffix(key: str) -> str:
     return next((suffix for suffix in suffixes if suffix in UNITS), "")
 
 
+@functools.cache
 def split_unit(key: str) -> tuple[str, float]:
     """Key without its unit, and the factor that turns that unit into SI; a speed in rpm becomes a rate in Hz.
 
