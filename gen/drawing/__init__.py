@@ -29,11 +29,22 @@ from gen.drawing.distributions import (
     within,
 )
 from gen.drawing.draws import Combination, Draws, Known
-from gen.drawing.section import Count, Name, Probability, Section, Weight, composed, plain, quantities
+from gen.drawing.section import (
+    Count,
+    Name,
+    Probability,
+    Section,
+    Weight,
+    bounds_of,
+    composed,
+    plain,
+    quantities,
+    sections_with_places,
+)
 from gen.drawing.streams import Level, number, stream
 
 __all__ = [
     "DISTRIBUTIONS", "KINDS", "Choice", "Combination", "Count", "Distribution", "Draws", "Grid", "Known", "Level", "Listed", "LogUniform",
-    "Name", "Normal", "Number", "Probability", "Section", "Support", "Uniform", "Weight", "composed", "interval", "is_within", "number",
-    "plain", "quantities", "stream", "weighted_index", "within",
+    "Name", "Normal", "Number", "Probability", "Section", "Support", "Uniform", "Weight", "bounds_of", "composed", "interval",
+    "is_within", "number", "plain", "quantities", "sections_with_places", "stream", "weighted_index", "within",
 ]  # fmt: skip

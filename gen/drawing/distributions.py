@@ -16,7 +16,6 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
-    PrivateAttr,
     StringConstraints,
     model_serializer,
     model_validator,
@@ -41,9 +40,6 @@ class _Distribution(BaseModel):
     """What has one value in common; in `operation` alone, where each record has its own if this is left out."""
     scatter_percent: Annotated[Number, Field(ge=0, lt=100)] = 0.0
     """Largest deviation of a record from the value of its rig or specimen, to both sides and uniformly distributed."""
-
-    _product: Support | None = PrivateAttr(default=None)
-    _product_is_known: bool = PrivateAttr(default=True)
 
     @model_validator(mode="after")
     def _scattered_about_something(self) -> Self:
@@ -74,25 +70,13 @@ class _Distribution(BaseModel):
         raise NotImplementedError
 
     def support(self) -> Support:
-        """Smallest and largest value of the quantity, with its scatter; of a share the product, once the whole recipe is read."""
-        return self.own_support() if self._product is None else self._product
-
-    def own_support(self) -> Support:
-        """Smallest and largest number of the distribution itself, with its scatter: of a share, the share."""
+        """Smallest and largest number of the distribution, with its scatter: of a share, the share."""
         low, high = self._ends()
         away = self.scatter_percent / 100
         return low - away * abs(low), high + away * abs(high)
 
     def _ends(self) -> Support:
         raise NotImplementedError
-
-    def known_support(self) -> Support | None:
-        """Smallest and largest value of the quantity; None for a share of a quantity that is known only when it is drawn."""
-        return self.support() if self._product_is_known else None
-
-    def set_product(self, product: Support | None, bounds: Support) -> None:
-        """Support of the product of a share and its quantity; the ``bounds`` of its field if it is not known."""
-        self._product, self._product_is_known = product or bounds, product is not None
 
     def about(self, value: float) -> "Constant | Uniform":
         """What is left to draw for a record whose rig or specimen has a ``value``."""

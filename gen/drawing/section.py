@@ -99,7 +99,7 @@ class Section(BaseModel):
                 drawn[key] = value.about(of.value(key, value))
         if shares:
             drawn = of.with_shares(bounds_of(type(self)), drawn, shares)
-        sections, known = self._sections(), of.known
+        sections, known = self.below(), of.known
         if sections and drawn:  # they can name the numbers of this one
             numbers = {name: value * split_unit(name)[1] for name, value in drawn.items() if isinstance(value, float)}
             known = {**known, **numbers}
@@ -132,14 +132,14 @@ class Section(BaseModel):
             else:
                 each = "each" in bounds_of(type(self))[key]
                 drawn[key] = (value.value,) * (1 if stated is None else stated) if each else value.value
-        for key, value in self._sections():
+        for key, value in self.below():
             if isinstance(value, tuple):
                 drawn[key] = tuple(one.as_drawn(f"{place}{key}[{number}].") for number, one in enumerate(value))
             elif (new := value.as_drawn(f"{place}{key}.")) is not value:
                 drawn[key] = new
         return self.model_copy(update=drawn) if drawn else self
 
-    def _sections(self) -> list[tuple[str, Any]]:
+    def below(self) -> list[tuple[str, Any]]:
         """Sections, and tuples of them, in this one."""
         values = self.__dict__
         return [(key, values[key]) for key in _section_keys(type(self)) if values[key]]
@@ -210,6 +210,18 @@ def _section_keys(section: type[Section]) -> list[str]:
         if get_origin(field.annotation) is not dict
         and any(issubclass(one, Section) for one in models_in(field.annotation))
     ]
+
+
+def sections_with_places(section: Section, place: str = "") -> Iterator[tuple[str, Section]]:
+    """A section and all sections in it, each with its path."""
+    yield place, section
+    for key, value in section.below():
+        path = f"{place}.{key}" if place else key
+        if isinstance(value, Section):
+            yield from sections_with_places(value, path)
+        else:
+            for number, one in enumerate(value):
+                yield from sections_with_places(one, f"{path}[{number}]")
 
 
 def composed(name: str, module: str, bases: tuple[type[Section], ...], meaning: str | None, **keys: Any) -> Any:

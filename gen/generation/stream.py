@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import xarray as xr
 
-from gen.drawing import Grid, Section, quantities
+from gen.drawing import Grid, quantities, sections_with_places
 from gen.generation.compilation import compile_kernels
 from gen.generation.facts import failures_of
 from gen.generation.parts import decoded, make_part
@@ -204,22 +204,13 @@ def endless(recipe: Recipe) -> Recipe:
         )
     if recipe.origin is not None:
         raise RecipeError("origin: is that of one record, and a stream has no end; leave it out, or use gen.generate.")
-    if key := _grid_in(recipe, ""):
-        raise RecipeError(f"{key}: a grid is finite, and a stream has no end; use choice, or gen.generate.")
+    for place, section in sections_with_places(recipe):
+        for key, quantity in quantities(section).items():
+            if isinstance(quantity, Grid):
+                raise RecipeError(
+                    f"{place}.{key}: a grid is finite, and a stream has no end; use choice, or gen.generate."
+                )
     return recipe.model_copy(update={"records": _LAST // recipe.corpus.n_rungs * recipe.corpus.n_rungs})
-
-
-def _grid_in(section: Section, place: str) -> str | None:
-    """Key of the first grid of a recipe; None without one."""
-    for key, quantity in quantities(section).items():
-        if isinstance(quantity, Grid):
-            return place + key
-    for key, value in section:
-        items = value if isinstance(value, tuple) else (value,)
-        for item in items:
-            if isinstance(item, Section) and (found := _grid_in(item, f"{place}{key}.")):
-                return found
-    return None
 
 
 def records_from(

@@ -15,6 +15,6 @@ from .shares import (
     FREE_ANGLE as FREE_ANGLE,
     LEAST_AXIAL_LOAD as LEAST_AXIAL_LOAD,
     STATIC_RATING as STATIC_RATING,
-    operations as operations,
+    ranges as ranges,
 )
 from .text import recipe_text as recipe_text, write_recipe as write_recipe

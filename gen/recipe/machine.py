@@ -116,12 +116,11 @@ class CatalogueBearing(Section):
 
     def drawing(self) -> Bearing:
         """The drawn bearing, as on its drawing."""
-        return self.bearing(self.designations[0])
+        return self.bearings()[0]
 
-    def bearing(self, designation: str) -> Bearing:
-        """Bearing of a designation, from the entries or from the catalogue."""
-        own = self.entries.get(designation)
-        return CATALOGUE[designation] if own is None else own.bearing(designation)
+    def bearings(self) -> list[Bearing]:
+        """Bearing of each designation, from the entries or from the catalogue."""
+        return [self.entries[one].bearing(one) if one in self.entries else CATALOGUE[one] for one in self.designations]
 
 
 class GeometryBearing(Section):
@@ -150,7 +149,7 @@ class GeometryBearing(Section):
     @model_validator(mode="after")
     def _fits(self) -> Self:
         ball, pitch = self.ball_diameter_mm, self.pitch_diameter_mm
-        low, high = ball.own_support()
+        low, high = ball.support()
         if ball.share_of != "pitch_diameter_mm":
             low, high = low / pitch.support()[1], high / pitch.support()[0]
         if low * (1 + 1e-9) < SMALLEST_BALL or high > LARGEST_BALL * (1 + 1e-9):

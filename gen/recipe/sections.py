@@ -219,6 +219,11 @@ class Sections(Section):
         changes = self.faults[entry].operation
         return self.operation if changes is None else self.operation.model_copy(update=changes.given())
 
+    def operations(self) -> dict[str, OperationSection]:
+        """Operating conditions by their place: those of all records, and of every fault with changes of its own."""
+        changed = [number for number, entry in enumerate(self.faults) if entry.operation is not None]
+        return {"operation": self.operation, **{f"faults[{n}].operation": self.operation_of(n) for n in changed}}
+
     def level_of(self, entry: int) -> PhysicalLevel | SnrLevel:
         """Level of the records of one entry of ``faults``."""
         changes = self.faults[entry].level

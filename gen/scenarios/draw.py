@@ -26,7 +26,7 @@ from gen.recipe import (
     OriginSection,
     Recipe,
     corpus_identity,
-    operations,
+    ranges,
 )
 from gen.recipe.publication import PublicationSection
 from gen.recipe.sections import CorpusSection, StorageSection, TruthSection
@@ -114,7 +114,7 @@ def _draw_rig(recipe: Recipe, draws: Draws) -> Drawn:
 
 @functools.lru_cache(maxsize=16)
 def _highest_speed(recipe: Recipe) -> float:
-    return max(operation.shaft_rpm.support()[1] for operation in operations(recipe).values())
+    return max(of["shaft_rpm"][1] for place, of in ranges(recipe).items() if place.endswith("operation"))
 
 
 def _known(given: Section, drawn: Section) -> dict[str, float]:

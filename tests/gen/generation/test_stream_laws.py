@@ -108,7 +108,7 @@ def test_a_part_without_a_record_ends_the_stream():
 
 FINITE = {
     "a grid": ({"operation.load_n": "grid(500, 600)"}, "operation.load_n: a grid is finite, and a stream has no end"),
-    "a grid of a fault": ({"faults": [{"kind": "inner", "width_mm": "grid(0.5, 1)"}]}, "faults.width_mm: a grid is finite"),
+    "a grid of a fault": ({"faults": [{"kind": "inner", "width_mm": "grid(0.5, 1)"}]}, r"faults\[0\].width_mm: a grid is finite"),
     "points": ({"corpus.sampling": "sobol"}, "corpus.sampling: sobol covers a number of records"),
 }  # fmt: skip
 
