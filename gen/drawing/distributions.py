@@ -183,14 +183,29 @@ class Normal(_Interval):
         return min(max(value, self.low), self.high)
 
 
-class Choice(_Distribution):
-    """One of a few values, with weights if they are not equally likely."""
-
+class _Values(_Distribution):
     arguments: ClassVar[tuple[str, ...]] = ("values",)
-    kind: Literal["choice"]
-    """Draws one number of a list."""
     values: Annotated[tuple[Number, ...], Field(min_length=1)]
     """Numbers of which one is taken."""
+
+    def draw(self, u: float) -> float:
+        """Value at the quantile ``u``; that of a grid is used when no item number is known."""
+        return self.values[weighted_index(getattr(self, "weights", None) or (1.0,) * len(self.values), u)]
+
+    def _ends(self) -> Support:
+        """Return the smallest and the largest value."""
+        return min(self.values), max(self.values)
+
+
+class Choice(_Values):
+    """One of a few values, with weights if they are not equally likely.
+
+    >>> Choice(kind="choice", values=(1, 2), weights=(1, 3)).draw(0.3)
+    2.0
+    """
+
+    kind: Literal["choice"]
+    """Draws one number of a list."""
     weights: tuple[Annotated[Number, Field(ge=0)], ...] | None = None
     """Relative probability of each value; equal if left out."""
 
@@ -200,35 +215,12 @@ class Choice(_Distribution):
             raise ValueError(f"{len(self.weights)} weights for {len(self.values)} values; give one each, not all 0.")
         return self
 
-    def draw(self, u: float) -> float:
-        """Value at the quantile ``u``.
 
-        >>> Choice(kind="choice", values=(1, 2), weights=(1, 3)).draw(0.3)
-        2.0
-        """
-        return self.values[weighted_index(self.weights or (1.0,) * len(self.values), u)]
-
-    def _ends(self) -> Support:
-        """Return the smallest and the largest value."""
-        return min(self.values), max(self.values)
-
-
-class Grid(_Distribution):
+class Grid(_Values):
     """Values in turn, by item number; several grids of the same level enumerate all combinations."""
 
-    arguments: ClassVar[tuple[str, ...]] = ("values",)
     kind: Literal["grid"]
     """Cycles through a list by the number of the rig, specimen or record."""
-    values: Annotated[tuple[Number, ...], Field(min_length=1)]
-    """Numbers of which one is taken."""
-
-    def draw(self, u: float) -> float:
-        """Value at the quantile ``u``; used when no item number is known."""
-        return self.values[weighted_index((1.0,) * len(self.values), u)]
-
-    def _ends(self) -> Support:
-        """Return the smallest and the largest value."""
-        return min(self.values), max(self.values)
 
 
 class Listed(_Distribution):

@@ -5,17 +5,15 @@ lists the keys with their units, ranges and defaults.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from gen.drawing import Choice, Grid, LogUniform, Normal, Section, Uniform, plain
 from gen.drawing.expressions import called
 from gen.recipe.faults import OF_KIND, Fault
 from gen.support.errors import RecipeError
 from gen.support.sentences import sentences
-
-_Of = TypeVar("_Of", bound=BaseModel)
 
 
 def _call_of(kind: str) -> Callable[..., Fault]:
@@ -74,7 +72,7 @@ def grid(*values: float, **keys: Any) -> Grid:
     return _called(Grid, values, keys)
 
 
-def _called(model: type[_Of], values: Sequence[float], keys: dict[str, Any]) -> _Of:
+def _called(model: Any, values: Sequence[float], keys: dict[str, Any]) -> Any:
     try:
         return called(model, plain(values), plain(keys))
     except ValueError as error:

@@ -43,6 +43,8 @@ TABLE = [
     # distributions
     ("1500, 1800", "1800, 1500", "operation.shaft_rpm: low 1800.0 is above high 1500.0; swap them."),
     ("uniform(1500", "loguniform(0", "operation.shaft_rpm: low 0.0 is not above 0;"),
+    ("'uniform(1500, 1800)'", ".inf", "operation.shaft_rpm: inf is not allowed here; it must be a finite number."),
+    ("0.5}", "[1, .nan], n_spalls: 2}", "faults[1].width_mm[1]: nan is not allowed here; it must be a finite number."),
     ("uniform", "gaussian", "operation.shaft_rpm: 'gaussian' is no distribution; choose from constant, uniform, loguniform"),
     ("uniform", "unifrom", "operation.shaft_rpm: 'unifrom' is no distribution; did you mean uniform?"),
     ("uniform(1500, 1800)", "choice()", "operation.shaft_rpm: values of choice(values): is missing; give it."),
