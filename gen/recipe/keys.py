@@ -15,6 +15,7 @@ from gen.drawing import DISTRIBUTIONS, Section, interval
 from gen.recipe.changes import Changes
 from gen.recipe.model import Recipe
 from gen.support.errors import RecipeError
+from gen.support.sentences import models_in
 from gen.support.units import UNITS, unit_suffix
 
 
@@ -45,7 +46,10 @@ def recipe_keys(prefix: str = "") -> list[Key]:
     ['corpus.split', 'corpus.split.by', 'corpus.split.validation', 'corpus.split.test']
     """
     wanted = re.sub(r"\[\d*\]", "", prefix)
-    every_key = _merge([*_keys_of((Recipe,), "", set()), *_keys_of(DISTRIBUTIONS, "distribution.", set())])
+    kinds: dict[Key, list[str]] = {}  # keys that differ in their kinds alone are one
+    for path, model, name in [*fields_below((Recipe,), (), set()), *fields_below(DISTRIBUTIONS, ("distribution",))]:
+        kinds.setdefault(_key(".".join([*path, name]).replace("[]", ""), name, model), []).extend(kinds_of(model))
+    every_key = [key._replace(kinds=tuple(dict.fromkeys(several))) for key, several in kinds.items()]
     keys = [key for key in every_key if key.key.startswith(wanted)]
     if not keys:
         tops = ", ".join([*Recipe.model_fields, "distribution"])
@@ -53,46 +57,40 @@ def recipe_keys(prefix: str = "") -> list[Key]:
     return keys
 
 
-def _key(name: str, field: FieldInfo, path: str, kinds: tuple[str, ...]) -> Key:
-    suffix = name if name in UNITS else unit_suffix(name)
-    unit = UNITS[suffix].symbol if suffix else ""
-    return Key(path + name, kinds, unit, _allowed(field), _default(field), _one_line(field.description))
+def _key(path: str, name: str, model: type[BaseModel]) -> Key:
+    field, suffix = model.model_fields[name], name if name in UNITS else unit_suffix(name)
+    unit, meaning = UNITS[suffix].symbol if suffix else "", " ".join((field.description or "").split())
+    return Key(path, (), unit, _allowed(field), _default(field), meaning)
 
 
-def _one_line(text: str | None) -> str:
-    return " ".join((text or "").split())
+def fields_below(
+    models: Iterable[type[BaseModel]], path: tuple[str, ...] = (), seen: set[type[BaseModel]] | None = None
+) -> Iterator[tuple[tuple[str, ...], type[BaseModel], str]]:
+    """Path, section and name of each key of the sections that a place can hold, and of all sections in them.
 
-
-def _keys_of(models: Iterable[type[BaseModel]], path: str, seen: set[type[BaseModel]]) -> Iterator[Key]:
-    """Keys of the sections that one place can hold, and of the sections in them; each section once below a key of the recipe."""
+    A step into a list of sections ends in ``[]``, and one into sections by name is followed by ``NAME``. With ``seen``, each section comes
+    once below a key of the recipe.
+    """
     for model in models:
-        kinds = _kinds(model)
         for name in sorted(model.model_fields, key=lambda name: name != "kind"):
-            field = model.model_fields[name]
-            yield _key(name, field, path, kinds)
-            below = set() if model is Recipe else seen
-            inner = [section for section in _sections_of(field) if not any(issubclass(one, section) for one in below)]
-            below.update(inner)
-            place = f"{path}{name}." + ("NAME." if get_origin(field.annotation) is dict else "")
-            yield from _keys_of(inner, place, below)
+            yield path, model, name
+            field, below = model.model_fields[name], seen if path or seen is None else set[type[BaseModel]]()
+            inner = [one for one in _sections_of(field) if not any(issubclass(other, one) for other in below or ())]
+            if below is not None:
+                below.update(inner)
+            steps = {tuple: (f"{name}[]",), dict: (name, "NAME")}.get(get_origin(field.annotation) or type, (name,))
+            yield from fields_below(inner, (*path, *steps), below)
 
 
-def _kinds(model: type[BaseModel]) -> tuple[str, ...]:
+def kinds_of(model: type[BaseModel]) -> tuple[str, ...]:
+    """Values of ``kind`` of a section; none if it has no kinds."""
     return get_args(model.model_fields["kind"].annotation) if "kind" in model.model_fields else ()
 
 
 def _sections_of(field: FieldInfo) -> list[type[Section]]:
     """Sections that the value of a field can be, or can be made of; not those with keys that are listed elsewhere."""
-    models = [model for model in dict.fromkeys(_models(field.annotation)) if issubclass(model, Section)]
-    return [model for model in models if not issubclass(model, Changes)]
-
-
-def _merge(keys: list[Key]) -> list[Key]:
-    """Keys with those joined that differ in their kinds alone."""
-    kinds_of: dict[Key, list[str]] = {}
-    for key in keys:
-        kinds_of.setdefault(key._replace(kinds=()), []).extend(key.kinds)
-    return [key._replace(kinds=tuple(dict.fromkeys(kinds))) for key, kinds in kinds_of.items()]
+    models = dict.fromkeys(models_in(field.annotation))
+    return [model for model in models if issubclass(model, Section) and not issubclass(model, Changes)]
 
 
 def _default(field: FieldInfo) -> str:
@@ -113,11 +111,9 @@ def _allowed(field: FieldInfo) -> str:
     if isinstance(field.json_schema_extra, dict):
         return interval(field.json_schema_extra)
     sections = _sections_of(field)
-    if not sections and any(issubclass(model, Changes) for model in _models(field.annotation)):
-        return "section"
-    if not sections:
+    if not sections and not any(issubclass(model, Changes) for model in models_in(field.annotation)):
         return _plain(field.annotation, field.metadata)
-    kinds = ", ".join(kind for section in sections for kind in _kinds(section))
+    kinds = ", ".join(kind for section in sections for kind in kinds_of(section))
     form = {tuple: "list of sections", dict: "sections by name"}.get(get_origin(field.annotation) or type, "section")
     return f"{form}: {kinds}" if kinds else form
 
@@ -132,46 +128,37 @@ def _plain(annotation: Any, metadata: Iterable[Any]) -> str:
         return _plain(inner, [*metadata, *(entry for part in more for entry in getattr(part, "metadata", [part]))])
     limits = {name: getattr(entry, name) for entry in metadata for name in _LIMITS if hasattr(entry, name)}
     if get_origin(annotation) is tuple:
-        return f"list of {_plain(arguments[0], [])}" + _range(limits, " ({} entries)", "min_length", "max_length")
+        return f"list of {_plain(arguments[0], [])}" + _sizes(limits, "entries")
     if get_origin(annotation) is dict:
         return f"{_plain(arguments[0], [])}, or weights of these"
     choices = [argument for argument in arguments if isinstance(argument, str)]
     if choices:
         return ", ".join(choices)
     name = {str: "text", int: "whole number", float: "number", bool: "true or false"}[annotation]
-    return name + _range(limits, " ({} characters)", "min_length", "max_length") + _bounds(limits)
+    return name + _sizes(limits, "characters") + _bounds(limits)
 
 
 _LIMITS = ("ge", "gt", "le", "lt", "min_length", "max_length")
 
 
-def _range(limits: dict[str, Any], form: str, low: str, high: str) -> str:
+def _sizes(limits: dict[str, Any], of: str) -> str:
     """Sizes that a list or a text can have."""
-    if limits.get(low) is None:
+    least, most = (limits.get(name) for name in ("min_length", "max_length"))
+    if least is None:
         return ""
-    least, most = limits[low], limits.get(high)
-    return form.format(f"{least} to {most}" if most is not None else f"at least {least}")
+    return f" ({least} to {most} {of})" if most is not None else f" (at least {least} {of})"
 
 
 def _bounds(limits: dict[str, Any]) -> str:
     """Bounds of a number: an interval, or one comparison."""
-    low = next(
-        ((sign, limits[name]) for name, sign in (("ge", "["), ("gt", "(")) if limits.get(name) is not None), None
-    )
-    high = next(
-        ((sign, limits[name]) for name, sign in (("le", "]"), ("lt", ")")) if limits.get(name) is not None), None
-    )
+    limits = {name: _short(number) for name, number in limits.items() if number is not None}
+    low = [sign + limits[name] for name, sign in (("ge", "["), ("gt", "(")) if name in limits]
+    high = [limits[name] + sign for name, sign in (("le", "]"), ("lt", ")")) if name in limits]
     if low and high:
-        return f" in {low[0]}{_short(low[1])}, {_short(high[1])}{high[0]}"
-    return f" >= {_short(low[1])}" if low else ""
+        return f" in {low[0]}, {high[0]}"
+    return f" >= {low[0][1:]}" if low else ""
 
 
 def _short(number: float) -> str:
     """Number in as few digits as state it exactly."""
     return f"{number:g}" if float(f"{number:g}") == number else str(number)
-
-
-def _models(annotation: Any) -> list[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [model for argument in get_args(annotation) for model in _models(argument)]

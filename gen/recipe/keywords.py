@@ -7,22 +7,19 @@ checked like any other.
 import difflib
 import functools
 from collections.abc import Mapping, Sequence
-from typing import Any, get_args, get_origin
-
-from pydantic import BaseModel
+from typing import Any
 
 from gen.drawing import Section, plain
-from gen.recipe.changes import Changes
-from gen.recipe.faults import Fault
+from gen.recipe.faults import OF_KIND
+from gen.recipe.keys import fields_below, kinds_of
 from gen.recipe.model import Recipe
 from gen.support.errors import RecipeError
 
 DEFAULTS: Mapping[str, Any] = {
     "name": "records",
     "bearing": "6205",
-    "shaft_rpm": 1500,
-    "sample_rate_hz": 25_600,
-    "duration_s": 1,
+    "operation": {"shaft_rpm": 1500},
+    "recording": {"sample_rate_hz": 25_600, "duration_s": 1},
 }
 """Values of the keys that a recipe file must give."""
 
@@ -30,10 +27,6 @@ FaultLike = Section | dict[str, Any] | str
 """A fault: from a call such as :func:`gen.outer`, an entry of ``faults`` of a recipe, or a kind without required keys."""
 
 _COUNTED = ("rigs", "specimens_per_rig", "records_per_specimen")
-
-
-_Place = tuple[tuple[str, ...], frozenset[str]]
-"""Sections of a place where a key can be, and the values of ``kind`` of the last one that has it; empty if it has no kinds."""
 
 
 def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | None = None, **keys: Any) -> Recipe:
@@ -58,10 +51,10 @@ def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | N
     """
     if "faults" in keys and fault is not None:
         raise RecipeError("faults: is given twice, also as fault; give it once.")
-    given: dict[str, Any] = plain(keys)
+    given: dict[str, Any] = plain(keys)  # a copy
     data: dict[str, Any] = {}
     for name in [name for name in given if name in Recipe.model_fields]:
-        data[name] = _copied(given.pop(name))
+        data[name] = given.pop(name)
     for name, value in given.items():
         _set(data, name, value)
     faults = plain("healthy" if fault is None else fault)
@@ -70,22 +63,15 @@ def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | N
         faults = [{"kind": one} if isinstance(one, str) else one for one in faults]
     data.setdefault("faults", faults)
     for name, value in DEFAULTS.items():
-        if name in Recipe.model_fields:
-            data.setdefault(name, value)
-        else:
-            section = data.setdefault(_places()[name][0][0][0], {})
-            if isinstance(section, dict):
-                section.setdefault(name, value)
+        section = data.setdefault(name, value)
+        if isinstance(section, dict) and isinstance(value, dict):
+            data[name] = value | section
     corpus = data.setdefault("corpus", {})
     if isinstance(corpus, dict) and isinstance(data["faults"], list):
         corpus.setdefault("fault_choice", "in_turn")
         _count(corpus, max(len(data["faults"]), 1), n)
     data.setdefault("title", _title(data))
     return Recipe(**data)
-
-
-def _copied(value: Any) -> Any:
-    return dict(value) if isinstance(value, dict) else value
 
 
 def _set(data: dict[str, Any], name: str, value: Any) -> None:
@@ -103,7 +89,7 @@ def _set(data: dict[str, Any], name: str, value: Any) -> None:
         section.setdefault("kind", _usual_kind(sections, kinds))
 
 
-def _usual_kind(sections: tuple[str, ...], kinds: frozenset[str]) -> str:
+def _usual_kind(sections: tuple[str, ...], kinds: set[str]) -> str:
     """Kind of a section that has a key: the default of the section if it has the key too."""
     default: Any = Recipe.model_fields[sections[0]].default
     for step in sections[1:]:
@@ -112,28 +98,23 @@ def _usual_kind(sections: tuple[str, ...], kinds: frozenset[str]) -> str:
     return usual if usual in kinds else min(kinds)
 
 
-def _place(name: str) -> _Place:
-    found = _places().get(name, [])
-    if len(found) == 1:
-        return found[0]
-    if not found:
+def _place(name: str) -> tuple[tuple[str, ...], set[str]]:
+    """The only place of a key, and the values of ``kind`` with which its section has it."""
+    places = _places().get(name, {})
+    if not places:
         raise RecipeError(f"{name}: no such key; {_advice(name)}")
-    sections = [".".join(place) for place, _ in found]
-    first, *inside = found[0][0]
-    example = repr({name: ...}).replace("Ellipsis", "...")
-    for step in reversed(inside):
-        example = f"{{{step!r}: {example}}}"
-    raise RecipeError(
-        f"{name}: is a key of {', '.join(sections[:-1])} and {sections[-1]}; give the section, such as {first}={example}."
-    )
+    if len(places) > 1:
+        *others, last = (".".join(place) for place in places)
+        first, *inside = next(iter(places))
+        example = "".join(f"{{{step!r}: " for step in [*inside, name]) + "..." + "}" * (1 + len(inside))
+        raise RecipeError(
+            f"{name}: is a key of {', '.join(others)} and {last}; give the section, such as {first}={example}."
+        )
+    return next(iter(places.items()))
 
 
 def _advice(name: str) -> str:
-    of_faults = {
-        key: get_args(model.model_fields["kind"].annotation)[-1]
-        for model in reversed(_models(Fault))
-        for key in model.model_fields
-    }
+    of_faults = {key: kinds_of(model)[-1] for model in reversed(OF_KIND.values()) for key in model.model_fields}
     if name in of_faults:
         return f"it is a key of faults; give it there, as in fault=gen.{of_faults[name]}({name}=...)."
     allowed = [*_places(), *Recipe.model_fields, *of_faults]
@@ -144,33 +125,13 @@ def _advice(name: str) -> str:
 
 
 @functools.cache
-def _places() -> dict[str, list[_Place]]:
-    """Places of every key below the sections of a recipe, by its name; keys in lists of sections are not among them."""
-    found: dict[str, dict[tuple[str, ...], set[str]]] = {}
-
-    def collect(models: Sequence[type[BaseModel]], sections: tuple[str, ...]) -> None:
-        for model in models:
-            kinds = get_args(model.model_fields["kind"].annotation) if "kind" in model.model_fields else ()
-            for name, field in model.model_fields.items():
-                if name == "kind":
-                    continue
-                if sections:
-                    found.setdefault(name, {}).setdefault(sections, set()).update(kinds)
-                if get_origin(field.annotation) not in (tuple, dict):
-                    collect(_models(field.annotation), (*sections, name))
-
-    collect((Recipe,), ())
-    return {
-        name: [(sections, frozenset(kinds)) for sections, kinds in places.items()] for name, places in found.items()
-    }
-
-
-def _models(annotation: Any) -> list[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, Section):
-        return [] if issubclass(annotation, Changes) else [annotation]
-    if get_origin(annotation) in (tuple, dict):
-        return []
-    return [found for argument in get_args(annotation) for found in _models(argument)]
+def _places() -> dict[str, dict[tuple[str, ...], set[str]]]:
+    """Places of every key below the sections of a recipe, each with the values of ``kind`` that have the key; not those in lists."""
+    places: dict[str, dict[tuple[str, ...], set[str]]] = {}
+    for path, model, name in fields_below((Recipe,)):
+        if path and name != "kind" and not any(step == "NAME" or step.endswith("[]") for step in path):
+            places.setdefault(name, {}).setdefault(path, set()).update(kinds_of(model))
+    return places
 
 
 def _count(corpus: dict[str, Any], n_faults: int, n: int | None) -> None:

@@ -75,7 +75,7 @@ def test_every_name_has_a_section_unless_several_share_it():
     assert len(_places()) > 100
     for name in shared:
         message = sentences_of(lambda name=name: gen.make_recipe(**{name: 1}))
-        sections = [".".join(place) for place, _ in _places()[name]]
+        sections = [".".join(place) for place in _places()[name]]
         assert message.startswith(f"{name}: is a key of ")
         assert all(section in message for section in sections)
 
