@@ -82,14 +82,18 @@ class Section(BaseModel):
 
     def drawn(self, of: Draws) -> Self:
         """The section, which is there, with a number in place of each distribution."""
-        own, values, count = self.drawn_per or of.own, self.__dict__, self.stated_count() or 1
+        own, values, count = self.drawn_per or of.own, self.__dict__, None
         drawn, shares = dict[str, Any](), dict[str, str]()
         for key, bounds in bounds_of(type(self)).items():
             value = values[key]
             if not is_distribution(value):
                 continue
             if bounds.get("per", own) == of.level:
-                drawn[key] = of.values(key, value, count) if "each" in bounds else of.value(key, value)
+                if "each" in bounds:
+                    count = self.stated_count() or 1 if count is None else count
+                    drawn[key] = of.values(key, value, count)
+                else:
+                    drawn[key] = of.value(key, value)
                 if key == self.counted:
                     count = round(drawn[key])
                     drawn[key] = float(count)

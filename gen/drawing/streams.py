@@ -4,6 +4,7 @@ Each depends on the seed, its level, the number of the rig, specimen or record, 
 what else is drawn. So a further key, section or mechanism moves no value of any other.
 """
 
+import functools
 from hashlib import blake2b
 from typing import Literal
 
@@ -28,4 +29,12 @@ def stream(seed: int, level: Level, of: int, name: str) -> np.random.Generator:
 
 
 def _digest(seed: int, level: Level, of: int, name: str, size: int) -> bytes:
-    return blake2b(f"{seed} {level} {of} {name}".encode(), digest_size=size).digest()
+    state = _state(seed, level, of, size).copy()
+    state.update(name.encode())
+    return state.digest()
+
+
+@functools.lru_cache(maxsize=16)
+def _state(seed: int, level: Level, of: int, size: int) -> blake2b:
+    """Hash of what the names of an item have in common: a copy takes half the time of a new one."""
+    return blake2b(f"{seed} {level} {of} ".encode(), digest_size=size)
