@@ -9,6 +9,7 @@ of the records in which the fault can be seen, and how often an envelope analysi
 import argparse
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,14 +19,11 @@ from scipy.signal import butter, hilbert, sosfiltfilt
 from gen.drawing import Level
 from gen.generation.undetected import make_records
 from gen.measurement.judging import FALSE_ALARM, judges_of
-from gen.measurement.levels import Gains
-from gen.measurement.measure import measure
+from gen.measurement.measure import Measured, counts_per_unit, measure
 from gen.measurement.mixing import Parts, Products
 from gen.measurement.rig import rig_filters
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario
-from gen.simulation.simulate import simulate
-from gen.simulation.timeline import timeline
 from gen.simulation.truth import lines_of_faults
 
 FloatArray = NDArray[np.float64]
@@ -62,27 +60,22 @@ def cases(recipe: Recipe, pairs: int) -> list[Case]:
     faults = tuple(fault for fault in recipe.faults if fault.kind != "healthy")
     changes = {"corpus": corpus, "truth": truth, "faults": faults, "records": 2 * pairs}
     made = make_records(recipe.model_copy(update=changes), range(2 * pairs))
-    scenarios, response = made.measured.scenarios, made.response
-    others: list[Scenario] = [OtherNoise(one.recipe) for one in scenarios[::2]]
-    again = measure(simulate(scenarios[::2]).acceleration, others).signal
-    whole = [place for place in range(1, len(scenarios), 2) if not {place - 1, place} & response.failures.keys()]
     found = []
-    for place in whole:
-        orders = lines_of_faults(response.truth[place])
-        if orders:
-            signals = made.measured.signal[place], made.measured.signal[place - 1], again[place // 2]
-            record, twin, other = (signal[0] / (made.measured.counts_per_unit or 1.0) for signal in signals)
-            seen, rate = bool(made.measured.detectable[place]), response.truth[place].mean_rate
+    for healthy, faulty in zip(made[::2], made[1::2], strict=True):
+        if isinstance(healthy, Measured) and isinstance(faulty, Measured) and (orders := lines_of_faults(faulty.run)):
+            (other,) = measure([replace(healthy.run, scenario=OtherNoise(healthy.scenario.recipe))])
+            per_unit = counts_per_unit(recipe) or 1.0
+            record, twin, again = (one.signal[0] / per_unit for one in (faulty, healthy, other))
             found.append(
                 Case(
-                    scenarios[place].fault,
-                    seen,
+                    faulty.scenario.fault,
+                    bool(faulty.detectable),
                     record,
                     twin,
-                    other,
-                    _impulses(scenarios[place]),
+                    again,
+                    _impulses(faulty.scenario),
                     orders,
-                    rate,
+                    faulty.run.motion.means[0],
                 )
             )
     return found
@@ -90,9 +83,8 @@ def cases(recipe: Recipe, pairs: int) -> list[Case]:
 
 def _impulses(scenario: Scenario) -> NDArray[np.float32]:
     """Lines of the impulses of a machine behind the gain of its record."""
-    axis, level = timeline(scenario.recipe), scenario.recipe.level.si()
-    filters = rig_filters(scenario.recipe, axis.returned, axis.fs, scenario.origin.rig)
-    return np.float32((level["gain"] * level["background"]) ** 2) * filters.impulse_lines
+    level = scenario.recipe.level.si()
+    return np.float32((level["gain"] * level["background"]) ** 2) * rig_filters(scenario).impulse_lines
 
 
 def rule_alarms(case: Case, fs: float) -> bool:
@@ -102,7 +94,7 @@ def rule_alarms(case: Case, fs: float) -> bool:
     signals = np.stack([twin, np.zeros_like(twin), again - twin])
     products = Products(*np.zeros(6))  # not needed for lines
     (sees,) = judges_of([Parts(signals, products, case.impulses, case.orders, angles, steady=True)])
-    return sees(Gains(1.0, 1.0))
+    return sees((1.0, 1.0))
 
 
 class Line(NamedTuple):

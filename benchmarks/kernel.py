@@ -19,14 +19,13 @@ import numpy as np
 from benchmarks.pairs import Line, Skipped, interleaved, row
 from benchmarks.seed import N_BALLS, SPACING, FloatArray, Seed, seed_of, seed_records
 from gen.physics.inputs import KernelInput
+from gen.physics.kernel.batch import lay_out
 from gen.physics.kernel.decimate import Decimation, Single, Stage, decimation
-from gen.physics.kernel.layout import Batch
+from gen.physics.kernel.layout import Batch, Shape
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios
-from gen.simulation.batches import Group, integrate_batch
-from gen.simulation.inputs import kernel_input
-from gen.simulation.simulate import laid_out
-from gen.simulation.steps import steps_per_sample
+from gen.scenarios import Scenario, draw_scenarios
+from gen.simulation.batches import batches, integrate_batch
+from gen.simulation.simulate import open_integrations, runs_of
 from gen.simulation.timeline import Timeline, timeline
 
 SEED, FULL = "ophel2025", Path(__file__).with_name("full.yaml")
@@ -75,23 +74,33 @@ def kernel_rate(recipe: Path | str, records: int) -> Rate:
     once = checked.truth.model_copy(update={"twins": False})  # no second run of a record without its fault
     checked = checked.model_copy(update={"truth": once})
     axis, scenarios = timeline(checked), draw_scenarios(checked, 0, records)
-    batches = laid_out(scenarios)
-    total = axis.integrated * sum(steps_per_sample(kernel_input(scenario, axis), scenario) for scenario in scenarios)
-    integrate_every(batches, axis)  # compiles the kernels, or loads them
-    return _rate(total, lambda: integrate_every(batches, axis))
+    work = laid_out(scenarios)
+    total = axis.integrated * sum(run.oversampling for run in runs_of(scenarios))
+    integrate_every(work, axis)  # compiles the kernels, or loads them
+    return _rate(total, lambda: integrate_every(work, axis))
 
 
-def integrate_every(batches: list[tuple[Group, Batch]], axis: Timeline) -> None:
+def laid_out(scenarios: list[Scenario]) -> list[tuple[Shape, int, Batch]]:
+    """Shape, steps per sample and lanes of each batch of possible scenarios, as they are simulated."""
+    work, fs = [], scenarios[0].recipe.recording.sample_rate_hz
+    for records in batches(open_integrations(runs_of(scenarios))):
+        shape, steps = records[0].group
+        work.append((shape, steps, lay_out([record.given for record in records], shape, 1 / fs)))
+    return work
+
+
+def integrate_every(work: list[tuple[Shape, int, Batch]], axis: Timeline) -> None:
     """Integrate batches, and drop the result."""
-    for group, batch in batches:
-        integrate_batch(group, batch, axis)
+    for shape, steps, batch in work:
+        integrate_batch(shape, steps, batch, axis)
 
 
 def step_seconds(recipe: Path | str) -> tuple[float, int]:
     """Step of our kernel for the first record of a recipe [s], and steps per sample."""
     checked = read_recipe(recipe)
     (scenario,) = draw_scenarios(checked, 0, 1)
-    factor = steps_per_sample(kernel_input(scenario, timeline(checked)), scenario)
+    (run,) = runs_of([scenario])
+    factor = run.oversampling
     return 1 / (checked.recording.sample_rate_hz * factor), factor
 
 
@@ -124,8 +133,8 @@ def _c_rate(recipe: Path | str, records: int, folder: Path) -> Rate:
 
 
 def _simulate(work: list[tuple[Outputs, list[CBatch]]], dt: float, samples: int) -> None:
-    for outputs, batches in work:
-        for batch in batches:
+    for outputs, rows_of in work:
+        for batch in rows_of:
             outputs(batch, dt, samples)
 
 

@@ -11,12 +11,11 @@ from typing import Any
 
 from ruamel.yaml import YAML
 
-from benchmarks.kernel import FULL, integrate_every
+from benchmarks.kernel import FULL, integrate_every, laid_out
 from benchmarks.pairs import Line, cpu_seconds, interleaved, row, run_python, seconds
 from gen.generation.corpus import generate
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
-from gen.simulation.simulate import laid_out
 from gen.simulation.timeline import timeline
 
 SHORT = Path(__file__).with_name("short.yaml")

@@ -13,8 +13,7 @@ from gen.physics.inputs import KernelInput
 from gen.physics.rotor import as_columns, rest
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
-from gen.simulation.inputs import kernel_input
-from gen.simulation.timeline import timeline
+from gen.simulation.simulate import runs_of
 
 FloatArray = NDArray[np.float64]
 
@@ -55,8 +54,8 @@ class Seed(NamedTuple):
 def seed_records(recipe: Recipe, wanted: int) -> dict[int, list[KernelInput]]:
     """The first records of a recipe by the profile of their spall."""
     groups: dict[int, list[KernelInput]] = {}
-    for scenario in draw_scenarios(recipe, 0, wanted):
-        record = kernel_input(scenario, timeline(recipe))
+    for run in runs_of(draw_scenarios(recipe, 0, wanted)):
+        record = run.given
         profile = _PROFILES[record.spalls[0].profile] if record.spalls else NO_SPALL
         groups.setdefault(profile, []).append(record)
     return groups

@@ -1,6 +1,6 @@
 """From a recipe to a corpus of labelled bearing vibration.
 
-``recipe.yaml -> read_recipe -> Recipe -> draw_scenarios -> [Scenario] -> simulate -> Response -> measure -> records -> corpus``
+``recipe.yaml -> read_recipe -> Recipe -> draw_scenarios -> [Scenario] -> simulate -> [Run] -> measure -> records -> corpus``
 
 =========== ==================================================================
 module      responsibility

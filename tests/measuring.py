@@ -1,14 +1,32 @@
 """Drawn sections, and machines and bearings that need no simulation, for the laws of mechanisms and measurement."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
 from gen.drawing import Combination, Draws
-from gen.measurement.measure import measure
+from gen.measurement import measure as measuring
 from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
+from tests.responses import runs_of
 
 FS = 12_000.0
 FLOAT = {"recording.converter": {"kind": "float32"}}
+
+
+def measure(accelerations, scenarios, healthy=None, **keys):
+    """Measured records of bodies with these accelerations, side by side."""
+    return side_by_side(measuring.measure(runs_of(scenarios, accelerations, healthy), **keys))
+
+
+def side_by_side(records):
+    """Signals, shape (record, channel, time), and other values of measured records, shape (record,)."""
+    names = ("signal", "clipped", "snr", "fault_snr", "fault_share", "detectable")
+    columns = {name: np.array([getattr(record, name) for record in records]) for name in names}
+    scenarios = [record.scenario for record in records]
+    return SimpleNamespace(
+        **columns, scenarios=scenarios, counts_per_unit=measuring.counts_per_unit(scenarios[0].recipe)
+    )
 
 
 def drawn(section, **keys):

@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, hilbert, sosfiltfilt
 
-from gen.measurement.measure import measure
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
+from tests.measuring import measure
+from tests.responses import accelerations_of
 
 FS, SECONDS, RESONANCE = 12_000, 4.0, 3000.0
 TURNING = "uniform(0, 360)"
@@ -50,7 +51,7 @@ def reference_recipe(fault: dict[str, Any], n_seeds: int, **changes: Any) -> Rec
 def recorded(recipe: Recipe) -> tuple[FloatArray, float]:
     """Records of a recipe, shape (seed, time) [m s-2], and their shaft rate [Hz]."""
     scenarios = draw_scenarios(recipe)
-    signals = measure(simulate(scenarios).acceleration, scenarios).signal[:, 0]
+    signals = measure(accelerations_of(simulate(scenarios)), scenarios).signal[:, 0]
     return signals.astype(float), scenarios[0].conditions["shaft_rate"]
 
 

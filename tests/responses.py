@@ -1,40 +1,51 @@
-"""Responses whose bodies move as a test wants; labels do not depend on the motion."""
+"""Records whose bodies move as a test wants, and what is known of them; labels do not depend on the motion."""
 
 import numpy as np
 
-from gen.simulation.inputs import kernel_input
+from gen.simulation.batches import Integration
+from gen.simulation.inputs import kernel_inputs
 from gen.simulation.motion import draw_motion
-from gen.simulation.simulate import Response
+from gen.simulation.simulate import Run
 from gen.simulation.timeline import timeline
-from gen.simulation.truth import LABELS, truth_of
+from gen.simulation.truth import LABELS
 
 
 def input_of(scenario):
     """Kernel input of a scenario."""
-    return kernel_input(scenario, timeline(scenario.recipe))
+    (given,) = kernel_inputs([draw_motion(scenario)])
+    return given
 
 
-def still(recipe, n_records):
-    """Accelerations of bodies at rest, shape (record, channel, time) [m s-2]."""
-    return np.zeros((n_records, len(recipe.recording.channels), timeline(recipe).returned), np.float32)
+def runs_of(scenarios, accelerations=None, healthy=None):
+    """Records with these accelerations, shape (record, channel, time), of bodies at rest by default; and those without a fault."""
+    runs = []
+    for place, scenario in enumerate(scenarios):
+        still = np.zeros((len(scenario.recipe.recording.channels), timeline(scenario.recipe).returned), np.float32)
+        whole, sound = (None if some is None else some[place] for some in (accelerations, healthy))
+        given, steps = input_of(scenario), place + 2
+        own = Integration(given, steps, still if whole is None else whole)
+        runs.append(
+            Run(scenario, draw_motion(scenario), own, None if sound is None else Integration(given, steps, sound))
+        )
+    return runs
 
 
-def response_of(scenarios, recipe, *, impossible=()):
-    """Response of bodies at rest with the truth of every scenario; places in ``impossible`` have no machine."""
-    n, axis = len(scenarios), timeline(recipe)
-    motions = [draw_motion(scenario) for scenario in scenarios]
-    inputs = [None if place in impossible else input_of(scenario) for place, scenario in enumerate(scenarios)]
-    truth = [truth_of(motion, axis, given) for motion, given in zip(motions, inputs, strict=True)]
-    steps = np.arange(n) + 2, np.linspace(0.1, 0.3, n)
-    return Response(still(recipe, n), *steps, {}, motions, truth, [])
+def accelerations_of(runs):
+    """Shape (record, channel, time)."""
+    return np.stack([run.acceleration for run in runs])
 
 
-def truth(scenario):
-    """Truth of a scenario."""
-    return truth_of(draw_motion(scenario), timeline(scenario.recipe), input_of(scenario))
+def failures_of(runs):
+    """Sentence of each record that cannot be used, by its place."""
+    return {place: run.failure for place, run in enumerate(runs) if run.failure is not None}
+
+
+def means_of(scenario):
+    """Mean shaft rate [Hz] and fault orders [1] of a record."""
+    return draw_motion(scenario).means
 
 
 def label(scenario, name):
-    """Value of a variable of the corpus that follows from the truth of a scenario."""
+    """Value of a variable of the corpus that follows from the simulation of a scenario."""
     (variable,) = (variable for variable in LABELS if variable.name == name)
-    return variable.column([truth(scenario)])[0]
+    return variable.column(runs_of([scenario]))[0]

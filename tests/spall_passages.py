@@ -21,12 +21,13 @@ from gen.physics.inputs import KernelInput
 from gen.physics.rotor import Machine, as_columns, ball_forces, rest
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import largest_drop_over
-from gen.simulation.inputs import bare_inputs, only
+from gen.simulation.inputs import bare_inputs
 from gen.simulation.motion import draw_motion
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import Timeline, timeline
 from gen.support.errors import SimulationError
 from tests.reference_machine import TURNING, FloatArray, reference_recipe
+from tests.responses import accelerations_of
 
 FS, SECONDS, ABOVE = 102_400, 1.0, 5000.0
 CHANNELS = [{"name": "housing", "body": "housing"}, {"name": "sensor", "body": "sensor"}]
@@ -75,11 +76,11 @@ def passage(kind: str, width_mm: float, rpm: float, profile: str = "geometric", 
         operation={"shaft_rpm": rpm, "slip_percent": 0, "jitter_deg": 0, "speed_wander_percent": 0},
     )
     scenario = draw_scenarios(recipe)[0]
-    response = simulate([scenario, scenario.without_fault()])
-    given, bearing, width = response.truth[0].given, scenario.bearing, 1e-3 * width_mm
+    runs = simulate([scenario, scenario.without_fault()])
+    given, bearing, width = runs[0].given, scenario.bearing, 1e-3 * width_mm
     assert given is not None
     load = scenario.machine["load_angle"]
-    housing, sensor = np.subtract(*response.acceleration.astype(float))
+    housing, sensor = np.subtract(*accelerations_of(runs).astype(float))
     fast = sosfiltfilt(butter(4, ABOVE, "highpass", fs=FS, output="sos"), sensor)
     kinks = np.abs(np.convolve(housing, [1, -2, 1], "same"))
     duration = width / contact_speed(bearing, given.turning.shaft_rate)
@@ -137,7 +138,7 @@ def contributions(
         fault["angle_deg"] = TURNING
     recipe = reference_recipe(fault, n_seeds, operation=operation, recording={"duration_s": seconds})
     scenarios = draw_scenarios(recipe)
-    response = simulate(scenarios + [scenario.without_fault() for scenario in scenarios]).acceleration
+    response = accelerations_of(simulate(scenarios + [scenario.without_fault() for scenario in scenarios]))
     damaged, healthy = response[:, 0, timeline(recipe).kept].astype(float).reshape(2, n_seeds, -1)
     return damaged - healthy
 
@@ -165,11 +166,10 @@ def unloads(scenario: Scenario, number: int = 0) -> bool | None:
 
     A spall that turns, on the inner race or on a ball, is taken where the load is largest.
     """
-    try:
-        machine = only(bare_inputs([draw_motion(scenario)])).machine
-    except (SimulationError, ValueError):
+    (given,) = bare_inputs([draw_motion(scenario)])
+    if isinstance(given, SimulationError):
         return None
     spall = scenario.spalls[number]
     angle = spall.angle if spall.site == "outer" else scenario.machine["load_angle"]
-    needed = unloading_drop(machine, scenario.bearing, angle)
+    needed = unloading_drop(given.machine, scenario.bearing, angle)
     return None if math.isnan(needed) else largest_drop_over(scenario, number) >= needed

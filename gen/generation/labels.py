@@ -1,6 +1,9 @@
 """Variables stored with each record: each is declared once, beside the stage or mechanism that knows its value."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,16 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 from gen.corpus import DRAWS, LIFE, make_dataset
 from gen.corpus.simulated import with_values
 from gen.measurement import levels
-from gen.measurement.measure import Measured
+from gen.measurement.measure import Measured, counts_per_unit
 from gen.mechanisms import labels as mechanisms
-from gen.scenarios import same_recording, scenario_texts, variables
-from gen.simulation import steps, truth
-from gen.simulation.simulate import Response
+from gen.recipe import Recipe
+from gen.scenarios import scenario_texts, variables
+from gen.simulation import truth
 
 LABELS = (
     *variables.LABELS,
     *truth.LABELS,
-    *steps.LABELS,
     *levels.LABELS,
     *mechanisms.LABELS,
     *with_values(step_error=None, draws=None),
@@ -26,35 +28,43 @@ LABELS = (
 """Variables of every simulated record, those of all corpora among them."""
 
 
-def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.float64] | None = None) -> xr.Dataset:
-    """Measured records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
-    recipe = same_recording(measured.scenarios)
+def part_dataset(
+    recipe: Recipe, records: Sequence[Measured], step_error: NDArray[np.float64] | None = None
+) -> xr.Dataset:
+    """Records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
+    hidden = recipe.truth.undetected == "healthy"
     scenarios = [
-        scenario.without_fault() if recipe.truth.undetected == "healthy" and not detectable else scenario
-        for scenario, detectable in zip(measured.scenarios, measured.detectable, strict=True)
+        record.scenario if record.detectable or not hidden else record.scenario.without_fault() for record in records
     ]
-    truths = [known._replace(scenario=one) for known, one in zip(response.truth, scenarios, strict=True)]
+    runs = [replace(record.run, scenario=one) for record, one in zip(records, scenarios, strict=True)]
     lives = [life for one in scenarios if (life := one.origin.life) is not None]
-    life_labels = LIFE if lives else ()
+    life_labels = LIFE if lives or recipe.life is not None else ()
     of_mechanisms = [
-        mechanisms.label_values(one.recipe, chain) for one, chain in zip(scenarios, measured.chain_labels, strict=True)
+        mechanisms.label_values(one.recipe, record.chain_labels) for one, record in zip(scenarios, records, strict=True)
     ]
     columns: dict[str, ArrayLike] = {
-        DRAWS: scenario_texts(measured.scenarios),
-        "step_error": np.full(len(scenarios), np.nan) if step_error is None else step_error,
+        DRAWS: scenario_texts([record.scenario for record in records]),
+        "step_error": np.full(len(records), np.nan) if step_error is None else step_error,
     }
-    for labels, records in ((variables.LABELS, scenarios), (truth.LABELS, truths), (life_labels, lives)):
-        columns |= {label.name: label.column(records) for label in labels}
-    for labels, arrays in ((steps.LABELS, response), (levels.LABELS, measured)):
-        columns |= {label.name: getattr(arrays, label.name) for label in labels}
+    for labels, rows in (
+        (variables.LABELS, scenarios),
+        (truth.LABELS, runs),
+        (life_labels, lives),
+        (levels.LABELS, records),
+    ):
+        columns |= {label.name: label.column(rows) for label in labels}
     columns |= {label.name: [values[label.name] for values in of_mechanisms] for label in mechanisms.LABELS}
+    per_unit, n_channels = counts_per_unit(recipe), len(recipe.recording.channels)
+    signal: Any = np.empty((len(records), n_channels, recipe.n_samples), np.float32 if per_unit is None else np.int16)
+    for row, record in zip(signal, records, strict=True):
+        row[:] = record.signal
     return make_dataset(
-        measured.signal,
+        signal,
         recipe.recording.sample_rate_hz,
         tuple(channel.name for channel in recipe.recording.channels),
         columns,
         extra=LABELS + life_labels,
-        counts_per_unit=measured.counts_per_unit,
+        counts_per_unit=per_unit,
         attributes={
             "title": f"Records of recipe {recipe.name}",
             "history": f"simulated by raceway {version('raceway')} with recipe {recipe.name}, seed {recipe.seed}",

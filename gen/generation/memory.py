@@ -122,7 +122,8 @@ def simulate(scenarios: Sequence[Scenario]) -> xr.Dataset:
     """
     if not isinstance(scenarios, Sequence) or not all(isinstance(one, Scenario) for one in scenarios):
         raise RecipeError(f"scenarios: {type(scenarios).__name__} given; give a list of scenarios.")
-    part = labelled(made_from([*scenarios]))
+    made = made_from([*scenarios])
+    part = labelled(scenarios[0].recipe, made)
     return _joined([part], failures_of(part), {"versions": json.dumps(library_versions())})
 
 

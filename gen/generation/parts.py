@@ -13,7 +13,8 @@ from gen.corpus.schema import add_class_names
 from gen.generation.facts import failures_of, part_attributes
 from gen.generation.labels import part_dataset
 from gen.generation.step_checks import step_errors
-from gen.generation.undetected import MadeRecords, made_from, make_records
+from gen.generation.undetected import Made, made_from, make_records
+from gen.measurement.measure import Measured
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
 
@@ -33,21 +34,19 @@ def make_part(recipe: Recipe, numbers: range) -> xr.Dataset:
         If a record needs finer steps than the recipe allows, or every life has ended before these records.
     """
     made = make_records(recipe, numbers) if recipe.origin is None else made_from(draw_scenarios(recipe))
-    part = labelled(made, step_errors(recipe, numbers, made))
+    kept = [record for record in made if isinstance(record, Measured)]
+    part = labelled(recipe, made, step_errors(recipe, numbers, kept))
     if recipe.origin is not None:  # the only record of its corpus, whatever its numbers in another one
         part = part.assign({name: part[name].copy(data=np.minimum(part[name], 0)) for name in NUMBERS})
     return part.assign_attrs(part_attributes(recipe, failures_of(part)))
 
 
-def labelled(made: MadeRecords, step_error: NDArray[Any] | None = None) -> xr.Dataset:
+def labelled(recipe: Recipe, made: Sequence[Made], step_error: NDArray[Any] | None = None) -> xr.Dataset:
     """Records with their labels, without those that are left out; the attribute ``failures`` says why."""
-    failures = made.response.failures
-    dataset = part_dataset(made.measured, made.response, step_error)
-    if failures:
-        dataset = dataset.isel(record=[place for place in range(dataset.sizes["record"]) if place not in failures])
+    records = [record for record in made if isinstance(record, Measured)]
     # a record behind the end of a life has no sentence
-    sentences = [failures[place] for place in sorted(failures) if failures[place]]
-    return dataset.assign_attrs(failures=json.dumps(sentences))
+    sentences = [record for record in made if isinstance(record, str) and record]
+    return part_dataset(recipe, records, step_error).assign_attrs(failures=json.dumps(sentences))
 
 
 def decoded(parts: Sequence[xr.Dataset]) -> xr.Dataset:

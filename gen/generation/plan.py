@@ -19,7 +19,6 @@ from gen.simulation.inputs import kernel_inputs
 from gen.simulation.kernels import is_compiled
 from gen.simulation.motion import draw_motion
 from gen.simulation.steps import steps_per_sample
-from gen.simulation.timeline import timeline
 from gen.support.errors import SimulationError
 
 MOST_DRAWN = 2000  # records, about 0.6 s; from a larger corpus whole parts are drawn, spread evenly over it
@@ -86,7 +85,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     count = round(whole.n_records * present)
     # by chance, since evenly spaced records might meet the same cell of every grid
     places = sorted(np.random.default_rng(0).permutation(len(drawn))[:MOST_CHECKED].tolist())
-    found = list(steps_of([drawn[place] for place in places], whole))
+    found = list(steps_of([drawn[place] for place in places]))
     steps = [one for one in found if isinstance(one, int)]
     failures = [one for one in found if isinstance(one, str)]
     if not steps:
@@ -116,7 +115,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     )
 
 
-def steps_of(scenarios: Sequence[Scenario], recipe: Recipe) -> Iterator[int | str]:
+def steps_of(scenarios: Sequence[Scenario]) -> Iterator[int | str]:
     """Steps per sample of each record, or a sentence where no machine is possible.
 
     Raises
@@ -124,12 +123,11 @@ def steps_of(scenarios: Sequence[Scenario], recipe: Recipe) -> Iterator[int | st
     SimulationError
         If a record needs more steps than the recipe has.
     """
-    axis = timeline(recipe)
     for first in range(0, len(scenarios), AT_ONCE):
         some = scenarios[first : first + AT_ONCE]
-        inputs, failures = kernel_inputs([draw_motion(scenario) for scenario in some], axis)
-        for place, (given, scenario) in enumerate(zip(inputs, some, strict=True)):
-            yield failures[place] if given is None else steps_per_sample(given, scenario)
+        inputs = kernel_inputs([draw_motion(scenario) for scenario in some])
+        for given, scenario in zip(inputs, some, strict=True):
+            yield str(given) if isinstance(given, SimulationError) else steps_per_sample(given, scenario)
 
 
 def _scaled(values: Iterable[Any], order: Iterable[Any], scale: float) -> dict[Any, int]:

@@ -50,7 +50,7 @@ def replay(path: Path | str, record: int) -> Replayed:
         stored = row[SIGNAL].values[0]
         names = [str(name) for name in corpus["channel"].values]
         numbers = {name: row[name].values for name in NUMBERS if name in corpus}
-    again = labelled(made_from([scenario]))
+    again = labelled(scenario.recipe, made_from([scenario]))
     (signal,) = decoded([again])[SIGNAL].values
     places = [_place(channel, name, signal, scenario) for channel, name in zip(stored, names, strict=True)]
     dataset = again.isel(channel=places).assign_coords(channel=again["channel"][places].copy(data=names))

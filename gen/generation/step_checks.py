@@ -1,45 +1,40 @@
 """Check of the step: some records of a corpus are integrated again at half the step, and the relative change is stored with them."""
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.generation.undetected import MadeRecords
+from gen.measurement.measure import Measured
 from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe
 from gen.scenarios import first_records
-from gen.simulation.batches import Group, Integration, group_of, integrate_all
+from gen.simulation.batches import Integration, integrate_all
 from gen.simulation.simulate import acceleration_of
 from gen.simulation.timeline import timeline
 
 CHECKED_PARTS = 8  # every 8th part integrates a batch of its records again: 1 to 2 % of the time of a part
 
 
-def step_errors(recipe: Recipe, numbers: range, made: MadeRecords) -> NDArray[np.float64]:
+def step_errors(recipe: Recipe, numbers: range, records: Sequence[Measured]) -> NDArray[np.float64]:
     """Relative rms change between some records of a part and the same at half the step, NaN for the other records, shape (record,)."""
-    response, axis = made.response, timeline(recipe)
-    inputs = {place: truth.given for place, truth in enumerate(response.truth)}
-    usable = {place: one for place, one in inputs.items() if one and place not in response.failures}
-    groups = {place: group_of(given, int(response.oversampling[place])) for place, given in usable.items()}
-    faults = [scenario.fault for scenario in made.measured.scenarios]
+    axis, runs = timeline(recipe), [record.run for record in records]
+    groups, faults = [run.integrations[0].group for run in runs], [record.scenario.fault for record in records]
     halved = {
-        place: Integration(usable[place], Group(groups[place].shape, 2 * groups[place].steps))
+        place: Integration(runs[place].given, 2 * runs[place].oversampling)
         for place in checked_places(recipe, numbers, faults, groups)
     }
-    integrate_all([*halved.values()], axis)
-    errors = np.full(len(faults), np.nan)
+    integrate_all(halved.values(), axis)
+    errors = np.full(len(records), np.nan)
     for place, integration in halved.items():
         fine = acceleration_of(integration)[:, axis.kept]
-        change = response.acceleration[place][:, axis.kept] - fine
+        change = runs[place].acceleration[:, axis.kept] - fine
         errors[place] = np.sqrt(np.sum(change**2, dtype=np.float64) / np.sum(fine**2, dtype=np.float64))
     return errors
 
 
-def checked_places(
-    recipe: Recipe, numbers: range, faults: Sequence[str], groups: Mapping[int, Hashable]
-) -> Iterable[int]:
-    """Places of the records of a part whose step is checked, given the groups of those that were made, by place.
+def checked_places(recipe: Recipe, numbers: range, faults: Sequence[str], groups: Sequence[Hashable]) -> Iterable[int]:
+    """Places of the records of a part whose step is checked, given their faults and groups.
 
     These are the first record of each class, in the part where the first specimen of the class begins; and in every ``CHECKED_PARTS``-th
     part the first records that share their kernel and step, as many as a batch has lanes. They do not depend on the number of records of
@@ -47,10 +42,9 @@ def checked_places(
     """
     begun = {fault for fault, number in first_records(recipe).items() if number in numbers}
     first: dict[str, int] = {}
-    for place in groups:
-        first.setdefault(faults[place], place)
+    for place, fault in enumerate(faults):
+        first.setdefault(fault, place)
     chosen = [place for fault, place in first.items() if fault in begun]
     if groups and numbers.start % (CHECKED_PARTS * recipe.storage.records_per_part) == 0:
-        leading = next(iter(groups.values()))
-        chosen += [place for place, group in groups.items() if group == leading][:LANES]
+        chosen += [place for place, group in enumerate(groups) if group == groups[0]][:LANES]
     return dict.fromkeys(chosen)

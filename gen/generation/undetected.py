@@ -7,77 +7,42 @@ another part, so that every part finds the same fault.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from gen.measurement.lives import with_ends
 from gen.measurement.measure import Measured, measure
 from gen.recipe import Recipe
-from gen.scenarios import Scenario, draw_scenarios, further_ratios, same_recording
-from gen.simulation.batches import integrate_all
+from gen.scenarios import Scenario, draw_scenarios, further_ratios
 from gen.simulation.hits import felt_places
-from gen.simulation.simulate import Response, Run, open_integrations, response_of, runs_of
-from gen.simulation.timeline import timeline
+from gen.simulation.simulate import Run, integrate_runs, runs_of, simulate
 from gen.support.errors import SimulationError
 
 LEVEL_TRIES = 8  # draws of the level of a record whose fault cannot be seen
 FAULT_TRIES = 12  # faults drawn for a specimen until one can be seen in all of its records
 
-
-@dataclass(frozen=True)
-class MadeRecords:
-    """Records as they were made; ``measured.scenarios`` has their final scenarios."""
-
-    response: Response
-    measured: Measured
+Made = Measured | str
+"""A record, or a sentence that says why it is left out; empty for one behind the end of a life."""
 
 
-def make_records(recipe: Recipe, numbers: range) -> MadeRecords:
-    """Make the records with the given numbers, in their order.
+def make_records(recipe: Recipe, numbers: range) -> list[Made]:
+    """Make the records with the given numbers, in their order; a life that has ended has no further records.
 
     Raises
     ------
     SimulationError
         If there are none, since every life has ended before them.
     """
-    drawing, axis = Drawing(recipe), timeline(recipe)
-    final: dict[int, tuple[MadeRecords, int]] = {}
+    drawing, final = Drawing(recipe), dict[int, Made]()
     runs = drawing.first(numbers)
     while runs:
-        integrate_all(open_integrations(runs), axis)
-        made, runs = drawing.judge(runs)
-        redrawn = {run.scenario.origin.record for run in runs}
-        for place, scenario in enumerate(made.measured.scenarios):
-            if scenario.origin.record in numbers and scenario.origin.record not in redrawn:
-                final[scenario.origin.record] = made, place
+        integrate_runs(runs)
+        records, again = drawing.judge(runs)
+        for run, record in zip(runs, records, strict=True):
+            if run.scenario.origin.record in numbers:
+                final[run.scenario.origin.record] = record
+        runs = again  # whose records replace those with the fault before
     if not final:
         raise SimulationError(f"records {numbers.start}-{numbers.stop - 1}: every life has ended before them.")
-    return _picked([final[number] for number in numbers if number in final])
-
-
-def _picked(rows: list[tuple[MadeRecords, int]]) -> MadeRecords:
-    """Records from some places of others."""
-    response, measured = rows[0][0].response, rows[0][0].measured
-    failures = {
-        new: made.response.failures[place] for new, (made, place) in enumerate(rows) if place in made.response.failures
-    }
-    columns = [
-        {name: _column([getattr(getattr(made, of), name)[place] for made, place in rows]) for name in _columns(one)}
-        for of, one in (("response", response), ("measured", measured))
-    ]
-    return MadeRecords(replace(response, failures=failures, **columns[0]), replace(measured, **columns[1]))
-
-
-def _column(rows: list[Any]) -> NDArray[Any] | list[Any]:
-    return np.stack(rows) if isinstance(rows[0], np.ndarray | np.generic) else rows
-
-
-def _columns(of: Response | Measured) -> list[str]:
-    """Fields that have one row for each record."""
-    return [field.name for field in fields(of) if field.name not in ("failures", "twins", "counts_per_unit")]
+    return [final[number] for number in numbers if number in final]
 
 
 class Drawing:
@@ -96,41 +61,34 @@ class Drawing:
         scenarios = draw_scenarios(self.recipe, numbers.start // size * size, stop)
         return runs_of(self._with_hits(scenarios)) if scenarios else []
 
-    def judge(self, runs: list[Run]) -> tuple[MadeRecords, list[Run]]:
+    def judge(self, runs: list[Run]) -> tuple[list[Made], list[Run]]:
         """Records of integrated runs, and the runs of specimens whose fault is drawn again."""
-        made = made_of(runs, self._further_ratios([run.scenario for run in runs]))
+        scenarios, snr = [run.scenario for run in runs], self.recipe.level.kind == "snr"
+        largest, ratios = _largest_places(scenarios), dict[int, Sequence[float]]()
+        if self._redraws and snr:  # further tries of the level of records with a fault
+            faulty = [scenarios[place] for place in largest]
+            ratios = {one.origin.record: further_ratios(self.recipe, one, LEVEL_TRIES - 1) for one in faulty}
+        records = made_of(runs, ratios)
         if self.recipe.life is not None:
-            measured, behind = with_ends(made.measured, self.recipe.life.end)
-            made = replace(made, measured=measured)
-            made.response.failures.update(dict.fromkeys(behind, ""))
+            records = with_ends(runs, records, self.recipe.life.end)
         if not self._redraws:
-            return made, []
-        unseen = _unseen_places(made)
-        specimens = dict.fromkeys(made.measured.scenarios[place].origin.specimen for place in unseen)
+            return records, []
+        judged = [(place, record) for place in largest if isinstance(record := records[place], Measured)]
+        unseen = [place for place, record in judged if not record.detectable]
+        specimens = {scenarios[place].origin.specimen for place in unseen}
         again = sorted(number for number in specimens if self._tries.get(number, 0) < FAULT_TRIES - 1)
-        advice = "raise level.faulty_db" if self.recipe.level.kind == "snr" else "lower level.background_m_s2"
         for place in unseen:
-            scenario = made.measured.scenarios[place]
+            scenario = scenarios[place]
             if scenario.origin.specimen not in again:
-                made.response.failures[place] = (
-                    f"record {scenario.origin.record}: none of {FAULT_TRIES} drawn faults of class {scenario.fault} can be seen "
-                    f"in it; {advice}, or choose truth.undetected: keep."
+                records[place] = (
+                    f"record {scenario.origin.record}: none of {FAULT_TRIES} drawn faults of class {scenario.fault} can be seen in it; "
+                    f"{'raise level.faulty_db' if snr else 'lower level.background_m_s2'}, or choose truth.undetected: keep."
                 )
         if not again:
-            return made, []
-        known = {
-            run.scenario.origin.record: run for place, run in enumerate(runs) if place not in made.response.failures
-        }
-        return made, runs_of(self._with_hits(self._redrawn(again)), known)
-
-    def _further_ratios(self, scenarios: list[Scenario]) -> dict[int, list[float]]:
-        """Ratios of the further tries of the level of records with a fault, by their place."""
-        if not (self._redraws and self.recipe.level.kind == "snr"):
-            return {}
-        return {
-            place: further_ratios(self.recipe, scenarios[place], LEVEL_TRIES - 1)
-            for place in _largest_places(scenarios)
-        }
+            return records, []
+        usable = (run for run, record in zip(runs, records, strict=True) if isinstance(record, Measured))
+        known = {run.scenario.origin.record: run for run in usable}
+        return records, runs_of(self._with_hits(self._redrawn(again)), known)
 
     def _redrawn(self, specimens: Iterable[int]) -> list[Scenario]:
         """Scenarios of all records of some specimens with their next fault."""
@@ -144,7 +102,7 @@ class Drawing:
     def _with_hits(self, scenarios: list[Scenario]) -> list[Scenario]:
         """Scenarios of whole specimens, those with another fault whose spalls no loaded ball meets in some record.
 
-        Of a group, the largest severity alone counts, as in :func:`_unseen_places`.
+        Of a group, the largest severity alone counts, as in :meth:`judge`.
         """
         by_number = {scenario.origin.record: scenario for scenario in scenarios}
         tried = scenarios if self._redraws else []
@@ -158,25 +116,16 @@ class Drawing:
         return list(by_number.values())
 
 
-def made_from(scenarios: list[Scenario]) -> MadeRecords:
+def made_from(scenarios: list[Scenario]) -> list[Made]:
     """Records of scenarios as they are; nothing is drawn again."""
-    runs = runs_of(scenarios)
-    integrate_all(open_integrations(runs), timeline(same_recording(scenarios)))
-    return made_of(runs)
+    return made_of(simulate(scenarios))
 
 
-def made_of(runs: list[Run], ratios: Mapping[int, Sequence[float]] = {}) -> MadeRecords:
+def made_of(runs: list[Run], ratios: Mapping[int, Sequence[float]] = {}) -> list[Made]:
     """Records of scenarios that have been integrated; ``ratios`` as for :func:`gen.measurement.measure.measure`."""
-    response, scenarios = response_of(runs), [run.scenario for run in runs]
-    measured = measure(response.acceleration, scenarios, response.twins, motions=response.motions, ratios=ratios)
-    return MadeRecords(replace(response, twins=[]), measured)
-
-
-def _unseen_places(made: MadeRecords) -> list[int]:
-    """Places of the records that were made and whose fault cannot be seen; of a group, that of the largest severity alone is looked at."""
-    detectable, failures = made.measured.detectable, made.response.failures
-    largest = _largest_places(made.measured.scenarios)
-    return [place for place in largest if not detectable[place] and place not in failures]
+    failures = [run.failure for run in runs]
+    measured = iter(measure([run for run, failure in zip(runs, failures, strict=True) if failure is None], ratios))
+    return [next(measured) if failure is None else failure for failure in failures]
 
 
 def _largest_places(scenarios: list[Scenario]) -> list[int]:

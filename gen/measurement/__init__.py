@@ -5,9 +5,8 @@ module            responsibility
 ================= ======================================================================
 measure           the steps: signal, path, background, level, chain, converter, and whether the fault can be seen
 rig               transfer paths and machine background of a rig
-path              bearing of a record behind its transfer paths
-background        noise, lines and impulses of the machine in a record
 mixing            modulation by the shaft and lines of the machine, compiled
+parts             bearing of a record behind its transfer paths; noise, lines and impulses of its machine
 levels            gains of bearing and background
 judging           whether the fault of a record can be seen in it
 lives             ends of lives that are seen in the records

@@ -4,7 +4,6 @@ The products are exact: parts that are correlated over a short record neither ra
 """
 
 import math
-from typing import NamedTuple
 
 from gen.corpus.schema import Variable
 from gen.corpus.simulated import with_values
@@ -22,18 +21,11 @@ LABELS = (
     Variable("fault_share", "f8", "1", "latent", "power of what the fault adds over its sum with that of all else, NaN if not known"),
     *with_values(detectable=None, clipped=None),
 )  # fmt: skip
-"""Variables of the corpus, arrays of a :class:`gen.measurement.measure.Measured`."""
+"""Variables of the corpus, attributes of a :class:`gen.measurement.measure.Measured`."""
 
 
-class Gains(NamedTuple):
-    """Factors of bearing and background [1]."""
-
-    bearing: float
-    background: float
-
-
-def gains_of(products: Products, ratio: float, rms: float) -> Gains:
-    """Gains that give a record its drawn ratio [dB] and rms [m s-2].
+def gains_of(products: Products, ratio: float, rms: float) -> tuple[float, float]:
+    """Gains of bearing and background [1] that give a record its drawn ratio [dB] and rms [m s-2].
 
     The ratio is that of the fault (d) over all else, which is the healthy bearing (h) and the background (n): with the bearing ``q``
     times as strong as the background, ``q^2 dd = r^2 (q^2 hh + 2 q hn + nn)``. A record without a fault, or of which the fault's own
@@ -51,7 +43,7 @@ def gains_of(products: Products, ratio: float, rms: float) -> Gains:
         half = square * products.hn
         q = (half + math.sqrt(half**2 + left * square * nn)) / left
     scale = rms / max(rms_of(products, q, q, 1.0), SILENCE)
-    return Gains(q * scale, scale)
+    return q * scale, scale
 
 
 def rms_of(products: Products, fault: float, healthy: float, background: float) -> float:
@@ -61,20 +53,21 @@ def rms_of(products: Products, fault: float, healthy: float, background: float) 
     return math.sqrt(max(h * h * hh + 2 * h * n * hn + n * n * nn + d * d * dd + 2 * d * h * dh + 2 * d * n * dn, 0.0))
 
 
-def bearing_over_background(products: Products, gains: Gains, rounding: float) -> float:
+def bearing_over_background(products: Products, gains: tuple[float, float], rounding: float) -> float:
     """Rms of the whole bearing signal over that of the background, or over the converter's ``rounding`` if that is larger [dB].
 
     NaN if either is silent or not finite.
     """
-    bearing = rms_of(products, gains.bearing, gains.bearing, 0.0)
-    level = level_of_ratio(bearing, max(rms_of(products, 0.0, 0.0, gains.background), rounding))
+    bearing, background = gains
+    background = max(rms_of(products, 0.0, 0.0, background), rounding)
+    level = level_of_ratio(rms_of(products, bearing, bearing, 0.0), background)
     return level if level > -math.inf else math.nan
 
 
-def fault_over_rest(products: Products, gains: Gains, rounding: float) -> tuple[float, float]:
+def fault_over_rest(products: Products, gains: tuple[float, float], rounding: float) -> tuple[float, float]:
     """Rms of what the fault adds over that of all else [dB], and its share of the sum of both powers [1]; NaN where they are silent."""
-    fault = rms_of(products, gains.bearing, 0.0, 0.0)
-    rest = max(rms_of(products, 0.0, gains.bearing, gains.background), rounding)
+    bearing, background = gains
+    fault, rest = rms_of(products, bearing, 0.0, 0.0), max(rms_of(products, 0.0, bearing, background), rounding)
     whole = fault**2 + rest**2
     return level_of_ratio(fault, rest), fault**2 / whole if 0 < whole < math.inf else math.nan
 

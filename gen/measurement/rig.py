@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-from gen.drawing import stream
 from gen.mechanisms.background.harmonics import motion_of_harmonics
 from gen.mechanisms.background.noise import noise_factors
-from gen.mechanisms.background.section import BackgroundSection
 from gen.mechanisms.background.tones import motion_of_tones
-from gen.mechanisms.path import parts_of_modulation, transmissibility
+from gen.mechanisms.path import modulation_by_shaft, transmissibility
 from gen.physics.kernel.decimate import pass_band
 from gen.recipe import Recipe
+from gen.scenarios import Scenario
+from gen.simulation.timeline import timeline
 from gen.support.units import decibel_to_ratio
 
 FloatArray = NDArray[np.floating]
@@ -53,10 +53,6 @@ class RigFilters:
     """Angle per sample of each tone, shape (tone,) [rad]."""
     tone_modulations: ComplexArray
     """Modulation of each tone by the shaft, shape (tone,)."""
-    background: BackgroundSection
-    """As drawn for the rig."""
-    knock_phase: float
-    """Phase of the knocks [rad]."""
     impulse_paths: ComplexArray
     """Path and chain, scaled so that an impulse has a peak of 1 behind each, shape (channel, frequency); unscaled without impulses."""
     impulse_lines: Float32Array
@@ -87,12 +83,11 @@ class RigFilters:
         return behind_paths * (chain * self.amplitudes / np.maximum(rms, _SMALLEST_GAIN))
 
 
-def rig_filters(recipe: Recipe, length: int, fs: float, rig: int) -> RigFilters:
-    """Transfer paths and background of a drawn recipe, for responses of ``length`` samples.
-
-    Everything that is locked to the shaft has a phase that belongs to the rig, of which ``rig`` is the number.
-    """
-    n, background, channels = next_fast_len(length, real=True), recipe.background, recipe.recording.channels
+def rig_filters(scenario: Scenario) -> RigFilters:
+    """Transfer paths and background of the rig of a record. Everything that is locked to the shaft has a phase that belongs to the rig."""
+    recipe, axis, phases = scenario.recipe, timeline(scenario.recipe), functools.partial(scenario.stream, level="rig")
+    background, channels, fs = recipe.background, recipe.recording.channels, axis.fs
+    n = next_fast_len(axis.returned, real=True)
     frequency = np.arange(n // 2 + 1) * (fs / n)
     own = [channel.path or recipe.path for channel in channels]
     corner = recipe.recording.si()["high_pass"]
@@ -105,11 +100,12 @@ def rig_filters(recipe: Recipe, length: int, fs: float, rig: int) -> RigFilters:
     if background.impulses is not None:
         # An impulse of strength ``a`` raises all lines by ``a^2`` times its energy; the mean of ``a^4`` is 3 for a normal distribution.
         impulses = background.impulses.si()
-        of_impulses = math.sqrt(3 * impulses["rate"] * length / fs) * decibel_to_ratio(impulses["level"]) ** 2
-    phases = functools.partial(stream, recipe.seed, "rig", rig)
+        of_impulses = math.sqrt(3 * impulses["rate"] * axis.returned / fs) * decibel_to_ratio(impulses["level"]) ** 2
     directions = np.array([channel.si()["angle"] for channel in channels])
-    harmonics, harmonic_motion = motion_of_harmonics(background.harmonics, directions, phases("phases of harmonics"))
-    tones, tone_motion = motion_of_tones(background.tones, fs, directions, phases("phases of tones"))
+    harmonics, motion = motion_of_harmonics(background.harmonics, directions, phases("phases of harmonics"))
+    frequencies, tones, tone_modulations, of_tones = motion_of_tones(
+        background.tones, directions, phases("phases of tones")
+    )
     direct = None if corner > 0 or any(path.modes for path in own) else [[path.si()["direct"]] for path in own]
     return RigFilters(
         n=n,
@@ -120,12 +116,10 @@ def rig_filters(recipe: Recipe, length: int, fs: float, rig: int) -> RigFilters:
         chain=chain,
         noise=noise_factors(background, frequency, np.abs(chain), n),
         modulations=_modulations(recipe, phases("phases of modulation")),
-        motion=np.concatenate([harmonic_motion, tone_motion], axis=1),
-        amplitudes=np.concatenate([harmonics, tones[:, 1]]),
-        steps=tones[:, 0].copy(),
-        tone_modulations=tones[:, 2] + 1j * tones[:, 3],
-        background=background,
-        knock_phase=2 * math.pi * phases("phase of knocks").random(),
+        motion=np.concatenate([motion, of_tones], axis=1),
+        amplitudes=np.concatenate([harmonics, tones]),
+        steps=2 * math.pi / fs * frequencies,
+        tone_modulations=tone_modulations,
         impulse_paths=impulse_paths.astype(np.complex64),
         impulse_lines=np.float32(of_impulses) * np.abs(impulse_paths.astype(np.complex64)) ** 2,
     )
@@ -135,11 +129,14 @@ def _modulations(recipe: Recipe, rng: np.random.Generator) -> ComplexArray:
     """Modulations of the noise and of the path of each channel, shape (1 + channel, 2); channels on the common path share one."""
     own = [channel.path for channel in recipe.recording.channels]
     of_noise, of_path, *of_own = rng.random((2 + len(own), 2))
-    rows = [parts_of_modulation(recipe.background.modulation, of_noise)]
+    rows = [modulation_by_shaft(recipe.background.modulation, of_noise)]
     for path, turns in zip(own, of_own, strict=True):
-        shared = path is None
-        rows.append(parts_of_modulation((recipe.path if shared else path).modulation, of_path if shared else turns))
-    return np.array(rows).view(np.complex128)
+        rows.append(
+            modulation_by_shaft(recipe.path.modulation, of_path)
+            if path is None
+            else modulation_by_shaft(path.modulation, turns)
+        )
+    return np.array(rows)
 
 
 def high_pass(corner: float, frequency: FloatArray) -> ComplexArray:

@@ -49,11 +49,11 @@ class Modulation(Section):
     """Depth of the modulation at 2x shaft rate, relative to the mean amplitude."""
 
 
-def parts_of_modulation(modulation: Modulation | None, turns: FloatArray) -> FloatArray:
-    """Parts of a drawn modulation once per turn, then of that twice per turn, shape (4,) [1]; ``turns``, shape (2,), are their phases."""
+def modulation_by_shaft(modulation: Modulation | None, turns: FloatArray) -> NDArray[np.complexfloating]:
+    """Complex depth of a drawn modulation once and twice per turn, shape (2,) [1]; ``turns``, shape (2,), are their phases."""
     depths = np.zeros(2) if modulation is None else np.array([*modulation.si().values()])
     phases = 2 * math.pi * turns
-    return np.stack([depths * np.cos(phases), depths * np.sin(phases)], axis=1).ravel()
+    return depths * np.cos(phases) + 1j * (depths * np.sin(phases))
 
 
 class PathSection(Section):

@@ -10,10 +10,10 @@ shaft    angle of the shaft at every sample
 damage   spalls and waviness
 inputs   kernel inputs, put together from these
 hits     how often loaded balls pass the spalls
-truth    what is true of a record by construction, and its variables in a corpus
 kernels  the kernel of this machine
 batches  records grouped by shape and step, and integrated in lanes
 steps    the step: chosen before the run, checked after it
 simulate scenarios integrated
+truth    variables of a corpus that are known of a record by construction
 ======== ====================================================================
 """

@@ -2,7 +2,7 @@
 
 import functools
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,35 +36,24 @@ def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[Spall, ...]:
         return ()
     # a spall keeps its edges while it grows
     edges = scenario.stream("edges", "record" if scenario.origin.life is None else "specimen")
-    seeds = edges.integers(2**52, size=len(spalls)).tolist()
-    seeded = [spall._replace(seed=seed) for spall, seed in zip(spalls, seeds, strict=True)]
-    return tuple(
-        _tabulate(scenario, number, spall, ball_load) if _needs_table(scenario, spall) else spall
-        for number, spall in enumerate(seeded)
-    )
+    seeds, has_width = edges.integers(2**52, size=len(spalls)).tolist(), scenario.recipe.contact.footprint == "hertz"
+    inputs = list[Spall]()
+    for number, spall in enumerate(spalls):
+        changed = dict[str, Any](seed=seeds[number])
+        if has_width or spall.profile == "trace" or spall.roughness > 0:
+            paths, widths = spall_paths(scenario, number), (0.0,)
+            if has_width:
+                widths = _met(spall.site, *footprints(scenario.bearing, ball_load))
+                margins = zip(paths, widths, strict=True)
+                paths = [contact_mean(path, spall.width, width, max(widths)) for path, width in margins]
+            changed |= {"profile": "table", "width": spall.width + 2 * max(widths), "table": tuple(map(tuple, paths))}
+        inputs.append(spall._replace(**changed))
+    return tuple(inputs)
 
 
 def _met(site: str, inner: float, outer: float) -> tuple[float, ...]:
     """Value of each race that a spall meets, from those of both."""
     return {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[site]
-
-
-def _needs_table(scenario: Scenario, spall: Spall) -> bool:
-    return _has_width(scenario) or spall.profile == "trace" or spall.roughness > 0
-
-
-def _has_width(scenario: Scenario) -> bool:
-    return scenario.recipe.contact.footprint == "hertz"
-
-
-def _tabulate(scenario: Scenario, number: int, bare: Spall, ball_load: float) -> Spall:
-    paths = spall_paths(scenario, number)
-    if not _has_width(scenario):
-        return bare._replace(profile="table", table=tuple(tuple(path) for path in paths))
-    widths = _met(bare.site, *footprints(scenario.bearing, ball_load))
-    margin = max(widths)
-    table = tuple(tuple(contact_mean(path, bare.width, b, margin)) for path, b in zip(paths, widths, strict=True))
-    return bare._replace(profile="table", width=bare.width + 2 * margin, table=table)
 
 
 def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
@@ -113,8 +102,8 @@ def _paths(
     return tuple(ball_path(depths, spall.width, ball, race) for race in races)
 
 
-def waviness_of(scenario: Scenario, fs: float) -> Waviness:
-    """Fourier amplitudes of races and balls of the specimen of a record, without waves that pass a ball too fast for ``fs`` [Hz]."""
+def waviness_of(scenario: Scenario) -> Waviness:
+    """Fourier amplitudes of races and balls of the specimen of a record, without waves that pass a ball too fast for its sample rate."""
     rms, of_balls = scenario.properties["waviness"], scenario.properties["ball_waviness"]
     worn = tuple(
         (part.site, part.si()["waviness"], part.order)
@@ -124,20 +113,12 @@ def waviness_of(scenario: Scenario, fs: float) -> Waviness:
     if not (rms or of_balls or worn):
         return ROUND
     place, profile = (scenario.recipe.seed, scenario.origin.specimen), scenario.speed_profile
-    whole, at_balls = _waves(place, scenario.bearing, rms, of_balls, worn)
+    whole, passages = _waves(place, scenario.bearing, rms, of_balls, worn)
     highest_rate = scenario.conditions["shaft_rate"] * (1.0 if profile is None else max(profile.shares))
-    highest_order = FASTEST_WAVE * fs / highest_rate
-    races = np.where(at_balls.races <= highest_order, whole.races, 0j)
-    return Waviness(races, np.where(at_balls.balls <= highest_order, whole.balls, 0j))
-
-
-class Passages(NamedTuple):
-    """How often each wave passes a ball in a turn of the shaft."""
-
-    races: NDArray[np.floating]
-    """Shape (race, order) [1]."""
-    balls: NDArray[np.floating]
-    """Shape (order, 1) [1]."""
+    highest_order = FASTEST_WAVE * scenario.recipe.recording.sample_rate_hz / highest_rate
+    return Waviness(
+        *(np.where(often <= highest_order, waves, 0j) for often, waves in zip(passages, whole, strict=True))
+    )
 
 
 @functools.lru_cache(maxsize=256)
@@ -147,8 +128,8 @@ def _waves(
     rms: float,
     of_balls: float,
     worn: tuple[tuple[str, float, int | None], ...],
-) -> tuple[Waviness, Passages]:
-    """Amplitudes of a specimen, with random phases, and how often each wave passes a ball."""
+) -> tuple[Waviness, tuple[NDArray[np.floating], NDArray[np.floating]]]:
+    """Amplitudes of a specimen, with random phases, and how often each wave of races and balls passes a ball in a turn of the shaft."""
     (seed, specimen), n_balls, spinning = place, bearing.n_balls, orders(bearing)
     rng = stream(seed, "specimen", specimen, "waviness")
     every, even = np.arange(LOWEST_ORDER, HIGHEST_ORDER + 1), 2 * np.arange(1, BALL_ORDERS + 1)
@@ -161,8 +142,8 @@ def _waves(
         races[RACES.index(site)] += shape * wear * _phasors(rng, (len(every),))
     passing = np.stack([every * (1 - spinning.ftf), every * spinning.ftf])
     if of_balls == 0:
-        balls = ROUND.balls
-    return Waviness(races, balls), Passages(passing, (even * spinning.bsf)[:, None] if of_balls else ROUND.balls.real)
+        return Waviness(races, ROUND.balls), (passing, ROUND.balls.real)
+    return Waviness(races, balls), (passing, (even * spinning.bsf)[:, None])
 
 
 def _phasors(rng: np.random.Generator, shape: tuple[int, ...]) -> Any:

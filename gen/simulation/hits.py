@@ -6,30 +6,23 @@ outer race outside the zone is never felt; a spall of the inner race or of a bal
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from gen.physics.bearing import FaultOrders
-from gen.physics.inputs import KernelInput
+from gen.physics.inputs import KernelInput, Spall
 from gen.scenarios import Scenario
 from gen.simulation.inputs import bare_inputs, resting
 from gen.simulation.motion import draw_motion
 
 
-class LoadZone(NamedTuple):
-    """Part of the circumference where balls are loaded while the shaft rests."""
+def load_zone(given: KernelInput) -> tuple[float, float]:
+    """Part of the circumference where balls are loaded while the shaft rests, of a record that starts from static rest.
 
-    direction: float
-    """Of its middle [rad]."""
-    half: float
-    """Half of its width: pi if all balls are loaded, 0 if none is [rad]."""
-
-
-def load_zone(given: KernelInput) -> LoadZone:
-    """Load zone of a record that starts from static rest."""
+    Direction of its middle, and half of its width: pi if all balls are loaded, 0 if none is [rad].
+    """
     machine, (x1, y1, x2, y2) = given.machine, given.start
     approach = math.hypot(x1 - x2, y1 - y2) * machine.contact_cosine
     share = machine.half_clearance / max(approach, 1e-15)
-    return LoadZone(math.atan2(y1 - y2, x1 - x2), math.acos(min(max(share, -1.0), 1.0)))
+    return math.atan2(y1 - y2, x1 - x2), math.acos(min(max(share, -1.0), 1.0))
 
 
 def loaded_hits(given: KernelInput, orders: FaultOrders, turns: float) -> int:
@@ -37,32 +30,28 @@ def loaded_hits(given: KernelInput, orders: FaultOrders, turns: float) -> int:
 
     ``orders`` are the mean fault orders of the record. The tilt of the spin axis of a damaged ball does not count.
     """
-    passages, zone = 0.0, load_zone(given)
+    passages, (_, half) = 0.0, load_zone(given)
     for spall in given.spalls:
         if spall.site == "outer":
-            passages += orders.bpfo * turns if _reaches(given, spall.angle, spall.width, zone) else 0.0
+            passages += orders.bpfo * turns if _is_loaded(spall, given) else 0.0
         else:
-            passages += (orders.bpfi if spall.site == "inner" else 2 * orders.bsf) * turns * zone.half / math.pi
+            passages += (orders.bpfi if spall.site == "inner" else 2 * orders.bsf) * turns * half / math.pi
     return round(passages)
 
 
 def felt_places(scenarios: Sequence[Scenario]) -> list[bool]:
     """False for each record whose only faults are spalls of the outer race that no loaded ball meets."""
-    places = [place for place, scenario in enumerate(scenarios) if _only_outer_spalls(scenario)]
+    outer = [place for place, one in enumerate(scenarios) if one.spalls and one.damaged_parts == ["outer"]]
     felt = [True] * len(scenarios)
-    inputs, _ = bare_inputs([draw_motion(scenarios[place]) for place in places])
-    for place, given in zip(places, resting(inputs), strict=True):
-        if given is not None:  # otherwise no such machine is possible; the simulation says so
-            zone, spalls = load_zone(given), scenarios[place].spalls
-            felt[place] = any(_reaches(given, spall.angle, spall.width, zone) for spall in spalls)
+    inputs = resting(bare_inputs([draw_motion(scenarios[place]) for place in outer]))
+    for place, given in zip(outer, inputs, strict=True):
+        if isinstance(given, KernelInput):  # otherwise no such machine is possible; the simulation says so
+            felt[place] = any(_is_loaded(spall, given) for spall in scenarios[place].spalls)
     return felt
 
 
-def _only_outer_spalls(scenario: Scenario) -> bool:
-    return bool(scenario.spalls) and scenario.damaged_parts == ["outer"]
-
-
-def _reaches(given: KernelInput, angle: float, width: float, zone: LoadZone) -> bool:
+def _is_loaded(spall: Spall, given: KernelInput) -> bool:
     """Whether a spall of the outer race lies in the load zone with a part of its width."""
-    away = abs(math.remainder(angle - zone.direction, 2 * math.pi))
-    return away - width / (2 * given.bearing.outer_radius) < zone.half
+    direction, half = load_zone(given)
+    away = abs(math.remainder(spall.angle - direction, 2 * math.pi))
+    return away - spall.width / (2 * given.bearing.outer_radius) < half

@@ -12,10 +12,12 @@ import numpy as np
 
 from gen.physics.axial import axial_approach, check_axial_load
 from gen.physics.hertz import contact_exponent, load_deflection_factor
+from gen.physics.inputs import KernelInput
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.rating import LEAST_SAFETY, equivalent_load, static_rating
 from gen.physics.rotor import STRIBECK, Machine, as_columns, ball_angles, sensor_springs
 from gen.scenarios import Scenario
+from gen.support.errors import SimulationError
 
 THICKEST_FILM = 10e-6  # m, both contacts together; measured films are below 2 um
 
@@ -89,21 +91,20 @@ def _largest_share(scenario: Scenario) -> float:
 
 
 def with_axial_loads(
-    machines: Sequence[Machine], scenarios: Sequence[Scenario], cage_angles: Sequence[float]
-) -> list[Machine]:
-    """Machines of some records whose balls are squeezed by the axial loads too; the cages start at ``cage_angles`` [rad]."""
-    loaded, alike = list(machines), defaultdict[float, list[int]](list)
-    for place, scenario in enumerate(scenarios):
-        if scenario.conditions["axial_load"] != 0:
-            alike[machines[place].contact_exponent].append(place)
-    for places in alike.values():
-        loads = np.array([scenarios[place].conditions["axial_load"] for place in places])
-        n_balls = [scenarios[place].bearing.n_balls for place in places]
-        balls = ball_angles(n_balls, [cage_angles[place] for place in places])
-        squeezes = axial_approach(as_columns([machines[place] for place in places]), loads, balls)
-        for place, squeeze in zip(places, squeezes, strict=True):
-            machine = machines[place]
-            loaded[place] = machine._replace(half_clearance=machine.half_clearance - squeeze)
+    inputs: Sequence[KernelInput | SimulationError], loads: Sequence[float]
+) -> list[KernelInput | SimulationError]:
+    """Inputs whose balls are squeezed by the axial ``loads`` [N] too."""
+    loaded, alike = list(inputs), defaultdict[float, list[tuple[int, KernelInput, float]]](list)
+    for place, (given, load) in enumerate(zip(inputs, loads, strict=True)):
+        if isinstance(given, KernelInput) and load != 0:
+            alike[given.machine.contact_exponent].append((place, given, load))
+    for group in alike.values():
+        places, some, loads_of = zip(*group, strict=True)
+        balls = ball_angles([given.bearing.n_balls for given in some], [given.turning.cage_angle for given in some])
+        squeezes = axial_approach(as_columns([given.machine for given in some]), np.array(loads_of), balls)
+        for place, given, squeeze in zip(places, some, squeezes, strict=True):
+            half_clearance = given.machine.half_clearance - squeeze
+            loaded[place] = given._replace(machine=given.machine._replace(half_clearance=half_clearance))
     return loaded
 
 

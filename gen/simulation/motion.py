@@ -2,7 +2,7 @@
 
 import functools
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ from gen.physics.kernel.layout import (
 from gen.physics.kernel.turning import STRIDE
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
-from gen.simulation.timeline import Timeline
+from gen.simulation.timeline import Timeline, timeline
 
 FloatArray = NDArray[np.float64]
 
@@ -32,7 +32,8 @@ LEAVES_LOAD_ZONE = math.pi / 3  # angle from the load at which the pocket of a b
 LOAD_TERMS = 8
 
 
-class Motion(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Motion:
     """Course of shaft, cage and balls of one record, which tells kernel input, angles of the shaft and mean orders."""
 
     scenario: Scenario
@@ -41,6 +42,11 @@ class Motion(NamedTuple):
     """Of the cosine terms of all processes, shape (term,) [Hz]."""
     phases: FloatArray
     """Shape (term,) [rad]."""
+
+    @functools.cached_property
+    def means(self) -> tuple[float, FaultOrders]:
+        """Mean shaft rate [Hz] and fault orders [1] over the record, with speed profile, wander and slip."""
+        return _means(self, timeline(self.scenario.recipe))
 
 
 def draw_motion(scenario: Scenario) -> Motion:
@@ -104,39 +110,29 @@ def _bands(n_balls: int) -> tuple[FloatArray, FloatArray, NDArray[np.int_]]:
     return low, np.array([math.log(ratio) for ratio in high / low]), unit.astype(int)
 
 
-def is_scheduled(scenario: Scenario) -> bool:
-    """Whether speed or load of a record change over time by a profile or by load wander."""
-    profiles = scenario.speed_profile, scenario.load_profile
-    return profiles != (None, None) or scenario.conditions["load_wander"] != 0
-
-
-def schedule_of(scenario: Scenario, timeline: Timeline) -> FloatArray:
+def schedule_of(scenario: Scenario) -> FloatArray:
     """Factors of shaft rate and load at the knots, shape (knot, 2); (0, 2) if both are constant."""
-    if not is_scheduled(scenario):
+    speed, load, wander = scenario.speed_profile, scenario.load_profile, scenario.conditions["load_wander"]
+    if (speed, load) == (None, None) and wander == 0:
         return CONSTANT
-    times = timeline.knot_times(np.arange(timeline.knots))
+    axis = timeline(scenario.recipe)
+    times = axis.knot_times()
     factors = np.ones((len(times), 2))
-    if scenario.speed_profile is not None:
-        factors[:, 0] = share_at(scenario.speed_profile, times + 0.5 / timeline.fs)
-    if scenario.load_profile is not None:
-        factors[:, 1] = share_at(scenario.load_profile, times)
-    if scenario.conditions["load_wander"] > 0:
-        factors[:, 1] *= load_wander(scenario, times)
+    if speed is not None:
+        factors[:, 0] = share_at(speed, times + 0.5 / axis.fs)
+    if load is not None:
+        factors[:, 1] = share_at(load, times)
+    if wander > 0:
+        factors[:, 1] *= _load_wander(scenario, times)
     return factors
 
 
-def load_wander(scenario: Scenario, times: FloatArray) -> FloatArray:
-    """Factor of the load at evenly spaced ``times`` [s], of their shape [1]: slow, never below 0."""
-    amplitude, rates, phases = wander_terms(scenario)
-    return np.maximum(1 + amplitude * cosine_sum(times, rates, phases), 0.0)
-
-
-def wander_terms(scenario: Scenario) -> tuple[float, FloatArray, FloatArray]:
-    """Amplitude of every term of the load wander [1], rates of at most the shaft rate [rad/s], and phases [rad], shape (term,)."""
+def _load_wander(scenario: Scenario, times: FloatArray) -> FloatArray:
+    """Factor of the load at evenly spaced ``times`` [s], of their shape [1]: slower than the shaft, never below 0."""
     rng, conditions = scenario.stream("load wander"), scenario.conditions
     rates = 2 * np.pi * conditions["shaft_rate"] * power(0.05, rng.random(LOAD_TERMS))
-    phases = rng.uniform(0, 2 * np.pi, LOAD_TERMS)
-    return conditions["load_wander"] * math.sqrt(2 / LOAD_TERMS), rates, phases
+    amplitude = conditions["load_wander"] * math.sqrt(2 / LOAD_TERMS)
+    return np.maximum(1 + amplitude * cosine_sum(times, rates, rng.uniform(0, 2 * np.pi, LOAD_TERMS)), 0.0)
 
 
 def cosine_sum(
@@ -155,22 +151,19 @@ def cosine_sum(
     return np.einsum("bt,ts->bs", of_start, of_step).ravel()[: len(times)]
 
 
-def _walk(bearing: Bearing, turning: Turning, timeline: Timeline) -> FloatArray:
+def _walk(bearing: Bearing, turning: Turning, axis: Timeline) -> FloatArray:
     """Slip of the random walk of the cage at the knots of the record, as the kernel draws it, shape (time,) [1]."""
-    first, later = divmod(timeline.settle, STRIDE)
-    normals = standard_normals(
-        np.arange(first, (timeline.settle + timeline.record - 1) // STRIDE + 1), turning.walk_seed
-    )
-    slips = walk_slip_rms(bearing, turning, STRIDE / timeline.fs) * normals
-    return np.repeat(slips, STRIDE)[later : later + timeline.record]
+    first, later = divmod(axis.settle, STRIDE)
+    normals = standard_normals(np.arange(first, (axis.settle + axis.record - 1) // STRIDE + 1), turning.walk_seed)
+    slips = walk_slip_rms(bearing, turning, STRIDE / axis.fs) * normals
+    return np.repeat(slips, STRIDE)[later : later + axis.record]
 
 
-def mean_motion(motion: Motion, timeline: Timeline) -> tuple[float, FaultOrders]:
-    """Mean shaft rate [Hz] and fault orders [1] over a record, with speed profile, wander and slip."""
-    turning, profile, duration = motion.turning, motion.scenario.speed_profile, timeline.duration
+def _means(motion: Motion, axis: Timeline) -> tuple[float, FaultOrders]:
+    turning, profile, duration = motion.turning, motion.scenario.speed_profile, axis.duration
     bearing = motion.scenario.bearing
     terms = slice(TILT_FIRST)  # speed, slip and spin
-    settle, turn, phase = timeline.settle / timeline.fs, 2 * np.pi * motion.frequencies[terms], motion.phases[terms]
+    settle, turn, phase = axis.settle / axis.fs, 2 * np.pi * motion.frequencies[terms], motion.phases[terms]
     if profile is None:
         means = (np.sin(turn * (settle + duration) + phase) - np.sin(turn * settle + phase)) / (turn * duration)
     else:  # weighted by the shaft rate, with 20 points per turn: ten to a cycle of the fastest process
@@ -186,10 +179,8 @@ def mean_motion(motion: Motion, timeline: Timeline) -> tuple[float, FaultOrders]
     rate *= 1 + turning.speed_rms * mean(0, SPEED_TERMS)
     slip = turning.mean_slip + turning.slip_rms * mean(SLIP_FIRST, SLIP_TERMS)
     if turning.walk > 0:
-        walk, weights = _walk(bearing, turning, timeline), None
-        if profile is not None:
-            weights = share_at(profile, (np.arange(timeline.record) + 0.5) / timeline.fs)
-        slip += float(walk.mean() if weights is None else np.average(walk, weights=weights))
+        walk, middles = _walk(bearing, turning, axis), (np.arange(axis.record) + 0.5) / axis.fs
+        slip += float(walk.mean() if profile is None else np.average(walk, weights=share_at(profile, middles)))
     orders = slipping_orders(bearing, slip)
     wander = turning.spin_rms * mean(SPIN_FIRST, SPIN_TERMS)
     return rate, orders._replace(bsf=orders.bsf * (1 + wander))

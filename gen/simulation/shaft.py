@@ -16,7 +16,7 @@ from gen.physics.kernel.turning import STRIDE
 from gen.physics.profile import share_at
 from gen.scenarios import read_scenarios
 from gen.simulation.motion import Motion, cosine_sum, draw_motion
-from gen.simulation.timeline import Timeline, timeline
+from gen.simulation.timeline import timeline
 from gen.support.errors import CorpusError
 
 FloatArray = NDArray[np.float64]
@@ -56,15 +56,14 @@ def _record_angles(row: xr.Dataset, place: int) -> FloatArray:
             (scenario,) = read_scenarios(row)
         except CorpusError as error:
             raise CorpusError(f"record {place}{str(error).removeprefix('record 0')}") from None
-        axis = timeline(scenario.recipe)
-        return angles_of(draw_motion(scenario), axis)[axis.kept]
+        return angles_of(draw_motion(scenario))[timeline(scenario.recipe).kept]
     rate = row["shaft_rate"].item()
     if not rate > 0:
         raise CorpusError(f"record {place} has no shaft rate, so that the angle of its shaft is not known.")
     return 2 * math.pi * rate / row["sample_rate"].item() * np.arange(row.sizes["elapsed_time"])
 
 
-def angles_of(motion: Motion, timeline: Timeline) -> FloatArray:
+def angles_of(motion: Motion) -> FloatArray:
     """Angle of the shaft of a record from the lead ahead of it on, shape (time,) [rad].
 
     With a constant nominal speed it is ``angle + omega (t + s integral(eta))``, with the rms ``s`` of the wander and its cosine sum
@@ -72,19 +71,25 @@ def angles_of(motion: Motion, timeline: Timeline) -> FloatArray:
     kernel.
     """
     start, omega, wander = motion.turning.shaft_angle, 2 * math.pi * motion.turning.shaft_rate, motion.turning.speed_rms
-    profile = motion.scenario.speed_profile
+    profile, axis = motion.scenario.speed_profile, timeline(motion.scenario.recipe)
+    # terms of the wander of unit rms, at times since the kernel started
+    rates, phases = 2 * np.pi * motion.frequencies[:SPEED_TERMS], motion.phases[:SPEED_TERMS]
+    size = math.sqrt(2 / SPEED_TERMS)
     if profile is None:
-        nodes = np.arange(timeline.dropped, timeline.dropped + timeline.returned + STRIDE, STRIDE) / timeline.fs
-        turned = omega * (nodes + (wander * _integrated_wander(motion, nodes) if wander > 0 else 0.0))
-        angles = _between(turned)[: timeline.returned]
+        nodes = np.arange(axis.dropped, axis.dropped + axis.returned + STRIDE, STRIDE) / axis.fs
+        integral = 0.0
+        if wander > 0:
+            sines = cosine_sum(nodes, rates, phases - math.pi / 2, 1 / rates)
+            integral = wander * (size * (sines - float(np.sum(np.sin(phases) / rates))))
+        angles = _between(omega * (nodes + integral))[: axis.returned]
         angles += start
         return angles
-    middles = (np.arange(timeline.dropped + timeline.returned - 1) + 0.5) / timeline.fs
-    speed = share_at(profile, middles - timeline.settle / timeline.fs)
+    middles = (np.arange(axis.dropped + axis.returned - 1) + 0.5) / axis.fs
+    speed = share_at(profile, middles - axis.settle / axis.fs)
     if wander > 0:
-        speed *= 1 + wander * _wander(motion, middles)
-    turned = np.concatenate([[0.0], np.cumsum(speed)]) * (omega / timeline.fs)
-    return start + turned[timeline.dropped :]
+        speed *= 1 + wander * (size * cosine_sum(middles, rates, phases))
+    turned = np.concatenate([[0.0], np.cumsum(speed)]) * (omega / axis.fs)
+    return start + turned[axis.dropped :]
 
 
 def _between(nodes: FloatArray) -> FloatArray:
@@ -96,21 +101,3 @@ def _between(nodes: FloatArray) -> FloatArray:
     between = slopes[:, None] * np.arange(STRIDE)
     between += nodes[:-1, None]
     return between.ravel()
-
-
-def _wander(motion: Motion, times: NDArray[np.floating]) -> FloatArray:
-    """Speed wander of unit rms at evenly spaced ``times`` since the kernel started [s], shape (time,) [1]."""
-    rates, phases = _speed_terms(motion)
-    return math.sqrt(2 / SPEED_TERMS) * cosine_sum(times, rates, phases)
-
-
-def _integrated_wander(motion: Motion, times: NDArray[np.floating]) -> FloatArray:
-    """Integral of the speed wander of unit rms from the start of the kernel to ``times``, shape (time,) [s]."""
-    rates, phases = _speed_terms(motion)
-    sines = cosine_sum(times, rates, phases - math.pi / 2, 1 / rates)
-    return math.sqrt(2 / SPEED_TERMS) * (sines - float(np.sum(np.sin(phases) / rates)))
-
-
-def _speed_terms(motion: Motion) -> tuple[FloatArray, FloatArray]:
-    """Rates [rad/s] and phases [rad] of the cosine terms of the speed wander, shape (term,)."""
-    return 2 * np.pi * motion.frequencies[:SPEED_TERMS], motion.phases[:SPEED_TERMS]

@@ -5,8 +5,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.schema import Variable
-from gen.corpus.simulated import with_values
 from gen.physics.inputs import KernelInput
 from gen.physics.rotor import highest_angular_frequency, highest_damping_rate, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING
@@ -24,12 +22,6 @@ PASSAGE_STEPS = 4  # in which a ball rolls over the narrowest spall at least; wi
 _FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
 LARGEST_TURN = 0.7  # of the shaft per sample [rad]: its rate is constant within a sample
 
-LABELS = (
-    *with_values(oversampling=None),
-    Variable("step_phase", "f8", "rad", "provenance", "bound of the fastest angular frequency of the record times the step"),
-)  # fmt: skip
-"""Variables of the corpus, arrays of a :class:`gen.simulation.simulate.Response`."""
-
 
 def steps_per_sample(given: KernelInput, scenario: Scenario) -> int:
     """Steps per sample that the modes and the spalls of a record need; the records of a group have the same.
@@ -41,10 +33,16 @@ def steps_per_sample(given: KernelInput, scenario: Scenario) -> int:
     """
     number, recording = scenario.origin.record, scenario.recipe.recording
     fs, asked = recording.sample_rate_hz, recording.oversampling
-    _check_turn(given, number, fs)
-    rate = fastest_rate(given)
+    turn = 2 * math.pi * _fastest_shaft_rate(given)
+    if turn / fs > LARGEST_TURN:
+        raise SimulationError(
+            f"record {number}: its shaft turns {math.degrees(turn / fs):.3g} degrees per sample; raise "
+            f"recording.sample_rate_hz to {math.ceil(turn / LARGEST_TURN)}."
+        )
+    rate, narrowest = fastest_rate(given), scenario.origin.narrowest_mm  # of the spalls of a group
     need = max(min(rate / (FINE_STEP * fs), ENOUGH), rate / (FOLLOWED_STEP * fs))
-    need = max(need, min(PASSAGE_STEPS * passage_rate(given, _narrowest(scenario)) / fs, MAX_OVERSAMPLING))
+    passages = passage_rate(given, None if narrowest is None else to_si(narrowest, "mm"))
+    need = max(need, min(PASSAGE_STEPS * passages / fs, MAX_OVERSAMPLING))
     if asked is not None:
         if rate / (asked * fs) > COARSEST_STEP:
             raise SimulationError(
@@ -59,21 +57,6 @@ def steps_per_sample(given: KernelInput, scenario: Scenario) -> int:
         f"record {number}: its stiffest mode of {rate / 2 / math.pi:.0f} Hz needs more than {_FACTORS[-1]} steps per "
         f"sample at {fs:g} Hz; soften the machine or raise recording.sample_rate_hz."
     )
-
-
-def _narrowest(scenario: Scenario) -> float | None:
-    """Width of the narrowest spall of the group of a record [m]."""
-    width = scenario.origin.narrowest_mm
-    return None if width is None else to_si(width, "mm")
-
-
-def _check_turn(given: KernelInput, number: int, fs: float) -> None:
-    fastest = _fastest_shaft_rate(given)
-    if 2 * math.pi * fastest / fs > LARGEST_TURN:
-        raise SimulationError(
-            f"record {number}: its shaft turns {360 * fastest / fs:.3g} degrees per sample; raise "
-            f"recording.sample_rate_hz to {math.ceil(2 * math.pi * fastest / LARGEST_TURN)}."
-        )
 
 
 def fastest_rate(given: KernelInput) -> float:

@@ -60,9 +60,9 @@ class Timeline(NamedTuple):
         """Length of the record [s]."""
         return self.record / self.fs
 
-    def knot_times(self, knots: NDArray[np.integer]) -> FloatArray:
-        """Times of knots by their number, of their shape, 0 at the start of the record [s]."""
-        return (knots - self.settle) / self.fs
+    def knot_times(self) -> FloatArray:
+        """Times of all knots, shape (knot,), 0 at the start of the record [s]."""
+        return (np.arange(self.knots) - self.settle) / self.fs
 
     def response_times(self) -> FloatArray:
         """Times of the samples of a response, shape (time,), 0 at the start of the record [s]."""

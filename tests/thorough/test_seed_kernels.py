@@ -10,11 +10,11 @@ from benchmarks import rivals
 from benchmarks.kernel import compiled, compiler, in_lanes
 from benchmarks.seed import GEOMETRIC, NO_SPALL, RECTANGULAR, seed_of, seed_records
 from gen.physics.inputs import KernelInput
-from gen.physics.kernel.batch import lay_out
+from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.decimate import decimation
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
-from gen.simulation.batches import group_of, integrate_batch
+from gen.simulation.batches import integrate_batch
 from gen.simulation.timeline import timeline
 from tests.lanes import march_lanes
 from tests.responses import input_of
@@ -57,8 +57,8 @@ def test_the_kernel_in_c_returns_the_outputs_of_ours(steps: int, brief_seed: Pat
     recipe = read_recipe(brief_seed)
     axis, filters = timeline(recipe), decimation(steps)
     for profile, records in seed_records(recipe, 2 * LANES).items():
-        group, some = group_of(records[0], steps), records[:LANES]
-        ours = integrate_batch(group, lay_out(some, group.shape, 1 / axis.fs), axis).response
+        shape, some = input_shape(records[0]), records[:LANES]
+        ours = integrate_batch(shape, steps, lay_out(some, shape, 1 / axis.fs), axis).response
         (batch,) = in_lanes(some, LANES, 1 / (axis.fs * steps))
         outputs = compiled(LANES, profile, tmp_path, filters)
         taps = filters.last.kept * filters.first.factor + filters.first.kept  # after the newest step of an output

@@ -8,11 +8,12 @@ from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
 from tests.gen.measurement.test_record_rms_laws import check
+from tests.responses import accelerations_of
 
 
 def test_the_records_for_training_have_the_drawn_rms():
     scenarios = draw_scenarios(read_recipe("domain_randomised"), 0, 24)
-    check(simulate(scenarios).acceleration, scenarios)
+    check(accelerations_of(simulate(scenarios)), scenarios)
 
 
 @pytest.mark.parametrize("name", sorted(shipped_recipes().keys() - {"dirty_sensors"}))

@@ -11,7 +11,7 @@ import pytest
 
 from gen.physics.catalogue import CATALOGUE
 from gen.scenarios import draw_scenarios
-from gen.simulation.inputs import bare_inputs, only
+from gen.simulation.inputs import bare_inputs
 from gen.simulation.motion import draw_motion
 from tests.reference_machine import reference_recipe
 from tests.spall_passages import contact_speed, contributions, passage, unloading_drop, unloads
@@ -75,7 +75,7 @@ def test_a_deeper_spall_changes_nothing_once_the_ball_is_unloaded():
 def test_a_heavier_load_needs_a_wider_spall():
     needed = [
         unloading_drop(
-            only(bare_inputs([draw_motion(scenario)])).machine,
+            bare_inputs([draw_motion(scenario)])[0].machine,
             scenario.bearing,
             scenario.machine["load_angle"],
         )

@@ -19,7 +19,7 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.background.source import FloatArray, LockedSource
+from gen.mechanisms.background.source import FloatArray, LockedSource, Streams
 from gen.support.units import decibel_to_ratio
 
 
@@ -50,21 +50,15 @@ class GearMesh(LockedSource):
     phase_deg: Distribution = within(0, 180, default=0.0)
     """Peak of the phase modulation once per turn of the shaft, in degrees of the mesh cycle; n times this at the nth multiple."""
 
-    def vibrations(
-        self,
-        angles: FloatArray,
-        fs: float,  # noqa: ARG002
-        of_rig: np.random.Generator,
-        of_record: np.random.Generator,
-    ) -> list[FloatArray]:
+    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:  # noqa: ARG002
         """Vibration of the mesh. The angle of the mate at the first sample is random: other teeth meet there in each record.
 
         A multiple of the mesh above half the sample rate, which the anti-alias filter would remove, is left out.
         """
         drawn = self.si()
         teeth, levels = round(drawn["teeth"]), decibel_to_ratio(drawn["level"])
-        start = 2 * math.pi * of_record.random()
-        high_point, lead_point, *phases = 2 * math.pi * of_rig.random(2 + len(levels))
+        start = 2 * math.pi * stream().random()
+        high_point, lead_point, *phases = 2 * math.pi * stream(level="rig").random(2 + len(levels))
         rate = np.abs(np.gradient(teeth * angles)) / math.pi  # of the mesh, over half the sample rate
         turn = np.exp(1j * (teeth * angles + drawn["phase"] * np.cos(angles - lead_point)))
         total, power = np.zeros(len(angles)), np.ones(len(angles), complex)

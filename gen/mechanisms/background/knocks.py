@@ -23,9 +23,14 @@ class Knocks(BackgroundSource):
     level_db: Distribution = within(-80, 60)
     """Mean of their peaks behind the path, relative to the rms of the background noise."""
 
-    def add_to(self, hits: FloatArray, phase: float, angles: FloatArray, rng: np.random.Generator) -> None:
-        """Add the strengths of knocks to the samples at which they start, shape (time,) [1], for ``angles`` of the shaft [rad]."""
-        drawn = self.si()
+    def add_to(
+        self, hits: FloatArray, angles: FloatArray, rng: np.random.Generator, of_rig: np.random.Generator
+    ) -> None:
+        """Add the strengths of knocks to the samples at which they start, shape (time,) [1], for ``angles`` of the shaft [rad].
+
+        The phase of the knocks is drawn from the stream ``of_rig``.
+        """
+        drawn, phase = self.si(), 2 * math.pi * of_rig.random()
         times = np.flatnonzero(np.diff(np.floor((drawn["orders"] * angles + phase) / (2 * math.pi))) > 0) + 1
         scatter = _SCATTER * rng.standard_normal(len(times), dtype=np.float32)
         hits[times] += decibel_to_ratio(drawn["level"]) * (1 + scatter)

@@ -17,7 +17,7 @@ import numpy as np
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.background.machine_conditions import label_of
-from gen.mechanisms.background.source import FloatArray, LockedSource
+from gen.mechanisms.background.source import FloatArray, LockedSource, Streams
 from gen.support.units import STANDARD_GRAVITY, decibel_to_ratio
 
 
@@ -43,24 +43,17 @@ class Looseness(LockedSource):
     level_db: Distribution = within(-80, 40)
     """Rms of this vibration relative to that of the background noise."""
 
-    def vibrations(
-        self,
-        angles: FloatArray,
-        fs: float,
-        of_rig: np.random.Generator,
-        of_record: np.random.Generator,  # noqa: ARG002
-    ) -> list[FloatArray]:
+    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
         """Acceleration of the machine beside that on firm ground; the angle at which the shaft lifts most belongs to the rig."""
         from gen.physics.rattle import rattling  # compiled: a recipe is read without numba
 
         drawn = self.si()
-        lifting = drawn["lift"] * STANDARD_GRAVITY * np.cos(angles - 2 * np.pi * of_rig.random())
+        lifting = drawn["lift"] * STANDARD_GRAVITY * np.cos(angles - 2 * np.pi * stream(level="rig").random())
         ground, _ = rattling(-lifting, drawn["frequency"], drawn["damping"], STANDARD_GRAVITY, fs)
         moved = ground + lifting
         rms = float(np.sqrt(np.mean(moved**2)))
-        return (
-            [moved * (decibel_to_ratio(drawn["level"]) / rms)] if rms > 0 else []
-        )  # less than a turn, without a flight
+        # there is no flight in less than a turn
+        return [moved * (decibel_to_ratio(drawn["level"]) / rms)] if rms > 0 else []
 
     @staticmethod
     def compile() -> None:

@@ -17,7 +17,7 @@ from pydantic import Field, StrictInt
 from gen.corpus.fault_classes import UNKNOWN, UNKNOWN_CODE
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Draws, Probability, Section, Weight, weighted_index, within
-from gen.mechanisms.background.source import FloatArray, LockedSource
+from gen.mechanisms.background.source import FloatArray, LockedSource, Streams
 from gen.support.units import decibel_to_ratio
 
 MachineKind = Literal["unbalance", "bent_shaft", "misalignment", "looseness", "rub", "belt"]
@@ -91,18 +91,12 @@ class MachineConditions(LockedSource):
         one = self.model_copy(update={"entries": (self.entries[chosen],)})
         return super(MachineConditions, one).draw(of)
 
-    def vibrations(
-        self,
-        angles: FloatArray,
-        fs: float,  # noqa: ARG002
-        of_rig: np.random.Generator,
-        of_record: np.random.Generator,
-    ) -> list[FloatArray]:
+    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:  # noqa: ARG002
         """Lines and bursts of the condition; their phases belong to the rig."""
-        (condition,) = self.entries
+        (condition,), of_rig = self.entries, stream(level="rig")
         start = 2 * math.pi * of_rig.random()
         lines = lines_of(condition, angles, of_rig)
-        return [lines] if condition.bursts is None else [lines, bursts_of(condition.bursts, angles, start, of_record)]
+        return [lines] if condition.bursts is None else [lines, bursts_of(condition.bursts, angles, start, stream())]
 
 
 def lines_of(condition: MachineCondition, angles: FloatArray, rng: np.random.Generator) -> FloatArray:

@@ -1,6 +1,5 @@
 """Background of a machine: its noise, and the sources that it can have beside it."""
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from gen.mechanisms.background.gear_mesh import GearMesh
@@ -24,19 +23,14 @@ if TYPE_CHECKING:
     class BackgroundSection(Noise):
         """Vibration of the machine without the bearing."""
 
-        harmonics: Harmonics | None = None
-        tones: Tones | None = None
-        impulses: Impulses | None = None
-        knocks: Knocks | None = None
+        def __getattr__(self, source: str) -> Any: ...
 
 else:
     _OF_BACKGROUND = [source for source in (*SOURCES, *LOCKED) if source is not MachineConditions]  # it has a section
     BackgroundSection = section_with("BackgroundSection", __name__, Noise, _OF_BACKGROUND)
 
 
-def locked_of(recipe: Any) -> Iterator[LockedSource]:
+def locked_of(recipe: Any) -> list[LockedSource]:
     """Sources of a drawn recipe that are locked to the shaft."""
-    for source in LOCKED:
-        found = getattr(recipe.background, source.place, None) or getattr(recipe, source.place, None)
-        if found is not None:
-            yield found
+    places = [(section, source.place) for source in LOCKED for section in (recipe.background, recipe)]
+    return [found for section, place in places if (found := getattr(section, place, None)) is not None]

@@ -1,8 +1,13 @@
 """What a source of vibration in the machine is: a section of a recipe that some rigs have."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from gen.mechanisms.mechanism import FloatArray, Mechanism
+
+Streams = Callable[..., np.random.Generator]
+"""Gives the random stream of a source in a record, or that in a rig: ``stream(level="rig")``."""
 
 
 class BackgroundSource(Mechanism):
@@ -14,12 +19,10 @@ class BackgroundSource(Mechanism):
 class LockedSource(BackgroundSource):
     """A source whose vibration follows from the angle of the shaft, ahead of the paths."""
 
-    def vibrations(
-        self, angles: FloatArray, fs: float, of_rig: np.random.Generator, of_record: np.random.Generator
-    ) -> list[FloatArray]:
+    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
         """Vibrations over the rms of the background noise, for ``angles`` of the shaft [rad], shape (time,) each [1].
 
-        Each has its rms ahead of the paths and, over all channels, behind them. ``fs`` is the sample rate [Hz]. The two streams give phases
-        that belong to the rig, and what is random in a record.
+        Each has its rms ahead of the paths and, over all channels, behind them. ``fs`` is the sample rate [Hz]. The ``stream`` of the rig
+        gives phases that belong to it, that of the record what is random in a record.
         """
         raise NotImplementedError

@@ -10,6 +10,8 @@ from gen.mechanisms.background.source import BackgroundSource, FloatArray
 from gen.physics.orbit import along
 from gen.support.units import decibel_to_ratio
 
+ComplexArray = NDArray[np.complex128]
+
 
 class Tones(BackgroundSource):
     """Lines at fixed frequencies, such as those of other machines."""
@@ -29,15 +31,14 @@ class Tones(BackgroundSource):
 
 
 def motion_of_tones(
-    tones: Tones | None, fs: float, directions: FloatArray, rng: np.random.Generator
-) -> tuple[FloatArray, NDArray[np.complex128]]:
-    """Angle per sample [rad], amplitude, and parts of the modulation by the shaft of each tone, shape (tone, 4); and its motion.
+    tones: Tones | None, directions: FloatArray, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray, ComplexArray, ComplexArray]:
+    """Frequency [Hz], amplitude and modulation by the shaft of each tone, shape (tone,), and its motion along some ``directions`` [rad].
 
-    The motion is that along some ``directions`` [rad], shape (direction, tone) [1].
+    The motion has the shape (direction, tone) [1].
     """
     drawn = {name: np.zeros(0) for name in ("frequency", "level", "modulation")} if tones is None else tones.si()
     forward, backward, flatness, phases = rng.random((4, len(drawn["level"])))
-    steps, levels = 2 * math.pi / fs * drawn["frequency"], math.sqrt(2) * decibel_to_ratio(drawn["level"])
-    parts = drawn["modulation"] * np.exp(2j * np.pi * phases)
+    modulation = drawn["modulation"] * np.exp(2j * np.pi * phases)
     motion = along(directions, 2 * np.pi * forward, 2 * np.pi * backward, flatness)
-    return np.stack([steps, levels, parts.real, parts.imag], axis=1), motion
+    return drawn["frequency"], math.sqrt(2) * decibel_to_ratio(drawn["level"]), modulation, motion

@@ -9,10 +9,11 @@ import pytest
 
 from gen.generation import compilation
 from gen.generation.compilation import compile_kernels
+from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.decimate import decimation
 from gen.scenarios import draw_scenarios
 from gen.simulation.kernels import signature
-from gen.simulation.simulate import laid_out
+from tests.responses import input_of
 
 
 def test_kernels_work_where_numba_finds_no_folder():
@@ -33,9 +34,11 @@ def test_the_kernel_is_compiled_for_the_types_of_the_arguments_it_is_called_with
     recipe = recipe_with(
         {"operation.speed_profile": {"kind": "run_up", "from_percent": 50, "to_percent": 120, "lasting_s": 0.1}}
     )
-    for group, batch in laid_out(draw_scenarios(recipe, 0, 8)):
-        given = (group.shape, batch, 1e-5, group.steps, decimation(group.steps), 3, 5)
-        assert tuple(map(numba.typeof, given)) == signature()
+    for scenario in draw_scenarios(recipe, 0, 8):
+        given = input_of(scenario)
+        shape = input_shape(given)
+        arguments = (shape, lay_out([given], shape, 1e-4), 1e-5, 4, decimation(4), 3, 5)
+        assert tuple(map(numba.typeof, arguments)) == signature()
 
 
 def test_the_kernel_is_announced_before_it_is_compiled(recipe_with, monkeypatch):

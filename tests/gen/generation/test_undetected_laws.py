@@ -1,17 +1,20 @@
 """Laws of the faults that can be seen: what a record without its fault tells, and what becomes of a fault that cannot be seen."""
 
+import math
+
 import numpy as np
 import pytest
 
 from gen.corpus import FAULTS
 from gen.generation.labels import part_dataset
-from gen.generation.undetected import FAULT_TRIES, made_from, make_records
-from gen.measurement.measure import measure
+from gen.generation.undetected import FAULT_TRIES, made_from, made_of, make_records
+from gen.measurement.measure import Measured, counts_per_unit
 from gen.recipe.sensing import FloatConverter
 from gen.scenarios import draw_scenarios, further_ratios
 from gen.simulation import simulate as simulation
 from gen.simulation.hits import felt_places
 from gen.simulation.simulate import simulate
+from tests.responses import accelerations_of
 
 FLOAT = FloatConverter(kind="float32")
 OUTER = {"kind": "outer", "width_mm": 0.5, "angle_deg": "uniform(-180, 180)"}
@@ -24,30 +27,38 @@ TRAINING = {
 }
 
 
-def labelled(made):
-    return part_dataset(made.measured, made.response)
+def scenarios_of(made):
+    return [record.scenario for record in made if isinstance(record, Measured)]
 
 
 @pytest.fixture(scope="module")
 def redrawing(recipe_with):
     recipe = recipe_with(TRAINING | {"truth.undetected": "redraw"})
-    return recipe, make_records(recipe, range(recipe.n_records))
+    made = make_records(recipe, range(recipe.n_records))
+    assert all(isinstance(record, Measured) for record in made)
+    return recipe, made
+
+
+def assert_same(records, others):
+    for one, other in zip(records, others, strict=True):
+        np.testing.assert_array_equal(one.signal, other.signal)
+        assert (one.fault_snr == other.fault_snr) or math.isnan(one.fault_snr)
+        assert one.scenario == other.scenario
 
 
 def test_every_fault_of_a_recipe_that_redraws_can_be_seen(redrawing):
     recipe, made = redrawing
-    faulty = np.array([scenario.fault != "healthy" for scenario in made.measured.scenarios])
-    kept = [place for place in np.flatnonzero(faulty) if place not in made.response.failures]
-    assert len(kept) > 10
-    assert (made.measured.detectable[kept] == 1).all()
-    assert any(scenario.origin.fault_try for scenario in made.measured.scenarios)
-    assert any(scenario.origin.level_try for scenario in made.measured.scenarios)
+    faulty = [record for record in made if record.scenario.fault != "healthy"]
+    assert len(faulty) > 10
+    assert all(record.detectable == 1 for record in faulty)
+    assert any(record.scenario.origin.fault_try for record in made)
+    assert any(record.scenario.origin.level_try for record in made)
     assert recipe.truth.undetected == "redraw"
 
 
 def test_a_fault_that_is_drawn_again_leaves_everything_else_as_it_was(redrawing):
     recipe, made = redrawing
-    for first, final in zip(draw_scenarios(recipe), made.measured.scenarios, strict=True):
+    for first, final in zip(draw_scenarios(recipe), scenarios_of(made), strict=True):
         others = set(type(recipe).model_fields) - {"faults", "level", "origin"}
         for section in others:
             assert getattr(final.recipe, section) == getattr(first.recipe, section)
@@ -71,7 +82,7 @@ def test_a_fault_that_is_drawn_again_keeps_the_conditions_of_its_entry(recipe_wi
 def test_all_records_of_a_specimen_have_the_same_fault(redrawing):
     _, made = redrawing
     found = {}
-    for scenario in made.measured.scenarios:
+    for scenario in scenarios_of(made):
         own = scenario.recipe.specimen, scenario.recipe.faults, scenario.origin.fault_try
         assert found.setdefault(scenario.origin.specimen, own) == own
 
@@ -79,32 +90,27 @@ def test_all_records_of_a_specimen_have_the_same_fault(redrawing):
 @pytest.mark.parametrize("cut", [range(3, 9), range(24, 32)])
 def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing, cut):
     recipe, whole = redrawing
-    some = make_records(recipe, cut)
-    np.testing.assert_array_equal(some.measured.signal, whole.measured.signal[cut.start : cut.stop])
-    np.testing.assert_array_equal(some.measured.fault_snr, whole.measured.fault_snr[cut.start : cut.stop])
-    assert some.measured.scenarios == whole.measured.scenarios[cut.start : cut.stop]
+    assert_same(make_records(recipe, cut), whole[cut.start : cut.stop])
 
 
 def test_the_last_record_of_a_specimen_made_alone_has_the_fault_that_all_its_records_show(redrawing):
     recipe, whole = redrawing
     per_specimen = recipe.corpus.records_per_specimen
-    redrawn = {one.origin.specimen for one in whole.measured.scenarios if one.origin.fault_try}
+    redrawn = {one.origin.specimen for one in scenarios_of(whole) if one.origin.fault_try}
     assert redrawn
     for specimen in redrawn:
         number = (specimen + 1) * per_specimen - 1
-        alone = make_records(recipe, range(number, number + 1))
-        assert alone.measured.scenarios == whole.measured.scenarios[number : number + 1]
-        np.testing.assert_array_equal(alone.measured.signal[0], whole.measured.signal[number])
+        assert_same(make_records(recipe, range(number, number + 1)), whole[number : number + 1])
 
 
 def test_the_ratio_of_a_fault_is_the_drawn_one(redrawing):
     _, made = redrawing
-    for place, scenario in enumerate(made.measured.scenarios):
-        if scenario.fault != "healthy" and place not in made.response.failures:
-            found, drawn = made.measured.fault_snr[place], scenario.recipe.level.faulty_db
+    for record in made:
+        if record.scenario.fault != "healthy":
+            found, drawn = record.fault_snr, record.scenario.recipe.level.faulty_db
             assert found == pytest.approx(drawn, abs=0.05) or found < drawn
             power = 10 ** (found / 10)
-            assert made.measured.fault_share[place] == pytest.approx(power / (1 + power), rel=1e-6)
+            assert record.fault_share == pytest.approx(power / (1 + power), rel=1e-6)
 
 
 @pytest.mark.parametrize(("waviness", "kinds"), [(0, ["inner"]), (20, ["inner", "outer"])])
@@ -113,10 +119,10 @@ def test_the_twin_of_a_record_is_the_record_without_its_fault(recipe_with, wavin
     faults = [{"kind": "inner", "width_mm": 0.5}, worn][: len(kinds)]
     recipe = recipe_with({"specimen.waviness_nm": waviness, "faults": faults, "corpus.specimens_per_rig": len(kinds)})
     scenarios = draw_scenarios(recipe, 0, 2 * len(kinds))
-    twins = simulate(scenarios).twins
+    twins = [run.twin.response for run in simulate(scenarios)]
     alone = simulate([scenario.without_fault() for scenario in scenarios])
     assert {scenario.fault for scenario in scenarios} == set(kinds)
-    np.testing.assert_array_equal([twin.acceleration for twin in twins], alone.acceleration)
+    np.testing.assert_array_equal(twins, accelerations_of(alone))
 
 
 def test_a_record_is_the_same_whether_its_fault_is_known_apart_or_not(recipe_with):
@@ -131,15 +137,10 @@ def test_a_record_is_the_same_whether_its_fault_is_known_apart_or_not(recipe_wit
         "level": {"kind": "physical", "background_m_s2": 0.1, "gain": 3},
     }
     whole, apart = (make_records(recipe_with(changes | {"truth.twins": twins}), range(8)) for twins in (False, True))
-    assert (apart.measured.fault_snr > 0).any()
-    for row in range(8):
-        np.testing.assert_allclose(
-            apart.measured.signal[row],
-            whole.measured.signal[row],
-            rtol=0,
-            atol=2e-6 * np.abs(whole.measured.signal[row]).max(),
-        )
-    np.testing.assert_allclose(apart.measured.snr, whole.measured.snr, atol=1e-4)
+    assert any(record.fault_snr > 0 for record in apart)
+    for one, other in zip(apart, whole, strict=True):
+        np.testing.assert_allclose(one.signal, other.signal, rtol=0, atol=2e-6 * np.abs(other.signal).max())
+        assert one.snr == pytest.approx(other.snr, abs=1e-4)
 
 
 def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
@@ -152,21 +153,18 @@ def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
         twin.diverged = 100
 
     monkeypatch.setattr(simulation, "integrate_all", second_twin_diverges)
-    response = simulate(draw_scenarios(recipe, 0, 2))
-    assert list(response.failures) == [1]
-    assert "record 1 diverged at t = 0.008333 s" in response.failures[1]
-    assert np.isnan(response.acceleration[1]).all()
-    assert np.isfinite(response.acceleration[0]).all()
+    first, second = simulate(draw_scenarios(recipe, 0, 2))
+    assert first.failure is None
+    assert "record 1 diverged at t = 0.008333 s" in second.failure
 
 
 def test_without_truth_nothing_is_simulated_twice_and_nothing_judged(recipe_with):
     recipe = recipe_with({"truth.twins": False})
     made = make_records(recipe, range(8))
-    assert made.response.twins == []
-    healthy = np.array([scenario.fault == "healthy" for scenario in made.measured.scenarios])
-    assert np.isnan(made.measured.fault_snr).all()
-    assert (made.measured.detectable[~healthy] == 2).all()
-    assert (made.measured.detectable[healthy] == 0).all()
+    for record in made:
+        assert record.run.twin is None
+        assert math.isnan(record.fault_snr)
+        assert record.detectable == (0 if record.scenario.fault == "healthy" else 2)
 
 
 def hidden(recipe_with, undetected):
@@ -178,11 +176,9 @@ def hidden(recipe_with, undetected):
 
 def test_a_fault_that_adds_exactly_nothing_keeps_its_label_where_the_recipe_says_so(recipe_with):
     """Records with and without a spall that no loaded ball meets have the same bits."""
-    _, made = hidden(recipe_with, "keep")
-    assert made.measured.fault_snr.tolist() == [-np.inf, -np.inf]
-    assert made.measured.fault_share.tolist() == [0.0, 0.0]
-    assert made.measured.detectable.tolist() == [0, 0]
-    dataset = labelled(made)
+    dataset = part_dataset(*hidden(recipe_with, "keep"))
+    assert dataset["fault_snr"].values.tolist() == [-np.inf, -np.inf]
+    assert dataset["fault_share"].values.tolist() == [0.0, 0.0]
     assert dataset["loaded_hits"].values.tolist() == [0, 0]
     assert dataset["fault"].values.tolist() == [2, 2]
     assert dataset["detectable"].values.tolist() == [0, 0]
@@ -190,8 +186,7 @@ def test_a_fault_that_adds_exactly_nothing_keeps_its_label_where_the_recipe_says
 
 
 def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(recipe_with):
-    _, made = hidden(recipe_with, "healthy")
-    dataset = labelled(made)
+    dataset = part_dataset(*hidden(recipe_with, "healthy"))
     assert dataset["fault"].values.tolist() == [0, 0]
     assert dataset["n_spalls"].values.tolist() == [0, 0]
     assert (dataset["width"] == 0).all()
@@ -201,15 +196,15 @@ def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(
 def test_a_fault_that_was_not_judged_is_not_called_healthy(recipe_with):
     recipe = recipe_with({"truth.twins": False, "truth.undetected": "healthy"})
     made = make_records(recipe, range(8))
-    faults = [FAULTS.index(scenario.fault) for scenario in made.measured.scenarios]
+    faults = [FAULTS.index(scenario.fault) for scenario in scenarios_of(made)]
     assert any(faults)
-    assert labelled(made)["fault"].values.tolist() == faults
+    assert part_dataset(recipe, made)["fault"].values.tolist() == faults
 
 
 def test_a_fault_that_no_draw_makes_visible_is_left_out_with_a_sentence(recipe_with):
     _, made = hidden(recipe_with, "redraw")
-    assert sorted(made.response.failures) == [0, 1]
-    assert f"none of {FAULT_TRIES} drawn faults of class outer" in made.response.failures[0]
+    for sentence in made:
+        assert f"none of {FAULT_TRIES} drawn faults of class outer" in sentence
 
 
 LADDER = {
@@ -229,9 +224,9 @@ def ladders(recipe_with, request):
 
 def groups_of(made):
     found = {}
-    for place, scenario in enumerate(made.measured.scenarios):
-        if scenario.origin.pair >= 0:
-            found.setdefault(scenario.origin.pair, []).append(place)
+    for place, record in enumerate(made):
+        if isinstance(record, Measured) and record.scenario.origin.pair >= 0:
+            found.setdefault(record.scenario.origin.pair, []).append(place)
     return list(found.values())
 
 
@@ -239,7 +234,7 @@ def test_records_of_a_group_differ_in_what_the_fault_adds_alone(ladders):
     """Background and bearing have the same gains at every severity, so the difference to the first rung is the fault."""
     recipe, made = ladders
     exact = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"converter": FLOAT})})
-    signal = make_records(exact, range(18)).measured.signal.astype(float)
+    signal = [record.signal.astype(float) for record in make_records(exact, range(18))]
     groups = groups_of(made)
     assert groups
     for group in groups:
@@ -247,16 +242,16 @@ def test_records_of_a_group_differ_in_what_the_fault_adds_alone(ladders):
         rest = np.sqrt(np.mean(healthy**2))
         for place, record in zip(group[1:], damaged, strict=True):
             added = np.sqrt(np.mean((record - healthy) ** 2))
-            assert 20 * np.log10(added / rest) == pytest.approx(made.measured.fault_snr[place], abs=0.05)
+            assert 20 * np.log10(added / rest) == pytest.approx(made[place].fault_snr, abs=0.05)
 
 
 def test_the_largest_severity_of_a_group_has_the_drawn_level(ladders):
     recipe, made = ladders
     for *_, largest in groups_of(made):
         (drawn,) = draw_scenarios(recipe, largest, largest + 1)
-        level_try = made.measured.scenarios[largest].origin.level_try
+        level_try = made[largest].scenario.origin.level_try
         ratios = [drawn.recipe.level.faulty_db, *further_ratios(recipe, drawn, level_try)]
-        assert made.measured.fault_snr[largest] == pytest.approx(ratios[-1], abs=0.05)
+        assert made[largest].fault_snr == pytest.approx(ratios[-1], abs=0.05)
 
 
 def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with):
@@ -265,11 +260,11 @@ def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with)
     made = make_records(recipe, range(18))
     tried = 0
     for group in groups_of(made):
-        scenarios = [made.measured.scenarios[place] for place in group]
+        scenarios = [made[place].scenario for place in group]
         levels = {(one.recipe.level.gain, one.recipe.level.background_m_s2, one.origin.level_try) for one in scenarios}
         assert len(levels) == 1
-        again = made_from([made.measured.scenarios[group[0]]])
-        np.testing.assert_array_equal(again.measured.signal[0], made.measured.signal[group[0]])
+        (again,) = made_from(scenarios[:1])
+        np.testing.assert_array_equal(again.signal, made[group[0]].signal)
         tried += levels.pop()[-1] > 0
     assert tried > 0
 
@@ -280,7 +275,7 @@ def test_a_smaller_severity_that_misses_the_load_zone_does_not_change_the_fault_
     changes = {"faults": [{"kind": "outer", "width_mm": 12, "angle_deg": angles}], "truth.undetected": "redraw"}
     recipe = recipe_with(LADDER | {"corpus.rungs": [0.1, 1], "corpus.rigs": 6} | changes)
     made = make_records(recipe, range(recipe.n_records))
-    tries = {one.origin.specimen: one.origin.fault_try for one in made.measured.scenarios}
+    tries = {one.origin.specimen: one.origin.fault_try for one in scenarios_of(made)}
     drawn = draw_scenarios(recipe, fault_tries=tries)
     missed = {one.origin.record for one, felt in zip(drawn, felt_places(drawn), strict=True) if not felt}
     assert any(
@@ -291,26 +286,24 @@ def test_a_smaller_severity_that_misses_the_load_zone_does_not_change_the_fault_
 def test_the_rest_of_a_group_has_the_level_of_its_largest_severity_that_did_not_diverge(recipe_with):
     recipe = recipe_with(LADDER)
     scenarios = [one for one in draw_scenarios(recipe, 0, 18) if one.origin.pair >= 0][:6]
-    response = simulate(scenarios)
-    response.acceleration[2] = np.nan
-    measured = measure(response.acceleration, scenarios, [twin for twin in response.twins if twin.place != 2])
+    runs = simulate(scenarios)
+    runs[2].own.diverged = 100
+    made = made_of(runs)
     drawn = scenarios[1].recipe.level
-    assert measured.fault_snr[1] == pytest.approx(drawn.faulty_db, abs=0.05)
+    assert made[1].fault_snr == pytest.approx(drawn.faulty_db, abs=0.05)
     scale = recipe.recording.converter.full_scale_m_s2 / 32767
-    rms = np.sqrt(np.mean((measured.signal[1] * scale) ** 2))
+    rms = np.sqrt(np.mean((made[1].signal * scale) ** 2))
     assert rms == pytest.approx(drawn.rms_m_s2, rel=1e-3)
-    assert measured.signal[0].any()
-    assert not measured.signal[2].any()
+    assert made[0].signal.any()
+    assert "record 2 diverged" in made[2]
 
 
 def test_a_group_is_not_cut_by_a_part(ladders):
     recipe, whole = ladders
     for number in (1, 4, 11):
-        some = make_records(recipe, range(number, number + 2))
-        np.testing.assert_array_equal(some.measured.signal, whole.measured.signal[number : number + 2])
-        scenario = whole.measured.scenarios[number]
-        again = made_from([scenario])
-        np.testing.assert_array_equal(again.measured.signal[0], whole.measured.signal[number])
+        assert_same(make_records(recipe, range(number, number + 2)), whole[number : number + 2])
+        (again,) = made_from([whole[number].scenario])
+        np.testing.assert_array_equal(again.signal, whole[number].signal)
 
 
 def test_with_a_physical_level_a_larger_spall_is_a_larger_signal(recipe_with):
@@ -319,11 +312,11 @@ def test_with_a_physical_level_a_larger_spall_is_a_larger_signal(recipe_with):
     rungs, width = [0.25, 0.5, 0.75, 1], {"kind": "outer", "width_mm": 0.4}
     recipe = recipe_with({"level": level, "corpus.rungs": rungs, "corpus.specimens_per_rig": 1, "faults": [width]})
     made = make_records(recipe, range(16))
-    dataset = labelled(made)
-    assert dataset["gain"].values.tolist() == [scenario.recipe.level.gain for scenario in made.measured.scenarios]
+    dataset = part_dataset(recipe, made)
+    assert dataset["gain"].values.tolist() == [scenario.recipe.level.gain for scenario in scenarios_of(made)]
     assert dataset["background_rms"].values == pytest.approx(0.2)
-    signal = made.measured.signal.astype(float) / made.measured.counts_per_unit
+    signal = np.stack([record.signal for record in made]) / counts_per_unit(recipe)
     rms = np.sqrt(np.mean(signal**2, axis=(1, 2))) / dataset["gain"].values
     for group in groups_of(made):
         assert np.all(np.diff(rms[group]) > 0)
-        assert np.all(np.diff(made.measured.fault_snr[group]) > 3)
+        assert np.all(np.diff([made[place].fault_snr for place in group]) > 3)

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
-from gen.measurement.measure import measure
 from gen.measurement.rig import high_pass
 from gen.physics.kernel.decimate import decimation, pass_band
 from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
-from tests.measuring import FLOAT, direct, lines, quiet
+from tests.measuring import FLOAT, direct, lines, measure, quiet
 
 FS = 12_000.0
 LONG = FLOAT | direct() | {"recording.duration_s": 10.0, "operation.shaft_rpm": 1800}

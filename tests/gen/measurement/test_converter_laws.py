@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.corpus.schema import signal_attributes
-from gen.measurement.measure import LARGEST_COUNT, measure
+from gen.measurement.measure import LARGEST_COUNT
 from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
-from tests.measuring import FLOAT, direct, hiss, physical, quiet, response, silence
+from tests.measuring import FLOAT, direct, measure, physical, quiet, response, silence
 
 PLAIN = direct() | quiet() | physical(0.0)
 
@@ -112,14 +112,3 @@ def test_a_quiet_bearing_in_a_background_has_the_ratio_it_has(recipe_with):
     """A signal of a tenth of a count is still in the record, because the background acts as dither."""
     found = measured_tone(recipe_with, 0.1 * COUNT, 1.0)
     assert found.snr[0] == pytest.approx(20 * np.log10(0.1 * COUNT / np.sqrt(2)), abs=0.3)
-
-
-def test_a_record_that_diverged_has_no_ratio_and_leaves_its_neighbours_alone(recipe_with):
-    recipe = recipe_with()
-    scenarios, moved = draw_scenarios(recipe, 0, 3), hiss(recipe, 3)
-    sound = measure(moved, scenarios)
-    moved[1] = np.nan
-    found = measure(moved, scenarios)
-    assert np.isnan(found.snr).tolist() == [False, True, False]
-    assert not found.signal[1].any()
-    np.testing.assert_array_equal(found.signal[[0, 2]], sound.signal[[0, 2]])

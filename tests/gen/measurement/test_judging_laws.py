@@ -8,7 +8,6 @@ from scipy.signal import fftconvolve
 
 from gen.measurement import judging
 from gen.measurement.judging import FALSE_ALARM, bands_of, judges_of
-from gen.measurement.levels import Gains
 from gen.measurement.mixing import Parts, Products
 
 FS, N, RATE, ORDER = 12_000, 6000, 30.0, 3.58
@@ -35,7 +34,7 @@ def parts(fault, healthy, rest, orders=(ORDER,), angles=ANGLES, *, steady=True, 
 
 def judged(fault, rest, orders=(ORDER,), angles=ANGLES, *, bearing=1.0, **keys):
     (judge,) = judges_of([parts(fault, np.zeros_like(fault), rest, orders, angles, **keys)])
-    return judge(Gains(bearing, 1.0))
+    return judge((bearing, 1.0))
 
 
 def coloured(signal):
@@ -104,8 +103,8 @@ def test_the_twin_of_a_record_has_bearing_and_background_together():
     """A background that cancels the healthy bearing leaves the fault alone, and one that adds to it hides the fault."""
     healthy = 30 * noise(1)
     cancelled, hidden = judges_of([parts(ringing(ORDER), healthy, sign * healthy) for sign in (-1, 1)])
-    assert cancelled(Gains(1.0, 1.0))
-    assert not hidden(Gains(1.0, 1.0))
+    assert cancelled((1.0, 1.0))
+    assert not hidden((1.0, 1.0))
 
 
 def test_a_train_of_impacts_is_seen_down_to_some_level_and_not_below():
@@ -167,7 +166,7 @@ def test_what_is_judged_of_a_record_does_not_depend_on_the_others():
             [(ORDER, 1, True), (5.0, 2, True), (0.4, 1, False), (90.0, 1, True), (4.0, 0, True)]
         )
     ]
-    gains = [Gains(10 ** (level / 20), 1.0) for level in range(-40, 20, 2)]
+    gains = [(10 ** (level / 20), 1.0) for level in range(-40, 20, 2)]
     together = [[judge(gain) for gain in gains] for judge in judges_of(records)]
     alone = [[judges_of([record])[0](gain) for gain in gains] for record in records]
     assert together == alone
@@ -181,7 +180,7 @@ def test_a_judge_tells_for_any_gains_what_a_judge_of_the_scaled_parts_tells():
     for level in range(-40, 20, 2):
         b, n = np.float32(10 ** (level / 20)), np.float32(0.7)
         (scaled,) = judges_of([parts(b * fault, b * healthy, n * background)])
-        told.append((judge(Gains(float(b), float(n))), scaled(Gains(1.0, 1.0))))
+        told.append((judge((float(b), float(n))), scaled((1.0, 1.0))))
     assert {one == other for one, other in told} == {True}
     assert len(set(told)) == 2
 

@@ -6,9 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import welch
 
-from gen.measurement.measure import measure
 from gen.scenarios import draw_scenarios, further_ratios
-from gen.simulation.simulate import Twin
 from gen.simulation.timeline import timeline
 from tests.measuring import (
     FLOAT,
@@ -17,6 +15,7 @@ from tests.measuring import (
     direct,
     hiss,
     lines,
+    measure,
     physical,
     quiet,
     response,
@@ -49,15 +48,16 @@ def test_every_try_of_a_level_is_a_draw_of_its_own_and_moves_nothing_else(levell
 
 
 @pytest.mark.parametrize(("rise", "tries"), [(1.1, 2), (1e-9, 0)])
-def test_the_first_ratio_at_which_the_fault_is_seen_is_taken_and_nothing_else_moves(levelled, rise, tries):
+def test_the_first_ratio_at_which_the_fault_is_seen_is_taken_and_nothing_else_moves(levelled, rise, tries, monkeypatch):
     """A fault that raises the rms is seen above some ratio; one that adds nothing is seen at none, and the drawn ratio stays."""
     recipe, scenarios = levelled
     place = next(place for place, scenario in enumerate(scenarios) if scenario.fault != "healthy")
     scenario = at_ratio(scenarios[place], -30.0)
     bearing = np.float32(hiss(recipe, 1)[0])
-    twin = Twin(0, np.float32(1e-3) * bearing, ())
-    whole = twin.acceleration + np.float32(rise) * bearing[:, ::-1]
-    measured = measure(whole[None], [scenario], [twin], ratios={0: [-20.0, 10.0, 20.0]})
+    twin = np.float32(1e-3) * bearing
+    whole = twin + np.float32(rise) * bearing[:, ::-1]
+    monkeypatch.setattr("gen.measurement.parts.lines_of_faults", lambda _: ())
+    measured = measure([whole], [scenario], [twin], ratios={scenario.origin.record: [-20.0, 10.0, 20.0]})
     ratio = (-30.0, -20.0, 10.0)[tries]
     assert measured.detectable.tolist() == [int(tries > 0)]
     (taken,) = measured.scenarios
@@ -80,11 +80,7 @@ def test_wear_is_seen_if_it_raises_the_rms_by_a_quarter(recipe_with, rise, seen)
     quiet = {"level": {"kind": "physical", "background_m_s2": 1e-6}}
     recipe = recipe_with(FLOAT | quiet | {"faults": [{"kind": "distributed", "site": "inner"}]})
     twin = hiss(recipe, 2)
-    measured = measure(
-        np.float32(rise * twin),
-        draw_scenarios(recipe, 0, 2),
-        [Twin(place, one, ()) for place, one in enumerate(np.float32(twin))],
-    )
+    measured = measure(np.float32(rise * twin), draw_scenarios(recipe, 0, 2), np.float32(twin))
     assert measured.detectable.tolist() == [seen, seen]
     np.testing.assert_allclose(measured.fault_snr, 20 * np.log10(rise - 1), atol=1e-3)
 

@@ -34,8 +34,7 @@ def harmonics_of(levels, **keys):
 
 def angles_over(scenario):
     """Angle of the shaft over a record, shape (time,) [rad]."""
-    axis = timeline(scenario.recipe)
-    return angles_of(draw_motion(scenario), axis)[axis.kept]
+    return angles_of(draw_motion(scenario))[timeline(scenario.recipe).kept]
 
 
 def by_order(signal, scenario):

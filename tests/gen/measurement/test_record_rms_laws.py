@@ -7,11 +7,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.measurement.measure import measure
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
 from tests.gen.conftest import small_with
+from tests.measuring import measure
 
 TOLERANCE = 1e-3
 LEVEL = {

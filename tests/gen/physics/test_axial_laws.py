@@ -13,6 +13,7 @@ from gen.physics.hertz import LINE_EXPONENT
 from gen.physics.rotor import as_columns, ball_angles
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
+from tests.responses import failures_of
 from tests.strategies import RIG
 
 N_BALLS = 9
@@ -109,5 +110,5 @@ def test_the_axial_load_holds_against_the_heaviest_radial_load_of_a_profile(reci
     changes = {"specimen.contact_angle_deg": 15, "operation.load_n": 300, "operation.axial_load_n": 200}
     for load_profile, held in ((None, True), (profile, False)):
         recipe = recipe_with(changes | {"operation.load_profile": load_profile})
-        failures = simulate(draw_scenarios(recipe, 0, 1)).failures
+        failures = failures_of(simulate(draw_scenarios(recipe, 0, 1)))
         assert (failures == {}) == held

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from gen.measurement.measure import measure
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
+from tests.measuring import measure
 
 FS = 12_000.0
 RATE, MASS = 30.0, 10.0  # of the shaft [Hz], of shaft and housing [kg]
@@ -41,9 +41,9 @@ def signal_of(recipe_with):
 
     def made(changes):
         recipe = recipe_with(STEADY | changes)
-        response = simulate(draw_scenarios(recipe, 0, 1))
-        assert response.failures == {}
-        return response.acceleration[0, 0, timeline(recipe).lead :]
+        (run,) = simulate(draw_scenarios(recipe, 0, 1))
+        assert run.failure is None
+        return run.acceleration[0, timeline(recipe).lead :]
 
     return made
 

@@ -17,7 +17,7 @@ from gen.scenarios import draw_scenarios, fault_of_each_specimen
 from gen.simulation.damage import largest_drop_over
 from gen.simulation.simulate import simulate
 from tests.recipes import EVERYTHING
-from tests.responses import input_of
+from tests.responses import accelerations_of, input_of
 
 BEARING = CATALOGUE["6205"]
 KNOWN = ("fault", "parts", "n_spalls", "wear", "pitch_error", "knock", "width_share")
@@ -107,7 +107,9 @@ def test_a_twin_without_the_fault_is_what_healthy_bearings_alone_would_be(write_
 
 def test_the_fault_alone_tells_a_record_from_its_twin(drawn):
     some = list({kind_of(scenario): scenario for scenario in drawn}.values())
-    damaged, sound = (simulate(batch).acceleration for batch in (some, [scenario.without_fault() for scenario in some]))
+    damaged, sound = (
+        accelerations_of(simulate(batch)) for batch in (some, [scenario.without_fault() for scenario in some])
+    )
     for scenario, one, other in zip(some, damaged, sound, strict=True):
         assert np.array_equal(one, other) == (scenario.fault == "healthy")
 

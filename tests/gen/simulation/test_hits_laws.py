@@ -9,9 +9,8 @@ from gen.scenarios import draw_scenarios
 from gen.simulation.hits import felt_places, load_zone, loaded_hits
 from gen.simulation.inputs import kernel_inputs, without_fault
 from gen.simulation.motion import draw_motion
-from gen.simulation.timeline import timeline
 from tests.recipes import EVERYTHING
-from tests.responses import input_of, label, truth
+from tests.responses import input_of, label, means_of
 
 LOADED = {"machine.load_angle_deg": -90, "operation.load_n": 300, "operation.mean_slip_percent": 0}
 
@@ -25,14 +24,14 @@ def first_of(recipe_with, fault, **changes):
 @pytest.mark.parametrize(("clearance", "half"), [(-8, math.pi), (0, math.pi / 2)])
 def test_the_load_zone_is_half_the_bearing_without_clearance_and_all_of_it_under_preload(recipe_with, clearance, half):
     _, given = first_of(recipe_with, {"kind": "healthy"}, **{"specimen.diametral_clearance_um": clearance})
-    zone = load_zone(given)
-    assert zone.half == pytest.approx(half, abs=0.02)
-    assert math.remainder(zone.direction + math.pi / 2, 2 * math.pi) == pytest.approx(0.0, abs=0.05)
+    direction, found = load_zone(given)
+    assert found == pytest.approx(half, abs=0.02)
+    assert math.remainder(direction + math.pi / 2, 2 * math.pi) == pytest.approx(0.0, abs=0.05)
 
 
 def test_clearance_narrows_the_load_zone(recipe_with):
     halves = [
-        load_zone(first_of(recipe_with, {"kind": "healthy"}, **{"specimen.diametral_clearance_um": c})[1]).half
+        load_zone(first_of(recipe_with, {"kind": "healthy"}, **{"specimen.diametral_clearance_um": c})[1])[1]
         for c in (0, 10, 40, 160)
     ]
     assert halves == sorted(halves, reverse=True)
@@ -42,8 +41,8 @@ def test_clearance_narrows_the_load_zone(recipe_with):
 def test_an_outer_spall_is_hit_at_the_ball_pass_frequency_in_the_load_zone_and_never_outside(recipe_with):
     inside, outside = ({"kind": "outer", "width_mm": 0.5, "angle_deg": angle} for angle in (0, 150))
     scenario, _ = first_of(recipe_with, inside)
-    found = truth(scenario)
-    assert label(scenario, "loaded_hits") == pytest.approx(found.orders.bpfo * found.mean_rate * 0.1, abs=0.51)
+    rate, orders = means_of(scenario)
+    assert label(scenario, "loaded_hits") == pytest.approx(orders.bpfo * rate * 0.1, abs=0.51)
     scenario, _ = first_of(recipe_with, outside)
     assert label(scenario, "loaded_hits") == 0
     assert felt_places([scenario]) == [False]
@@ -52,19 +51,19 @@ def test_an_outer_spall_is_hit_at_the_ball_pass_frequency_in_the_load_zone_and_n
 def test_an_inner_spall_is_hit_during_the_part_of_a_turn_that_the_load_zone_takes(recipe_with):
     fault = {"kind": "inner", "width_mm": 0.5}
     scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
-    found, zone = truth(scenario), load_zone(given)
-    every = found.orders.bpfi * found.mean_rate * 2.0
-    assert label(scenario, "loaded_hits") == pytest.approx(every * zone.half / math.pi, abs=1)
-    assert 0 < zone.half < math.pi
+    (rate, orders), (_, half) = means_of(scenario), load_zone(given)
+    every = orders.bpfi * rate * 2.0
+    assert label(scenario, "loaded_hits") == pytest.approx(every * half / math.pi, abs=1)
+    assert 0 < half < math.pi
 
 
 def test_an_outer_spall_is_hit_if_its_nearer_edge_lies_in_the_load_zone(recipe_with):
     scenario, given = first_of(recipe_with, {"kind": "outer", "width_mm": 4})
-    orders, zone, spall = truth(scenario).orders, load_zone(given), given.spalls[0]
+    (_, orders), (direction, half), spall = means_of(scenario), load_zone(given), given.spalls[0]
     reach = 0.002 / given.bearing.outer_radius
     for share, hit in ((0.9, True), (1.1, False)):
         for side in (-1, 1):
-            angle = zone.direction + side * (zone.half + share * reach)
+            angle = direction + side * (half + share * reach)
             moved = given._replace(spalls=(spall._replace(angle=angle),))
             assert (loaded_hits(moved, orders, 100) > 0) == hit
 
@@ -72,16 +71,14 @@ def test_an_outer_spall_is_hit_if_its_nearer_edge_lies_in_the_load_zone(recipe_w
 def test_a_spall_of_a_ball_is_hit_twice_in_each_turn_of_the_ball(recipe_with):
     fault = {"kind": "ball", "width_mm": 0.5}
     scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
-    found, zone = truth(scenario), load_zone(given)
-    assert label(scenario, "loaded_hits") == pytest.approx(
-        2 * found.orders.bsf * found.mean_rate * 2.0 * zone.half / math.pi, abs=1
-    )
+    (rate, orders), (_, half) = means_of(scenario), load_zone(given)
+    assert label(scenario, "loaded_hits") == pytest.approx(2 * orders.bsf * rate * 2.0 * half / math.pi, abs=1)
 
 
 def test_two_spalls_are_hit_twice_as_often(recipe_with):
     fault = {"kind": "outer", "width_mm": 0.5, "n_spalls": 2}
     scenario, given = first_of(recipe_with, fault)
-    orders = truth(scenario).orders
+    _, orders = means_of(scenario)
     one = loaded_hits(given._replace(spalls=given.spalls[:1]), orders, 100)
     assert loaded_hits(given, orders, 100) == pytest.approx(2 * one, abs=1)
 
@@ -89,11 +86,7 @@ def test_two_spalls_are_hit_twice_as_often(recipe_with):
 def test_the_input_of_a_record_does_not_depend_on_the_others(recipe_with):
     recipe = recipe_with(EVERYTHING)
     scenarios = draw_scenarios(recipe)
-    for scenario, together in zip(
-        scenarios,
-        kernel_inputs([*map(draw_motion, scenarios)], timeline(recipe))[0],
-        strict=True,
-    ):
+    for scenario, together in zip(scenarios, kernel_inputs([*map(draw_motion, scenarios)]), strict=True):
         for field, other in zip(input_of(scenario), together, strict=True):
             np.testing.assert_equal(field, other)
 
@@ -101,6 +94,6 @@ def test_the_input_of_a_record_does_not_depend_on_the_others(recipe_with):
 def test_a_record_without_its_fault_has_the_input_of_a_sound_record(recipe_with):
     recipe = recipe_with(EVERYTHING)
     for scenario in draw_scenarios(recipe):
-        found = without_fault(input_of(scenario), scenario, timeline(recipe))
+        found = without_fault(input_of(scenario), scenario)
         for field, other in zip(found, input_of(scenario.without_fault()), strict=True):
             np.testing.assert_equal(field, other)

@@ -11,11 +11,12 @@ import pytest
 import gen
 from features.signal.demodulation import analytic_band, envelope_spectrum
 from features.signal.spectra import fourier_coefficients
-from gen.measurement.measure import measure
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
+from tests.measuring import measure
+from tests.responses import accelerations_of
 
 FS = 12_000
 CLEAR_DB, ABSENT_DB = 15.0, 12.0
@@ -76,7 +77,7 @@ class Envelope:
 def envelopes(recipe):
     """Fault and envelope spectrum of every record of a recipe."""
     scenarios = draw_scenarios(recipe)
-    signals = measure(simulate(scenarios).acceleration, scenarios).signal[:, 0]
+    signals = measure(accelerations_of(simulate(scenarios)), scenarios).signal[:, 0]
     return [
         (scenario.fault, Envelope(signal, scenario.conditions["shaft_rate"]))
         for scenario, signal in zip(scenarios, signals, strict=True)
@@ -148,7 +149,7 @@ def test_a_wider_spall_is_louder(recipe_with):
     ladder = {"faults": [{"kind": "outer", "width_mm": gen.grid(*widths)}], "corpus.rigs": 3}
     recipe = recipe_with(STEADY | ladder)
     scenarios = draw_scenarios(recipe)
-    loudness = simulate(scenarios).acceleration.std(axis=(1, 2)).reshape(3, 4)
+    loudness = accelerations_of(simulate(scenarios)).std(axis=(1, 2)).reshape(3, 4)
     drawn_widths = np.array([scenario.spalls[0].width for scenario in scenarios]).reshape(3, 4)
     np.testing.assert_allclose(drawn_widths, 1e-3 * np.tile(widths, (3, 1)))
     assert (np.diff(np.median(loudness, axis=0)) > 0).all()

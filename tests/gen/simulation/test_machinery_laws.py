@@ -16,7 +16,7 @@ from gen.scenarios import draw_scenarios
 from gen.simulation.machine import heaviest_ball_load
 from gen.simulation.motion import cosine_sum
 from tests.reference import turned
-from tests.responses import input_of, response_of, truth
+from tests.responses import input_of, means_of, runs_of
 
 FS = 12_000.0
 OIL = {"contact.lubricant": {}}
@@ -42,8 +42,7 @@ def record_of(recipe_with):
 def labels(recipe):
     """Labels of a corpus whose bodies are at rest; labels do not depend on the motion."""
     scenarios = draw_scenarios(recipe)
-    response = response_of(scenarios, recipe)
-    return part_dataset(measure(response.acceleration, scenarios), response)
+    return part_dataset(recipe, measure(runs_of(scenarios)))
 
 
 def test_an_oil_film_takes_up_clearance_yields_and_damps(record_of):
@@ -159,12 +158,12 @@ def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, profi
     recipe = recipe_with(changes | {"operation.speed_profile": profile, "operation.slip_walk": walk})
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
     for scenario in draw_scenarios(recipe, 0, 3):
-        found = truth(scenario)
+        rate, orders = means_of(scenario)
         angles = turned(input_of(scenario), 1 / FS, start + n)[0]
         shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
-        assert shaft * FS / n == pytest.approx(found.mean_rate, rel=2e-5)
-        assert found.mean_rate == pytest.approx(30 * mean, rel=0.05)
-        assert cage / shaft == pytest.approx(found.orders.ftf, rel=2e-4)
+        assert shaft * FS / n == pytest.approx(rate, rel=2e-5)
+        assert rate == pytest.approx(30 * mean, rel=0.05)
+        assert cage / shaft == pytest.approx(orders.ftf, rel=2e-4)
 
 
 def test_a_profile_starts_with_the_record_and_not_with_its_settling(record_of):

@@ -5,12 +5,12 @@ import pytest
 
 from gen import open_corpus, shaft_angles
 from gen.scenarios import draw_scenarios, read_scenarios
-from gen.simulation.inputs import kernel_input
 from gen.simulation.motion import draw_motion
 from gen.simulation.shaft import angles_of
 from gen.simulation.timeline import timeline
 from gen.support.errors import CorpusError
 from tests.reference import turned
+from tests.responses import input_of
 
 COURSES = {
     "constant": {"operation.speed_wander_percent": 0},
@@ -32,10 +32,10 @@ def test_the_angle_is_that_by_which_the_kernel_turns_the_bearing(recipe_with, ch
     recipe = recipe_with({"recording.settle_s": 0.2} | changes)
     axis = timeline(recipe)
     for scenario in draw_scenarios(recipe, 0, 4):
-        in_kernel = turned(kernel_input(scenario, axis), 1 / axis.fs, axis.knots)[0][:, 0]
+        in_kernel = turned(input_of(scenario), 1 / axis.fs, axis.knots)[0][:, 0]
         in_kernel = in_kernel[axis.dropped : axis.dropped + axis.returned]
         # the kernel takes the wander as linear between every eighth knot
-        np.testing.assert_allclose(angles_of(draw_motion(scenario), axis), in_kernel, rtol=0, atol=2e-5)
+        np.testing.assert_allclose(angles_of(draw_motion(scenario)), in_kernel, rtol=0, atol=2e-5)
 
 
 def test_records_of_a_corpus_have_the_angle_of_their_scenarios_and_imported_ones_that_of_their_label(tiny_corpus):
@@ -45,7 +45,7 @@ def test_records_of_a_corpus_have_the_angle_of_their_scenarios_and_imported_ones
     angles = shaft_angles(some)
     assert angles.dims == ("record", "elapsed_time")
     for found, scenario in zip(angles.values, read_scenarios(some), strict=True):
-        np.testing.assert_array_equal(found, angles_of(draw_motion(scenario), axis)[axis.kept])
+        np.testing.assert_array_equal(found, angles_of(draw_motion(scenario))[axis.kept])
     np.testing.assert_array_equal(shaft_angles(some.isel(record=1)), angles[1])
     imported = some.drop_vars("draws")
     turns = shaft_angles(imported) / (2 * np.pi)

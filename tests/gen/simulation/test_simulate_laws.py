@@ -10,7 +10,7 @@ from gen.simulation.simulate import open_integrations, runs_of, simulate
 from gen.support.errors import SimulationError
 from tests.lanes import march_lanes
 from tests.reference import decimation_taps, waviness
-from tests.responses import input_of
+from tests.responses import accelerations_of, failures_of, input_of
 
 FS = 12_000.0
 
@@ -26,17 +26,16 @@ def simulated(recipe_with):
 def test_a_record_gives_the_same_bits_alone_among_others_and_in_any_order(simulated):
     _, scenarios, together = simulated
     for place in (0, 5, 13, 23):
-        alone = simulate([scenarios[place]])
-        np.testing.assert_array_equal(alone.acceleration[0], together.acceleration[place])
-    backwards = simulate(scenarios[::-1])
-    np.testing.assert_array_equal(backwards.acceleration[::-1], together.acceleration)
-    np.testing.assert_array_equal(backwards.oversampling[::-1], together.oversampling)
+        (alone,) = simulate([scenarios[place]])
+        np.testing.assert_array_equal(alone.acceleration, together[place].acceleration)
+    backwards = simulate(scenarios[::-1])[::-1]
+    np.testing.assert_array_equal(accelerations_of(backwards), accelerations_of(together))
+    assert [run.oversampling for run in backwards] == [run.oversampling for run in together]
 
 
 def test_a_longer_settling_time_drops_more_and_changes_nothing_else(recipe_with):
     short, long = (recipe_with({"recording.settle_s": settle, "recording.duration_s": 0.1}) for settle in (0.06, 0.11))
-    early = simulate(draw_scenarios(short, 0, 4)).acceleration
-    late = simulate(draw_scenarios(long, 0, 4)).acceleration
+    early, late = (accelerations_of(simulate(draw_scenarios(recipe, 0, 4))) for recipe in (short, long))
     shift = round(0.05 * FS)
     np.testing.assert_array_equal(late[..., :-shift], early[..., shift:])
 
@@ -45,7 +44,7 @@ def test_a_response_is_the_decimated_motion_of_its_bodies_along_its_channels(rec
     channels = [{"name": "a", "body": "sensor", "angle_deg": 30}, {"name": "b", "body": "housing"}]
     recipe = recipe_with({"recording.channels": channels, "recording.oversampling": 8})
     scenarios = draw_scenarios(recipe, 0, 3)
-    response = simulate(scenarios).acceleration
+    response = accelerations_of(simulate(scenarios))
     n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
     taps = decimation_taps(8)
     for trip, found in zip(
@@ -96,13 +95,12 @@ def test_a_record_that_diverges_is_named_and_leaves_the_others_as_they_are(recip
     changes = {"corpus.rigs": 2, "recording.oversampling": 1, "machine.resonator.frequency_hz": "grid(1500, 5900)"}
     recipe = recipe_with(changes)
     scenarios = draw_scenarios(recipe)
-    response = simulate(scenarios)
-    assert set(response.failures) == set(range(8, 16))
-    for place, sentence in response.failures.items():
+    runs = simulate(scenarios)
+    assert failures_of(runs).keys() == set(range(8, 16))
+    for place, sentence in failures_of(runs).items():
         assert sentence.startswith(f"record {place} diverged at t = 0.")
         assert "with 1 steps per sample; raise recording.oversampling" in sentence
-    assert np.isnan(response.acceleration[8:]).all()
-    np.testing.assert_array_equal(response.acceleration[:8], simulate(scenarios[:8]).acceleration)
+    np.testing.assert_array_equal(accelerations_of(runs[:8]), accelerations_of(simulate(scenarios[:8])))
 
 
 def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_with_the_record(recipe_with):
@@ -129,8 +127,7 @@ def test_records_of_a_group_share_the_integration_without_their_fault(recipe_wit
     assert len(open_integrations(runs)) == 9
     assert all(run.healthy is runs[place // 3 * 3].own for place, run in enumerate(runs))
     together = simulate(scenarios)
-    for place, scenario in enumerate(scenarios):
-        alone = simulate([scenario])
-        np.testing.assert_array_equal(together.acceleration[place], alone.acceleration[0])
-        twins = [twin for twin in together.twins if twin.place == place]
-        np.testing.assert_array_equal([one.acceleration for one in twins], [one.acceleration for one in alone.twins])
+    for run, scenario in zip(together, scenarios, strict=True):
+        (alone,) = simulate([scenario])
+        for one, other in zip(run.integrations, alone.integrations, strict=True):
+            np.testing.assert_array_equal(one.response, other.response)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from gen.measurement.rig import rig_filters
 from gen.mechanisms.background.gear_mesh import GearMesh
 from gen.scenarios import draw_scenarios
+from gen.simulation.timeline import LEAD_S
 from tests.measuring import drawn, lines
 
 FS, RATE, N = 12_000.0, 25.0, 24_000  # two seconds: 50 turns of the shaft
@@ -29,7 +30,9 @@ def amplitude(signal, order):
 
 
 def mesh(gear, angles=STEADY, rig=0, record=0):
-    return gear.vibrations(angles, FS, np.random.default_rng(rig), np.random.default_rng(record))[0]
+    return gear.vibrations(angles, FS, lambda level="record": np.random.default_rng(rig if level == "rig" else record))[
+        0
+    ]
 
 
 def test_the_lines_of_a_true_gear_are_at_multiples_of_its_teeth_and_nowhere_else():
@@ -84,7 +87,7 @@ def test_a_multiple_ends_where_a_run_up_takes_it_past_half_the_sample_rate():
 
 def in_channels(recipe_with, paths, gear):
     """Signals of a mesh behind some paths, shape (channel, time)."""
-    filters = rig_filters(draw_scenarios(recipe_with(), 0, 1)[0].recipe, N, FS, 0)
+    filters = rig_filters(draw_scenarios(recipe_with({"recording.duration_s": N / FS - LEAD_S}), 0, 1)[0])
     return np.fft.irfft(replace(filters, paths=paths).source_in_channels(mesh(gear)), N)
 
 

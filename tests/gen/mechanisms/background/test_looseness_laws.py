@@ -16,8 +16,7 @@ LIFTED_MOST = 2 * np.pi * np.random.default_rng(0).random()  # angle of the shaf
 
 
 def vibrations(angles, **changes):
-    rngs = np.random.default_rng(0), np.random.default_rng(1)
-    return drawn(Looseness, **(LOOSE | changes)).vibrations(angles, FS, *rngs)
+    return drawn(Looseness, **(LOOSE | changes)).vibrations(angles, FS, lambda **_: np.random.default_rng(0))
 
 
 def vibration(**changes):

@@ -1,0 +1,106 @@
+"""Bearing of each record behind its path, and background of its machine: noise, spectral lines, impulses and knocks.
+
+Lines, knocks and modulations that are locked to the shaft have phases of the rig and turn with the true angle of the shaft. Noise, tones
+and impulses at random times are drawn for each record.
+"""
+
+import math
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, rfft
+
+from gen.measurement.mixing import Lines, Parts, Products, mix
+from gen.measurement.rig import RigFilters
+from gen.mechanisms.background.section import locked_of
+from gen.physics.elementary import power
+from gen.physics.profile import share_at
+from gen.scenarios import Scenario
+from gen.simulation.shaft import angles_of
+from gen.simulation.simulate import Run, acceleration_of
+from gen.simulation.timeline import timeline
+from gen.simulation.truth import lines_of_faults
+
+FloatArray = NDArray[np.floating]
+ComplexArray = NDArray[np.complexfloating]
+
+
+def parts_of(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[Parts]:
+    """Bearings behind their paths, modulated by the shaft, and the backgrounds of their machines."""
+    axis, n, bearings = timeline(runs[0].scenario.recipe), rigs[0].n, _behind_paths(runs, rigs)
+    angles, lines, noises, others = [angles_of(run.motion) for run in runs], [], [], []
+    for run, rig, turned in zip(runs, rigs, angles, strict=True):
+        scenario, rng = run.scenario, run.scenario.stream("noise")
+        lines.append(_lines(scenario, rig, rng))
+        noises.append(_noise(scenario, rig, rng))
+        others.append(_others(scenario, rig, turned, rng))
+    # transforms run side by side
+    noises = irfft(np.stack(noises), n)
+    others = irfft(np.stack(others), n) if np.any(others) else np.zeros_like(noises)
+    parts = list[Parts]()
+    for place, (run, rig, turned) in enumerate(zip(runs, rigs, angles, strict=True)):
+        signals = np.concatenate([noises[place][None, :, : axis.returned], bearings[place][..., : axis.returned]])
+        products = Products(*mix(signals, others[place], turned, lines[place], axis.kept))
+        orders, steady = lines_of_faults(run) if run.twin else (), run.scenario.speed_profile is None
+        parts.append(Parts(signals[..., axis.kept], products, rig.impulse_lines, orders, turned[axis.kept], steady))
+    return parts
+
+
+def _behind_paths(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[NDArray[Any]]:
+    """Vibration of each bearing without its fault, then what the fault adds if that is known, shape (part, channel, time) [m s-2].
+
+    The convolution is circular: its wrap-around falls into the lead ahead of the record, which is dropped. Filters may make signals longer.
+    """
+    signals = list[NDArray[Any]]()
+    for run in runs:
+        whole, sound = run.acceleration, run.twin and acceleration_of(run.twin)
+        signals.append(whole[None] if sound is None else np.stack([sound, whole - sound]))
+    resonant = [place for place, rig in enumerate(rigs) if rig.direct is None]
+    if resonant:
+        n, ends = rigs[0].n, np.cumsum([len(signals[place]) for place in resonant])[:-1]
+        spectra = rfft(np.concatenate([signals[place] for place in resonant]), n)
+        for spectrum, place in zip(np.split(spectra, ends), resonant, strict=True):
+            spectrum *= rigs[place].bearing_paths
+        for place, signal in zip(resonant, np.split(irfft(spectra, n), ends), strict=True):
+            signals[place] = signal
+    return [signal if rig.direct is None else signal * rig.direct for signal, rig in zip(signals, rigs, strict=True)]
+
+
+def _lines(scenario: Scenario, rig: RigFilters, rng: np.random.Generator) -> Lines:
+    """Lines and modulations of a record: only tones, which are not locked to the shaft, have phases of their own in each record."""
+    profile, harmonics, growth = scenario.speed_profile, scenario.recipe.background.harmonics, np.empty(0)
+    rates = scenario.conditions["shaft_rate"] * np.arange(1, len(rig.amplitudes) - len(rig.steps) + 1)
+    phases = 2 * np.pi * rng.random(len(rig.steps))
+    amplitudes = rig.in_channels(np.concatenate([rates, rig.steps * rig.fs / (2 * np.pi)]))
+    if profile is not None and harmonics is not None and (exponent := harmonics.si()["growth"]) > 0:
+        growth = power(share_at(profile, timeline(scenario.recipe).response_times()), exponent)
+    return Lines(rig.modulations, amplitudes, growth, rig.steps, phases, rig.tone_modulations)
+
+
+def _noise(scenario: Scenario, rig: RigFilters, rng: np.random.Generator) -> ComplexArray:
+    """Spectrum of noise of unit rms, shape (channel, frequency) [1]; a part of it is common to all channels."""
+    (n_channels, n_lines), common = rig.paths.shape, math.sqrt(scenario.recipe.background.si()["coherence"])
+    drawn = rng.standard_normal((n_channels, 2 * n_lines), dtype=np.float32)
+    if common > 0 and n_channels > 1:
+        drawn *= np.float32(math.sqrt(1 - common))
+        drawn += np.float32(math.sqrt(common)) * rng.standard_normal(2 * n_lines, dtype=np.float32)
+    return drawn.view(np.complex64) * rig.noise
+
+
+def _others(scenario: Scenario, rig: RigFilters, angles: FloatArray, rng: np.random.Generator) -> ComplexArray:
+    """Spectrum behind the paths of impulses at random times and of sources locked to the shaft, shape (channel, frequency) [1]."""
+    spectrum, background = np.zeros(rig.paths.shape, np.complex64), scenario.recipe.background
+    if background.impulses or background.knocks:
+        hits = np.zeros(len(angles), np.float32)  # strength at the samples where they start
+        if background.impulses is not None:
+            background.impulses.add_to(hits, rig.fs, rng)
+        if background.knocks is not None:
+            background.knocks.add_to(hits, angles, rng, scenario.stream("phase of knocks", "rig"))
+        spectrum += rfft(hits, rig.n) * rig.impulse_paths
+    for source in locked_of(scenario.recipe):
+        for vibration in source.vibrations(angles, rig.fs, partial(scenario.stream, source.place)):
+            spectrum += rig.source_in_channels(vibration)
+    return spectrum
