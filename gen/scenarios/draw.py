@@ -7,7 +7,7 @@ record with its fault and the same record without it differ in the fault alone.
 
 import functools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gen.corpus import SPLITS
 from gen.drawing import Combination, Draws, Known, Section, quantities, stream, weighted_index
 from gen.physics.axial import least_axial_load
-from gen.physics.bearing import Bearing, free_contact_angle
+from gen.physics.bearing import free_contact_angle
 from gen.physics.rating import static_rating
 from gen.recipe import (
     FREE_ANGLE,
@@ -28,8 +28,7 @@ from gen.recipe import (
     corpus_identity,
     ranges,
 )
-from gen.recipe.publication import PublicationSection
-from gen.recipe.sections import CorpusSection, StorageSection, TruthSection
+from gen.recipe.sections import CorpusSection, TruthSection
 from gen.scenarios.classes import fault_of_each_specimen, possible_entries
 from gen.scenarios.lives import SpecimenLife, at_snapshot, draw_life
 from gen.scenarios.points import points_of
@@ -40,17 +39,11 @@ from gen.support.units import split_unit
 _OF_RIG = ("recording", "bearing", "machine", "machine_conditions", "contact", "path", "background", "sensor_faults")
 
 
-@dataclass(frozen=True)
-class Drawn:
-    """A rig or a specimen: the recipe with its numbers, and what the next level is drawn with."""
+Specimen = tuple[Any, Known, tuple[Fault, ...], SpecimenLife | None]
+"""Recipe of a specimen, quantities that its records can have shares of, its fault at each rung (one without groups), and its life."""
 
-    recipe: Recipe
-    draws: Draws
-    known: Known
-    bearing: Bearing
-    life: SpecimenLife | None = None
-    rungs: tuple[Fault, ...] = field(default=())
-    """Fault of a specimen at each rung; one if its records are in no groups."""
+_ONE = CorpusSection(rigs=1, specimens_per_rig=1, records_per_specimen=1)
+_OF_FILES = {key: Recipe.model_fields[key].default for key in ("publication", "storage", "records", "life")}
 
 
 def draw_scenarios(
@@ -82,10 +75,10 @@ def draw_scenarios(
     }
     specimens = {}
     for number, point in points_of(recipe, "specimen", first_specimen, last_specimen + 1).items():
-        rig, draws = rigs[recipe.rig_of(number)], _draws(recipe, "specimen", number, number, point)
-        specimens[number] = _draw_specimen(recipe, rig, draws, (fault_tries or {}).get(number, 0))
-    points = _record_points(recipe, numbers)
-    return list(_draw_records(recipe, specimens, numbers, points))
+        draws = _draws(recipe, "specimen", number, number, point)
+        fault_try = (fault_tries or {}).get(number, 0)
+        specimens[number] = _draw_specimen(recipe, *rigs[recipe.rig_of(number)], draws, fault_try)
+    return list(_draw_records(recipe, specimens, numbers))
 
 
 def _draws(recipe: Recipe, level: Any, of: int, item: int, point: NDArray[np.float64]) -> Draws:
@@ -95,21 +88,23 @@ def _draws(recipe: Recipe, level: Any, of: int, item: int, point: NDArray[np.flo
     )
 
 
-def _draw_rig(recipe: Recipe, draws: Draws) -> Drawn:
-    drawn: dict[str, Any] = {}
+def _draw_rig(recipe: Recipe, draws: Draws) -> tuple[Recipe, Draws]:
+    """Recipe of a rig with one record, whose fault is not drawn again, and what its specimens are drawn with."""
+    undetected = "keep" if recipe.truth.undetected == "redraw" else recipe.truth.undetected
+    truth = TruthSection.model_validate({"twins": recipe.truth.twins, "undetected": undetected})
+    drawn: dict[str, Any] = {"corpus": _ONE, "truth": truth, **_OF_FILES}
     for key in _OF_RIG:
         section = getattr(recipe, key)
         if section is not None:
             drawn[key] = section.draw(draws.within(key, "rig"))
     machine, bearing = drawn["machine"], drawn["bearing"].drawing()
     # ISO 21940-11 defines the balance grade at the highest speed of the machine
-    highest = machine.balance_rpm or _highest_speed(recipe)
-    drawn["machine"] = machine.model_copy(update={"balance_rpm": highest})
+    drawn["machine"] = machine.model_copy(update={"balance_rpm": machine.balance_rpm or _highest_speed(recipe)})
     if (oil := drawn["contact"].lubricant) is not None:
         oil.check(f"rig {draws.of}")
     dimensions = {"pitch_diameter_mm": bearing.pitch_diameter, "ball_diameter_mm": bearing.ball_diameter}
     known = {**_known(recipe.machine, machine), **dimensions}
-    return Drawn(recipe.model_copy(update=drawn), draws._replace(point=[]), known, bearing)
+    return recipe.model_copy(update=drawn), draws._replace(point=[], known=known, bearing=bearing)
 
 
 @functools.lru_cache(maxsize=16)
@@ -123,9 +118,9 @@ def _known(given: Section, drawn: Section) -> dict[str, float]:
     return {key: values[split_unit(key)[0]] for key in quantities(given)}
 
 
-def _built(rig: Drawn, draws: Draws) -> Drawn:
-    """A specimen without its fault."""
-    recipe, drawing = rig.recipe, rig.bearing
+def _draw_bearing(rig: Recipe, of_rig: Draws, draws: Draws) -> tuple[Section, Draws]:
+    """Section ``specimen`` of a specimen, and what its fault is drawn with."""
+    drawing = of_rig.bearing
 
     def free_angle(value: Any) -> float:
         """Free contact angle with the clearance and the grooves of the specimen [rad]; 0 if its drawing has a contact angle."""
@@ -136,69 +131,61 @@ def _built(rig: Drawn, draws: Draws) -> Drawn:
         )
         return free_contact_angle(grooved, value("diametral_clearance_um"))
 
-    known = {**rig.known, FREE_ANGLE: free_angle}
-    specimen = recipe.specimen.draw(draws._replace(known=known).within("specimen", "specimen"))
+    known = {**of_rig.known, FREE_ANGLE: free_angle}
+    specimen = rig.specimen.draw(draws._replace(known=known).within("specimen", "specimen"))
     bearing = as_built(drawing, specimen.si())
     check_bearing(bearing, f"specimen {draws.of}")
-    known = {**rig.known, **_known(recipe.specimen, specimen)}
-    return Drawn(recipe.model_copy(update={"specimen": specimen}), draws, known, bearing)
+    return specimen, draws._replace(known={**of_rig.known, **_known(rig.specimen, specimen)}, bearing=bearing)
 
 
-def _draw_specimen(recipe: Recipe, rig: Drawn, draws: Draws, fault_try: int) -> Drawn:
-    number = draws.of
-    position = number % recipe.corpus.specimens_per_rig
-    fault = fault_of_each_specimen(recipe, rig.draws.of)[position]
-    wanted, entry = possible_entries(recipe, number, fault), 0
+def _draw_entry(recipe: Recipe, rig: int, draws: Draws, fault_try: int) -> int:
+    """Place in ``faults`` of the entry of a specimen."""
+    fault = fault_of_each_specimen(recipe, rig)[draws.of % recipe.corpus.specimens_per_rig]
+    wanted, entry = possible_entries(recipe, draws.of, fault), 0
     of_faults = draws._replace(point=[]).within("faults", "specimen")
     for attempt in sorted({0, fault_try}):
         u = of_faults._replace(attempt=attempt).u("entry")
         entry = wanted[weighted_index(tuple(recipe.faults[place].weight for place in wanted), u)]
-        # a fault that is drawn again leaves the conditions as they are
+        # a fault that is drawn again leaves operating conditions and levels as they are
         first = recipe.faults[entry]
-        wanted = [place for place in wanted if _same_conditions(recipe.faults[place], first)]
-    origin = OriginSection.model_construct(
-        corpus=corpus_identity(recipe),
-        rig=rig.draws.of,
-        specimen=number,
-        record=0,
-        entry=entry,
-        split=_draw_split(recipe, rig.draws.of, position),
-        fault_try=fault_try,
-    )
-    return _of_entry(recipe, rig, _built(rig, draws), draws, entry, origin)
+        faults = ((place, recipe.faults[place]) for place in wanted)
+        wanted = [place for place, one in faults if (one.operation, one.level) == (first.operation, first.level)]
+    return entry
 
 
-def _of_entry(recipe: Recipe, rig: Drawn, built: Drawn, draws: Draws, entry: int, origin: OriginSection) -> Drawn:
-    """A specimen with what its records have in common, and with its fault."""
-    drawn: dict[str, Any] = {}
+def _draw_specimen(recipe: Recipe, rig: Recipe, of_rig: Draws, draws: Draws, fault_try: int) -> Specimen:
+    """What the records of a specimen have in common, and its fault."""
+    entry = _draw_entry(recipe, of_rig.of, draws, fault_try)
+    section, built = _draw_bearing(rig, of_rig, draws)
+    drawn: dict[str, Any] = {"specimen": section}
     # of one combination of grids for all specimens of a rig
-    of_rig = rig.draws._replace(grids=replace(rig.draws.grids))
-    for key, section in (("operation", recipe.operation_of(entry)), ("level", recipe.level_of(entry))):
-        drawn[key] = section.draw(of_rig.within(key, "rig")).draw(draws.within(key, "specimen"))
-    of_faults = draws._replace(point=[], attempt=origin.fault_try, known=built.known, bearing=built.bearing)
-    fault = recipe.faults[entry].draw(of_faults.within("faults", "specimen"))
+    of_rig = of_rig._replace(grids=replace(of_rig.grids))
+    for key, given in (("operation", recipe.operation_of(entry)), ("level", recipe.level_of(entry))):
+        drawn[key] = given.draw(of_rig.within(key, "rig")).draw(draws.within(key, "specimen"))
+    fault = recipe.faults[entry].draw(built._replace(point=[], attempt=fault_try).within("faults", "specimen"))
     for part in fault.components:
         part.check(built.bearing, f"specimen {draws.of}")
     fault = fault.model_copy(update={"weight": 1.0, "operation": None, "level": None})
-    drawn |= {"faults": (fault,), "origin": origin}
-    load: Known = {
-        **built.known,
-        STATIC_RATING: lambda _: static_rating(rig.bearing),
-        LEAST_AXIAL_LOAD: lambda value: least_axial_load(value("load_n"), built.bearing.contact_angle),
-    }
+    drawn["faults"] = (fault,)
+    drawn["origin"] = OriginSection.model_construct(
+        corpus=corpus_identity(recipe),
+        rig=of_rig.of,
+        specimen=draws.of,
+        record=0,
+        entry=entry,
+        split=_draw_split(recipe, of_rig.of, draws.of % recipe.corpus.specimens_per_rig),
+        fault_try=fault_try,
+    )
+    specimen, known = rig.model_copy(update=drawn), dict(built.known)
+    known[STATIC_RATING] = lambda _: static_rating(of_rig.bearing)
+    known[LEAST_AXIAL_LOAD] = lambda value: least_axial_load(value("load_n"), built.bearing.contact_angle)
     rungs = (1.0,) if recipe.corpus.rungs is None or not fault.components else recipe.corpus.rungs
     faults = tuple(fault if share == 1 else sound() if share == 0 else fault.at_severity(share) for share in rungs)
-    made = replace(built, recipe=built.recipe.model_copy(update=drawn), known=load, rungs=faults)
     if recipe.life is None:
-        return made
-    middle = _draws(recipe, "record", 0, 0, np.full(64, 0.5))._replace(known=load)
+        return specimen, known, faults, None
+    middle = _draws(recipe, "record", 0, 0, np.full(64, 0.5))._replace(known=known)
     conditions = drawn["operation"].draw(middle.within("operation", "record")).si()
-    return replace(made, life=draw_life(recipe, made.recipe, built.bearing, conditions))
-
-
-def _same_conditions(one: Fault, other: Fault) -> bool:
-    """Whether two entries of ``faults`` have the same operating conditions and levels."""
-    return one.operation == other.operation and one.level == other.level
+    return specimen, known, faults, draw_life(recipe, specimen, built.bearing, conditions)
 
 
 def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
@@ -222,72 +209,37 @@ def _ranks(seed: int, rig: int, count: int) -> NDArray[np.int64]:
     return stream(seed, "rig", rig, "corpus.split").permutation(count)
 
 
-def _record_points(recipe: Recipe, numbers: range) -> dict[int, NDArray[np.float64]]:
-    """Quasi-random points of the groups of ``n_rungs`` records that hold some records, by number.
+def _draw_records(recipe: Recipe, specimens: Mapping[int, Specimen], numbers: range) -> Iterator[Scenario]:
+    """Records of some specimens; a life that has ended has no records at the numbers that are left of its specimen.
 
-    A faulty specimen has one point for a group. A healthy one has one for each record: those after the first of a group come after the
+    The records of a group have the numbers of its first record, and the combination of grids and the quasi-random point of the group. A
+    faulty specimen has one point for a group. A healthy one has one for each record: those after the first of a group come after the
     points of all groups, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
     """
-    rungs = recipe.corpus.n_rungs
-    points: dict[int, NDArray[np.float64]] = {}
+    rungs, points = recipe.corpus.n_rungs, dict[int, NDArray[np.float64]]()
     first, last = numbers[0] // rungs * rungs, numbers[-1] // rungs * rungs
     for place in range(rungs):
         points |= points_of(recipe, "record", recipe.item_of(first + place), recipe.item_of(last + place) + 1)
-    return points
-
-
-def _draw_records(
-    recipe: Recipe, specimens: Mapping[int, Drawn], numbers: range, points: Mapping[int, NDArray[np.float64]]
-) -> Iterator[Scenario]:
-    """Records of some specimens; a life that has ended has no records at the numbers that are left of its specimen.
-
-    The records of a group have the numbers of its first record, and the combination of grids and the quasi-random point of the group.
-    """
     for number in numbers:
-        specimen = specimens[recipe.specimen_of(number)]
-        group, place = divmod(number, recipe.corpus.n_rungs)
-        grouped = len(specimen.rungs) > 1
-        first = number - place if grouped else number
-        item = recipe.item_of(first)
-        narrowest = min((width for fault in specimen.rungs for width in _widths(fault)), default=None)
-        origin: Any = specimen.recipe.origin
-        placed = {"pair": group, "rung": place, "narrowest_mm": narrowest} if grouped else {}
-        origin = origin.model_copy(update={"record": number, **placed})
-        draws = _draws(recipe, "record", first, item, points[item])
-        if specimen.life is None:
-            yield _record(specimen, draws, specimen.rungs[place if grouped else 0], origin)
-        elif (snapshot := number - recipe.records_of(origin.specimen).start) < len(specimen.life.ages):
-            yield at_snapshot(_record(specimen, draws, specimen.rungs[0], origin), specimen.life, snapshot)
-
-
-def _widths(fault: Fault) -> Iterator[float]:
-    for part in fault.components:
-        yield from getattr(part, "width_mm", ())
-
-
-def _record(specimen: Drawn, draws: Draws, fault: Fault, origin: OriginSection) -> Scenario:
-    """Scenario of a record of a specimen, without its place in a life."""
-    recipe, of_record = specimen.recipe, draws._replace(known=specimen.known)
-    drawn = {
-        key: getattr(recipe, key).draw(of_record.within(key, "record"))
-        for key in ("operation", "level", "sensor_faults")
-    }
-    return Scenario(recipe.model_copy(update=drawn | {"faults": (fault,), "origin": origin, **_alone(recipe)}))
-
-
-_ONE = CorpusSection(rigs=1, specimens_per_rig=1, records_per_specimen=1)
-
-
-def _alone(recipe: Recipe) -> dict[str, Any]:
-    """Sections of a recipe with one record, whose fault is not drawn again."""
-    truth = _truth_of_one(recipe.truth.twins, recipe.truth.undetected)
-    files = {"publication": PublicationSection(), "storage": StorageSection()}
-    return {"corpus": _ONE, "truth": truth, "records": None, "life": None, **files}
-
-
-@functools.cache
-def _truth_of_one(twins: bool, undetected: str) -> TruthSection:
-    return TruthSection.model_validate({"twins": twins, "undetected": "keep" if undetected == "redraw" else undetected})
+        specimen, known, faults, life = specimens[recipe.specimen_of(number)]
+        group, place = divmod(number, rungs)
+        first, placed = number, {}
+        if len(faults) > 1:
+            widths = [w for fault in faults for part in fault.components for w in getattr(part, "width_mm", ())]
+            first, placed = number - place, {"pair": group, "rung": place, "narrowest_mm": min(widths, default=None)}
+        item, origin = recipe.item_of(first), specimen.origin
+        draws = _draws(recipe, "record", first, item, points[item])._replace(known=known)
+        drawn: dict[str, Any] = {
+            key: getattr(specimen, key).draw(draws.within(key, "record"))
+            for key in ("operation", "level", "sensor_faults")
+        }
+        drawn["faults"] = (faults[place if placed else 0],)
+        drawn["origin"] = origin.model_copy(update={"record": number, **placed})
+        scenario = Scenario(specimen.model_copy(update=drawn))
+        if life is None:
+            yield scenario
+        elif (snapshot := number - recipe.records_of(origin.specimen).start) < len(life.ages):
+            yield at_snapshot(scenario, life, snapshot)
 
 
 def further_ratios(recipe: Recipe, scenario: Scenario, count: int) -> list[float]:
