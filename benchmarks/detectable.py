@@ -20,7 +20,7 @@ from gen.drawing import Level
 from gen.generation.undetected import make_records
 from gen.measurement.judging import FALSE_ALARM, judges_of
 from gen.measurement.measure import Measured, counts_per_unit, measure
-from gen.measurement.mixing import Parts, Products
+from gen.measurement.mixing import Parts
 from gen.measurement.rig import rig_filters
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario
@@ -92,7 +92,7 @@ def rule_alarms(case: Case, fs: float) -> bool:
     angles = 2 * np.pi * case.shaft_rate / fs * np.arange(len(case.twin))
     twin, again = (signal[None].astype(np.float32) for signal in (case.twin, case.again))
     signals = np.stack([twin, np.zeros_like(twin), again - twin])
-    products = Products(*np.zeros(6))  # not needed for lines
+    products = (0.0,) * 6  # not needed for lines
     (sees,) = judges_of([Parts(signals, products, case.impulses, case.orders, angles, steady=True)])
     return sees((1.0, 1.0))
 

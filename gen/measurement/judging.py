@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import ifft, next_fast_len, rfft
 
-from gen.measurement.levels import rms_of
+from gen.measurement.levels import Gains, rms_of
 from gen.measurement.mixing import Parts
 from gen.physics.kernel.compiling import compiled_to_disk
 
@@ -39,7 +39,7 @@ WINDOW_RMS = math.sqrt(3 / 8)  # of a Hann window
 AROUND = 32  # lines on either side of a searched window that tell its floor
 SIGNIFICANT_RISE = 1.25  # of the rms by a fault without lines: ISO 20816-1:2016, criterion II
 _LEAST_SAMPLES = 16  # of a band
-Judge = Callable[[tuple[float, float]], bool]
+Judge = Callable[[Gains], bool]
 """Tells for any gains of bearing and background whether the fault of a record can be seen."""
 
 
@@ -54,7 +54,7 @@ def judges_of(records: Sequence[Parts]) -> list[Judge]:
 
 
 def _judge_of_rise(parts: Parts) -> Judge:
-    def sees(gains: tuple[float, float]) -> bool:
+    def sees(gains: Gains) -> bool:
         bearing, background = gains
         rest = rms_of(parts.products, 0.0, bearing, background)
         return rms_of(parts.products, bearing, bearing, background) >= SIGNIFICANT_RISE * rest
@@ -80,7 +80,7 @@ def _judge_of_lines(parts: Parts, spectra: ComplexArray) -> Judge:
     margin = math.sqrt(2 * math.log(max(n_lines, 1) / FALSE_ALARM))
     lines_of = functools.cache(lambda band: _lines(parts, spectra[..., slice(*band)], band))
 
-    def sees(gains: tuple[float, float]) -> bool:
+    def sees(gains: Gains) -> bool:
         seen: set[int] = set()
         for band, part, *window in searched:
             if part not in seen and _stands_out(*lines_of(band), *window, *gains, margin):

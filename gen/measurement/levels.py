@@ -4,10 +4,10 @@ The products are exact: parts that are correlated over a short record neither ra
 """
 
 import math
+from collections.abc import Sequence
 
 from gen.corpus.schema import Variable
 from gen.corpus.simulated import with_values
-from gen.measurement.mixing import Products
 from gen.physics.elementary import decibels
 
 SILENCE = 1e-30  # m s-2; a smaller rms counts as no signal
@@ -24,7 +24,13 @@ LABELS = (
 """Variables of the corpus, attributes of a :class:`gen.measurement.measure.Measured`."""
 
 
-def gains_of(products: Products, ratio: float, rms: float) -> tuple[float, float]:
+Gains = tuple[float, float]
+"""Gains of bearing and background [1]."""
+Products = Sequence[float]
+"""Those of :class:`gen.measurement.mixing.Parts`."""
+
+
+def gains_of(products: Products, ratio: float, rms: float) -> Gains:
     """Gains of bearing and background [1] that give a record its drawn ratio [dB] and rms [m s-2].
 
     The ratio is that of the fault (d) over all else, which is the healthy bearing (h) and the background (n): with the bearing ``q``
@@ -32,15 +38,16 @@ def gains_of(products: Products, ratio: float, rms: float) -> tuple[float, float
     part is not known, has the ratio of the bearing over the background.
     """
     square, least = 10 ** (ratio / 10), SILENCE**2
-    nn, hh = max(products.nn, least), max(products.hh, least)
-    left = products.dd - square * products.hh
-    if products.dd <= least:
+    nn, hn, hh, *_, dd = products
+    left = dd - square * hh
+    nn, hh = max(nn, least), max(hh, least)
+    if dd <= least:
         q = math.sqrt(square * nn / hh)
-    elif left <= 0.01 * products.dd:
+    elif left <= 0.01 * dd:
         # No gain is enough for a fault that is too weak beside its healthy bearing: bearing and background get the same rms.
         q = math.sqrt(nn / hh)
     else:
-        half = square * products.hn
+        half = square * hn
         q = (half + math.sqrt(half**2 + left * square * nn)) / left
     scale = rms / max(rms_of(products, q, q, 1.0), SILENCE)
     return q * scale, scale
@@ -53,7 +60,7 @@ def rms_of(products: Products, fault: float, healthy: float, background: float) 
     return math.sqrt(max(h * h * hh + 2 * h * n * hn + n * n * nn + d * d * dd + 2 * d * h * dh + 2 * d * n * dn, 0.0))
 
 
-def bearing_over_background(products: Products, gains: tuple[float, float], rounding: float) -> float:
+def bearing_over_background(products: Products, gains: Gains, rounding: float) -> float:
     """Rms of the whole bearing signal over that of the background, or over the converter's ``rounding`` if that is larger [dB].
 
     NaN if either is silent or not finite.
@@ -64,7 +71,7 @@ def bearing_over_background(products: Products, gains: tuple[float, float], roun
     return level if level > -math.inf else math.nan
 
 
-def fault_over_rest(products: Products, gains: tuple[float, float], rounding: float) -> tuple[float, float]:
+def fault_over_rest(products: Products, gains: Gains, rounding: float) -> tuple[float, float]:
     """Rms of what the fault adds over that of all else [dB], and its share of the sum of both powers [1]; NaN where they are silent."""
     bearing, background = gains
     fault, rest = rms_of(products, bearing, 0.0, 0.0), max(rms_of(products, 0.0, bearing, background), rounding)

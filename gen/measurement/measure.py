@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from gen.corpus.simulated import UNJUDGED
 from gen.measurement.judging import Judge, compile_judging, judges_of
-from gen.measurement.levels import bearing_over_background, fault_over_rest, gains_of
+from gen.measurement.levels import Gains, bearing_over_background, fault_over_rest, gains_of
 from gen.measurement.mixing import Parts
 from gen.measurement.parts import parts_of
 from gen.measurement.rig import RigFilters, rig_filters
@@ -121,9 +121,7 @@ def _passes(runs: Sequence[Run]) -> Iterator[list[list[Run]]]:
         yield together
 
 
-def _level(
-    scenario: Scenario, parts: Parts, sees: Judge, further: Sequence[float]
-) -> tuple[Any, int, tuple[float, float]]:
+def _level(scenario: Scenario, parts: Parts, sees: Judge, further: Sequence[float]) -> tuple[Any, int, Gains]:
     """Level of a record and of its group, the number of its try, and its gains.
 
     It is the drawn level, or if the fault cannot be seen, the first of some ``further`` ratios at which it can. In a group it becomes a
@@ -143,7 +141,7 @@ def _level(
     return level, chosen, (bearing, bearing * level.si()["background"])
 
 
-def _measured(run: Run, parts: Parts, sees: Judge, level: Any, level_try: int, gains: tuple[float, float]) -> Measured:
+def _measured(run: Run, parts: Parts, sees: Judge, level: Any, level_try: int, gains: Gains) -> Measured:
     """A record at its level, behind measuring chain and converter, and whether its fault can be seen."""
     (bearing, background), per_unit = gains, counts_per_unit(run.scenario.recipe)
     changes = {"origin": run.scenario.origin.model_copy(update={"level_try": level_try})} if level_try else {}

@@ -38,17 +38,6 @@ class Lines(NamedTuple):
     """Modulation of each tone once per turn of the shaft, shape (tone,) [1]."""
 
 
-class Products(NamedTuple):
-    """Mean products over a record, all channels together, of background (n), healthy bearing (h) and fault (d)."""
-
-    nn: float
-    hn: float
-    hh: float
-    dn: float
-    dh: float
-    dd: float
-
-
 class Parts(NamedTuple):
     """Background and bearing of one record before their gains."""
 
@@ -56,7 +45,8 @@ class Parts(NamedTuple):
     """Background [1], vibration of the bearing without the fault, and what the fault adds if that is known [m s-2], shape (part, channel,
     time).
     """
-    products: Products
+    products: tuple[float, ...]
+    """Mean products over the record, all channels together: nn, hn, hh, dn, dh, dd of background (n), healthy bearing (h) and fault (d)."""
     impulses: Float32Array
     """Rms of the lines that impulses at random times make in squared envelopes, by the frequency of the impulses from 0 to half the sample
     rate, shape (channel, frequency) [1].
@@ -70,8 +60,8 @@ class Parts(NamedTuple):
 
 
 @compiled_to_disk
-def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: Lines, kept: slice) -> Products:
-    """Modulate noise and bearing, and add the other sources and the lines to the noise, in place; return the mean products of the parts.
+def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: Lines, kept: slice) -> FloatArray:
+    """Modulate noise and bearing, and add the other sources and the lines to the noise, in place; return their mean products.
 
     Parameters
     ----------
@@ -105,7 +95,8 @@ def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: 
             _add_tones(lines, amplitudes[n_orders:], start, turn, tables, machine)
             for part in range(len(signals)):
                 _modulate(lines.modulations[1 + channel if part > 0 else 0], turn, signals[part, channel, start:stop])
-            _add(machine, others[channel, start:stop], signals[0, channel, start:stop])
+            for j in range(stop - start):
+                signals[0, channel, start + j] += machine[j] + others[channel, start + j]
             row = 0
             for one in range(len(signals)):
                 for other in range(one + 1):
@@ -115,8 +106,7 @@ def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: 
     for row in range(6):
         for j in range(BLOCK):
             means[row] += sums[row, j]
-    means /= signals.shape[1] * (kept.stop - kept.start)
-    return Products(means[0], means[1], means[2], means[3], means[4], means[5])
+    return means / (signals.shape[1] * (kept.stop - kept.start))
 
 
 @njit(**INLINE)
@@ -173,12 +163,6 @@ def _modulate(depths: ComplexArray, turn: Complex64Array, signal: Float32Array) 
     once, twice = np.complex64(depths[0]), np.complex64(depths[1])
     for j in range(len(signal)):
         signal[j] *= np.float32(1) + (once * turn[j]).real + (twice * (turn[j] * turn[j])).real
-
-
-@njit(**INLINE)
-def _add(machine: Float32Array, others: Float32Array, background: Float32Array) -> None:
-    for j in range(len(background)):
-        background[j] += machine[j] + others[j]
 
 
 @njit(**INLINE)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
-from gen.measurement.mixing import Lines, Parts, Products, mix
+from gen.measurement.mixing import Lines, Parts, mix
 from gen.measurement.rig import RigFilters
 from gen.mechanisms.background.section import locked_of
 from gen.physics.elementary import power
@@ -43,7 +43,7 @@ def parts_of(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[Parts]:
     parts = list[Parts]()
     for place, (run, rig, turned) in enumerate(zip(runs, rigs, angles, strict=True)):
         signals = np.concatenate([noises[place][None, :, : axis.returned], bearings[place][..., : axis.returned]])
-        products = Products(*mix(signals, others[place], turned, lines[place], axis.kept))
+        products = tuple(mix(signals, others[place], turned, lines[place], axis.kept).tolist())
         orders, steady = lines_of_faults(run) if run.twin else (), run.scenario.speed_profile is None
         parts.append(Parts(signals[..., axis.kept], products, rig.impulse_lines, orders, turned[axis.kept], steady))
     return parts

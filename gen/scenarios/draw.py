@@ -30,7 +30,7 @@ from gen.recipe import (
 )
 from gen.recipe.sections import CorpusSection, TruthSection
 from gen.scenarios.classes import fault_of_each_specimen, possible_entries
-from gen.scenarios.lives import SpecimenLife, at_snapshot, draw_life
+from gen.scenarios.lives import Aged, at_snapshot, draw_life
 from gen.scenarios.points import points_of
 from gen.scenarios.scenario import Scenario, as_built, check_bearing, scenario_of, sound
 from gen.support.errors import RecipeError
@@ -39,8 +39,8 @@ from gen.support.units import split_unit
 _OF_RIG = ("recording", "bearing", "machine", "machine_conditions", "contact", "path", "background", "sensor_faults")
 
 
-Specimen = tuple[Any, Known, tuple[Fault, ...], SpecimenLife | None]
-"""Recipe of a specimen, quantities that its records can have shares of, its fault at each rung (one without groups), and its life."""
+Specimen = tuple[Any, Known, tuple[Fault, ...], list[Aged] | None]
+"""Recipe of a specimen, quantities that its records can have shares of, its fault at each rung, and the snapshots of its life."""
 
 _ONE = CorpusSection(rigs=1, specimens_per_rig=1, records_per_specimen=1)
 _OF_FILES = {key: Recipe.model_fields[key].default for key in ("publication", "storage", "records", "life")}
@@ -238,8 +238,8 @@ def _draw_records(recipe: Recipe, specimens: Mapping[int, Specimen], numbers: ra
         scenario = Scenario(specimen.model_copy(update=drawn))
         if life is None:
             yield scenario
-        elif (snapshot := number - recipe.records_of(origin.specimen).start) < len(life.ages):
-            yield at_snapshot(scenario, life, snapshot)
+        elif (snapshot := number - recipe.records_of(origin.specimen).start) < len(life):
+            yield at_snapshot(scenario, life[snapshot])
 
 
 def further_ratios(recipe: Recipe, scenario: Scenario, count: int) -> list[float]:

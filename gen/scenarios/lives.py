@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,46 +23,30 @@ _TRIES = 1000
 _HISTORIES = ("first_length", "load", "speed", "temperature", "growth")
 
 
-class SpecimenLife(NamedTuple):
-    """Life of one specimen and its test."""
-
-    life: Life
-    ages: FloatArray
-    """At the snapshots, shape (snapshot,) [s]."""
-    failure: float
-    """Age at which the spall has its greatest length [s]."""
-    failed: bool
-    """Whether that is before the end of the test."""
-    load_ratio: float
-    """Load over the dynamic rating, without its history [1]."""
-    load: FloatArray
-    """Factors of load and speed, and rise of the temperature [K], at the snapshots."""
-    speed: FloatArray
-    warmer: FloatArray
-    drawn: Mapping[str, Any]
+Aged = tuple[dict[str, Any], Snapshot, float, float, float]
+"""Sections of a specimen at a snapshot of its life, the snapshot, and the factors of load and speed and rise of temperature [K] there."""
 
 
-def draw_life(recipe: Recipe, specimen: Recipe, bearing: Bearing, conditions: Mapping[str, Any]) -> SpecimenLife:
-    """Life of a ``specimen`` under its ``conditions`` without histories; its recipe has a drawn fault.
+def draw_life(recipe: Recipe, specimen: Any, bearing: Bearing, conditions: Mapping[str, Any]) -> list[Aged]:
+    """Snapshots of the life of a ``specimen`` under its ``conditions`` without histories; its recipe has a drawn fault.
 
     Raises
     ------
     RecipeError
         If the load is above the dynamic rating, or hardly any bearing is alive when the snapshots begin.
     """
-    assert recipe.life is not None and specimen.origin is not None  # noqa: S101, PT018
-    number = specimen.origin.specimen
+    section: Any = recipe.life
+    number, slots = specimen.origin.specimen, recipe.corpus.records_per_specimen
     first_length, *rngs = (stream(recipe.seed, "specimen", number, f"life.{name}") for name in _HISTORIES)
     draws = Draws(recipe.seed, "specimen", number, Combination(number), [])
-    drawn, element = recipe.life.draw(draws.within("life", "specimen")).si(), bearing.rolling_element
-    slots, cadence = recipe.corpus.records_per_specimen, to_si(recipe.life.cadence_h, "h")
+    drawn, element = section.draw(draws.within("life", "specimen")).si(), bearing.rolling_element
     ratio = conditions["load"] / (bearing.dynamic_rating or 1.0)
-    if ratio > 1 and not recipe.life.accelerated:
+    if ratio > 1 and not section.accelerated:
         raise RecipeError(
             f"specimen {number}: its load is {ratio:.3g} times the dynamic rating; lower operation.load_n, or say life.accelerated: true."
         )
     step = drawn["history"] / STEPS
-    count = 2 + int((drawn["entry"] + slots * cadence) / step)
+    count = 2 + int((drawn["entry"] + slots * to_si(section.cadence_h, "h")) / step)
     load, speed, warmer, noise = (history(rng, count) for rng in rngs)
     load, speed = log_normal(load, drawn["load_history"]), log_normal(speed, drawn["speed_history"])
     law = Growth(*(drawn[name] for name in ("growth", "growth_exponent", "critical", "acceleration")))
@@ -75,10 +59,10 @@ def draw_life(recipe: Recipe, specimen: Recipe, bearing: Bearing, conditions: Ma
         factor=drawn["a_iso"],
         load_exponent=drawn["load_exponent"],
     )
-    fault: Any = specimen.faults[0]
+    (fault,) = specimen.faults
     (width,) = fault.si()["width"]
     first = float(width) * math.exp(drawn["first_length_scatter"] * first_length.standard_normal())
-    last = min(to_si(recipe.life.end.length_mm, "mm"), widest_spall(fault.part, bearing))
+    last = min(to_si(section.end.length_mm, "mm"), widest_spall(fault.part, bearing))
     for attempt in range(_TRIES):
         life = Life(sums, law, life_share(draws.u(f"life.share.{attempt}"), element), min(first, last))
         failure = life.age_at(last)
@@ -86,62 +70,60 @@ def draw_life(recipe: Recipe, specimen: Recipe, bearing: Bearing, conditions: Ma
             break
     else:
         raise RecipeError(f"specimen {number}: hardly any bearing lives until life.entry_h; lower it, or the load.")
-    damaged = life.age_at(to_si(recipe.life.damaged_from_mm, "mm"))
-    ages = drawn["entry"] + cadence * np.arange(slots + 1)
-    if recipe.life.damaged_cadence_h is not None:
-        dense = int(np.searchsorted(ages, damaged))
-        ages[dense:] = ages[min(dense, slots)] + to_si(recipe.life.damaged_cadence_h, "h") * np.arange(
-            slots + 1 - dense
-        )
+    ages = _snapshot_ages(section, drawn["entry"], slots, life.age_at(to_si(section.damaged_from_mm, "mm")))
     end = min(ages[-1], max(drawn["withdrawal"], drawn["entry"]))
     ages = ages[:-1][ages[:-1] <= min(failure, end)]
     load, speed, warmer = (
         np.interp(ages, sums.age, each) for each in (load, speed, drawn["temperature_history"] * warmer)
     )
-    return SpecimenLife(life, ages, failure, failure <= end, ratio, load, speed, warmer, drawn)
+    snapshots, all_turns = list[Aged](), float(sums.at("turns", failure))
+    for age, of_load, of_speed, rise in zip(*(each.tolist() for each in (ages, load, speed, warmer)), strict=True):
+        turns, length = float(sums.at("turns", age)), float(life.length_at(age))
+        grown = _grown(fault, length, drawn["full_depth"])
+        (length,), (depth,) = (grown.si()[name].tolist() for name in ("width", "depth"))  # to the last bit
+        snapshot = Snapshot.model_construct(
+            age=age,
+            rul=failure - age,
+            rul_revolutions=all_turns - turns,
+            event=int(failure <= end),
+            initiation_time=life.initiation,
+            spall_length=length,
+            spall_depth=depth,
+            stage=int(length > 0) + int(length > law.critical),
+            overloaded=int(ratio * of_load > HIGHEST_RATIO),
+        )
+        clearance, waviness = (drawn[name] * (turns * ratio) for name in ("clearance", "waviness"))
+        worn = _plus(specimen.specimen, diametral_clearance_um=clearance, waviness_nm=waviness)
+        sections = {"faults": (grown if length else sound(),), "specimen": worn}
+        snapshots.append((sections, snapshot, of_load, of_speed, rise))
+    return snapshots
 
 
-def at_snapshot(scenario: Scenario, lived: SpecimenLife, number: int) -> Scenario:
-    """A record as the snapshot ``number`` of the life of its specimen."""
-    recipe, age = scenario.recipe, float(lived.ages[number])
-    turns = float(lived.life.ageing.at("turns", age))
-    wear = turns * lived.load_ratio
-    clearance, waviness = (lived.drawn[name] * wear for name in ("clearance", "waviness"))
-    fault: Any = recipe.faults[0]
+def _snapshot_ages(section: Any, entry: float, count: int, damaged: float) -> FloatArray:
+    """Ages at ``count`` snapshots and one more, which may be denser from the age ``damaged`` on, shape (snapshot,) [s]."""
+    ages = entry + to_si(section.cadence_h, "h") * np.arange(count + 1)
+    if section.damaged_cadence_h is not None:
+        dense = int(np.searchsorted(ages, damaged))
+        later = to_si(section.damaged_cadence_h, "h") * np.arange(count + 1 - dense)
+        ages[dense:] = ages[min(dense, count)] + later
+    return ages
+
+
+def at_snapshot(scenario: Scenario, aged: Aged) -> Scenario:
+    """A record as a snapshot of the life of its specimen."""
+    (sections, snapshot, load, speed, rise), operation = aged, scenario.recipe.operation
+    changes = {"load_n": operation.load_n * load, "shaft_rpm": operation.shaft_rpm * speed}
+    operation = _plus(operation.model_copy(update=changes), temperature_celsius=rise)
+    origin = scenario.origin.model_copy(update={"life": snapshot})
+    return scenario.edited(origin=origin, operation=operation, **sections)
+
+
+def _grown(fault: Any, length: float, full_depth: float) -> Any:
+    """A fault whose spall has a ``length``, and the depth that it has there [m]."""
     (depth,) = fault.si()["depth"]
-    length = float(lived.life.length_at(age))
-    depth = float(depth) * length / max(lived.drawn["full_depth"], length) if length else 0.0
-    grown = fault.model_copy(
+    depth = float(depth) * length / max(full_depth, length) if length else 0.0
+    return fault.model_copy(
         update={"width_mm": (length / UNITS["mm"].factor,), "depth_um": (depth / UNITS["um"].factor,)}
-    )
-    (length,), (depth,) = (
-        grown.si()[name].tolist() for name in ("width", "depth")
-    )  # to the last bit those of the spall
-    snapshot = Snapshot.model_construct(
-        age=age,
-        rul=lived.failure - age,
-        rul_revolutions=float(lived.life.ageing.at("turns", lived.failure)) - turns,
-        event=int(lived.failed),
-        initiation_time=lived.life.initiation,
-        spall_length=length,
-        spall_depth=depth,
-        stage=int(length > 0) + int(length > lived.life.law.critical),
-        overloaded=int(lived.load_ratio * lived.load[number] > HIGHEST_RATIO),
-    )
-    operation: Any = recipe.operation
-    return scenario.edited(
-        origin=scenario.origin.model_copy(update={"life": snapshot}),
-        faults=(grown if length else sound(),),
-        specimen=_plus(recipe.specimen, diametral_clearance_um=clearance, waviness_nm=waviness),
-        operation=_plus(
-            operation.model_copy(
-                update={
-                    "load_n": operation.load_n * float(lived.load[number]),
-                    "shaft_rpm": operation.shaft_rpm * float(lived.speed[number]),
-                }
-            ),
-            temperature_celsius=float(lived.warmer[number]),
-        ),
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.chain.filtering import recursive
-from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import Disturbed, FloatArray, SensorFault
 
 
 class Drift(SensorFault):
@@ -31,7 +31,7 @@ class Drift(SensorFault):
     settling_time_s: Distribution = within(1e-3, 1e3, default=1.0)
     """Time constant of that decay."""
 
-    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:
         """Signal on a random wander and an exponential settling.
 
         The wander is white noise behind a low-pass filter of first order, stationary from the first sample on.
@@ -43,4 +43,4 @@ class Drift(SensorFault):
         noise[:, 0] = drawn["wander"] * rng.standard_normal(channels)
         settling = drawn["settling"] * np.exp(np.arange(length) / (-drawn["settling_time"] * fs))
         baseline = recursive(1.0, kept, noise) + settling
-        return signal + baseline, {"drift": float(np.abs(baseline).max())}
+        return signal + baseline, float(np.abs(baseline).max())

@@ -4,7 +4,7 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import Disturbed, FloatArray, SensorFault
 
 
 class DroppedSamples(SensorFault):
@@ -31,7 +31,7 @@ class DroppedSamples(SensorFault):
             return None
         return f"gap_s: {longest:g} s leaves nothing of a record; keep it below recording.duration_s {duration:g}."
 
-    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:
         """Signal with gaps, each filled with the last sample before it or with 0.
 
         The first sample is never lost. Where gaps overlap, the later one is filled from what the earlier one left.
@@ -46,4 +46,4 @@ class DroppedSamples(SensorFault):
             gap = slice(start, start + size)
             filled[:, gap] = filled[:, start - 1 : start] if hold else 0.0
             lost[gap] = True
-        return filled, {"dropped_samples": int(np.count_nonzero(lost))}
+        return filled, int(np.count_nonzero(lost))

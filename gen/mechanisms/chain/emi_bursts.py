@@ -7,7 +7,7 @@ import numpy as np
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.chain.filtering import recursive
-from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import Disturbed, FloatArray, SensorFault
 
 
 class EmiBursts(SensorFault):
@@ -27,7 +27,7 @@ class EmiBursts(SensorFault):
     peak_m_s2: Distribution = within(0, 1e5, open_low=True)
     """Rms of the peaks of the bursts."""
 
-    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:
         """Signal with decaying oscillations that start at random times."""
         drawn = self.si()
         length = signal.shape[1]
@@ -37,4 +37,4 @@ class EmiBursts(SensorFault):
         hits = np.zeros(length, complex)
         np.add.at(hits, starts, peaks)
         pole = np.exp((-1 / drawn["decay"] + 2j * math.pi * drawn["frequency"]) / fs)
-        return signal + np.real(recursive(1.0, pole, hits)), {"emi_bursts": count}
+        return signal + np.real(recursive(1.0, pole, hits)), count

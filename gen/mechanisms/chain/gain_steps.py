@@ -4,7 +4,7 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import Disturbed, FloatArray, SensorFault
 from gen.support.units import decibel_to_ratio
 
 
@@ -26,10 +26,10 @@ class GainSteps(SensorFault):
         signal: FloatArray,
         fs: float,  # noqa: ARG002
         rng: np.random.Generator,
-    ) -> tuple[FloatArray, Found]:
+    ) -> Disturbed:
         """Signal times a gain, which every step multiplies; the steps are at random times."""
         length, steps = signal.shape[1], decibel_to_ratio(self.si()["step"])
         gain = np.ones(length)
         for share, step in zip(np.sort(rng.random(len(steps))), steps, strict=True):
             gain[1 + int(share * (length - 1)) :] *= step
-        return signal * gain, {"gain_steps": len(steps)}
+        return signal * gain, len(steps)

@@ -8,7 +8,7 @@ from pydantic import Field, StrictInt
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Draws, Probability, within
-from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import Disturbed, FloatArray, SensorFault
 from gen.physics.resonance import base_excited
 
 DECAYED = 7.0  # time constants after which a filter has settled to 1e-3
@@ -51,7 +51,7 @@ class LooseMount(SensorFault):
             )
         return self.model_copy(update={"loose_channels": loose, "probability": 1.0}).drawn(of) if loose else None
 
-    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG002
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:  # noqa: ARG002
         """Signal of sensors that resonate and rattle."""
         from gen.physics.rattle import rattling  # compiled: a recipe is read without numba
 
@@ -61,7 +61,7 @@ class LooseMount(SensorFault):
             held = through_mount(signal[channel], frequency, damping, fs)
             loose[channel], count = rattling(held, frequency, damping, holding, fs)
             impacts += count
-        return loose, {"loose_mount": len(self.loose_channels or ()), "rattle": impacts}
+        return loose, len(self.loose_channels or ()), impacts
 
     @staticmethod
     def compile() -> None:

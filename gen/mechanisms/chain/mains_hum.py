@@ -6,7 +6,7 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import Disturbed, FloatArray, SensorFault
 from gen.support.units import decibel_to_ratio
 
 
@@ -29,7 +29,7 @@ class MainsHum(SensorFault):
     third_db: Distribution = within(-80, 20, default=-10.0)
     """Level of the third multiple relative to the mains frequency; the others fall as one over their order."""
 
-    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:
         """Signal with the mains frequency and its odd multiples below half the sample rate."""
         drawn = self.si()
         length = signal.shape[1]
@@ -41,4 +41,4 @@ class MainsHum(SensorFault):
         for frequency, level, phase in zip(frequencies, levels, phases, strict=True):
             if frequency < fs / 2:
                 hum += math.sqrt(2) * level * np.cos(2 * math.pi * frequency / fs * np.arange(length) + phase)
-        return signal + hum, {"mains_hum": math.sqrt(np.mean(hum**2))}
+        return signal + hum, math.sqrt(np.mean(hum**2))

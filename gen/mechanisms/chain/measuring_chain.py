@@ -25,7 +25,7 @@ from gen.mechanisms.chain.loose_mount import LooseMount
 from gen.mechanisms.chain.mains_hum import MainsHum
 from gen.mechanisms.chain.saturation import Saturation
 from gen.mechanisms.chain.sensor_fault import SensorFault
-from gen.mechanisms.mechanism import FloatArray, section_with
+from gen.mechanisms.mechanism import FloatArray, mechanisms_of, section_with
 
 CHAIN: tuple[type[SensorFault], ...] = (LooseMount, Drift, MainsHum, EmiBursts, GainSteps, Saturation, DroppedSamples)
 """All faults, in the order in which a signal meets them."""
@@ -60,13 +60,10 @@ def disturb(
     Returns
     -------
     array, shape (channel, time), of the type of ``signal``
-        The ``signal`` itself if there is no fault, or if the record diverged: then it is left out of the corpus.
+        The ``signal`` itself if there is no fault.
     """
-    given, labels = signal, dict[str, float]()
-    faults = [found for fault in CHAIN if (found := getattr(section, fault.place)) is not None]
-    if not faults or not np.isfinite(signal).all():
-        return signal, labels
-    for fault in faults:
-        signal, found = fault.disturb(signal, fs, stream(f"sensor_faults.{fault.place}"))
-        labels |= found
-    return signal.astype(given.dtype, copy=False), labels
+    dtype, labels = signal.dtype, dict[str, float]()
+    for fault in mechanisms_of(section):
+        signal, *values = fault.disturb(signal, fs, stream(f"sensor_faults.{fault.place}"))
+        labels |= zip([label.name for label in fault.labels], values, strict=True)
+    return signal.astype(dtype, copy=False), labels

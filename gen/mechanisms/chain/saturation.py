@@ -7,7 +7,7 @@ import numpy as np
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.chain.filtering import recursive
-from gen.mechanisms.chain.sensor_fault import FloatArray, Found, SensorFault
+from gen.mechanisms.chain.sensor_fault import Disturbed, FloatArray, SensorFault
 
 
 class Saturation(SensorFault):
@@ -37,7 +37,7 @@ class Saturation(SensorFault):
             "lower the limit."
         )
 
-    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:  # noqa: ARG002
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:  # noqa: ARG002
         """Signal behind the amplifier.
 
         Below the knee the gain is 1; in the knee it falls linearly with the input to 0, where the output reaches the limit. The part of
@@ -55,4 +55,4 @@ class Saturation(SensorFault):
         if knee > 0:
             over = np.maximum(np.abs(output) - (limit - knee), 0.0)
             output -= np.copysign(over**2 / (4 * knee), output)
-        return output, {"saturated": count}
+        return output, count

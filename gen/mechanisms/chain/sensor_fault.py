@@ -1,13 +1,11 @@
 """What a fault of the measuring chain is: a section of a recipe that changes a signal, and labels what it did."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from gen.mechanisms.mechanism import FloatArray, Mechanism
 
-Found = Mapping[str, float]
-"""Values of the labels of a fault that is in a record, by name."""
+Disturbed = tuple[FloatArray, *tuple[float, ...]]
+"""Signal with a fault, then the value of each of its labels."""
 
 
 class SensorFault(Mechanism):
@@ -23,6 +21,6 @@ class SensorFault(Mechanism):
         """
         return None
 
-    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> tuple[FloatArray, Found]:
-        """New signal with the fault, of the shape (channel, time) of ``signal`` [m s-2], and the values of its labels."""
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:
+        """New signal with the fault, of the shape (channel, time) of ``signal`` [m s-2], then the value of each of its labels."""
         raise NotImplementedError

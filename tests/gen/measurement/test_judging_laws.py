@@ -8,7 +8,7 @@ from scipy.signal import fftconvolve
 
 from gen.measurement import judging
 from gen.measurement.judging import FALSE_ALARM, bands_of, judges_of
-from gen.measurement.mixing import Parts, Products
+from gen.measurement.mixing import Parts
 
 FS, N, RATE, ORDER = 12_000, 6000, 30.0, 3.58
 ANGLES = 2 * np.pi * RATE * np.arange(N) / FS
@@ -29,7 +29,7 @@ def ringing(order, frequency=3000.0, angles=ANGLES):
 
 def parts(fault, healthy, rest, orders=(ORDER,), angles=ANGLES, *, steady=True, impulses=0.0):
     spectrum = impulses * np.abs(np.fft.rfft(IMPULSE)[None]) ** 2
-    return Parts(np.stack([rest, healthy, fault]), Products(*np.zeros(6)), spectrum, orders, angles, steady)
+    return Parts(np.stack([rest, healthy, fault]), (0.0,) * 6, spectrum, orders, angles, steady)
 
 
 def judged(fault, rest, orders=(ORDER,), angles=ANGLES, *, bearing=1.0, **keys):

@@ -6,13 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.measurement.levels import fault_over_rest, gains_of, rms_of
-from gen.measurement.mixing import Products
 
 
 def products_of(fault, healthy, noise):
-    return Products(*(float(np.mean(a * b)) for a, b in (
+    return tuple(float(np.mean(a * b)) for a, b in (
         (noise, noise), (healthy, noise), (healthy, healthy), (fault, noise), (fault, healthy), (fault, fault),
-    )))  # fmt: skip
+    ))  # fmt: skip
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(-20, 20), st.floats(0.1, 10), st.floats(0.01, 1), st.floats(0.1, 100))
@@ -29,7 +28,7 @@ def test_fault_and_record_have_their_drawn_levels_however_the_parts_are_correlat
 
 def test_a_fault_that_is_weaker_than_its_bearing_is_not_raised_above_it():
     """No gain lifts a fault above the healthy bearing that it belongs to."""
-    products = Products(nn=4.0, hn=0.0, hh=1.0, dn=0.0, dh=0.0, dd=0.01)
+    products = (4.0, 0.0, 1.0, 0.0, 0.0, 0.01)
     gains = gains_of(products, 3.0, 2.0)
     level, share = fault_over_rest(products, gains, 0.0)
     assert level == pytest.approx(
@@ -40,11 +39,11 @@ def test_a_fault_that_is_weaker_than_its_bearing_is_not_raised_above_it():
 
 
 def test_a_fault_that_adds_nothing_has_a_level_of_minus_infinity():
-    products = Products(nn=1.0, hn=0.0, hh=1.0, dn=0.0, dh=0.0, dd=0.0)
+    products = (1.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     assert fault_over_rest(products, gains_of(products, 3.0, 2.0), 0.0) == (-np.inf, 0.0)
 
 
 def test_a_fault_below_the_rounding_of_the_converter_is_measured_against_it():
-    products = Products(nn=0.0, hn=0.0, hh=0.0, dn=0.0, dh=0.0, dd=1.0)
+    products = (0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
     level, _ = fault_over_rest(products, (1e-3, 1e-3), 1e-2)
     assert level == pytest.approx(-20.0)
