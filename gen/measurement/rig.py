@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-from gen.mechanisms.background.harmonics import motion_of_harmonics
+from gen.mechanisms.background.lines import lines_of_machine
 from gen.mechanisms.background.noise import noise_factors
-from gen.mechanisms.background.tones import motion_of_tones
 from gen.mechanisms.path import modulation_by_shaft, transmissibility
 from gen.physics.kernel.decimate import pass_band
 from gen.recipe import Recipe
@@ -102,10 +101,7 @@ def rig_filters(scenario: Scenario) -> RigFilters:
         impulses = background.impulses.si()
         of_impulses = math.sqrt(3 * impulses["rate"] * axis.returned / fs) * decibel_to_ratio(impulses["level"]) ** 2
     directions = np.array([channel.si()["angle"] for channel in channels])
-    harmonics, motion = motion_of_harmonics(background.harmonics, directions, phases("phases of harmonics"))
-    frequencies, tones, tone_modulations, of_tones = motion_of_tones(
-        background.tones, directions, phases("phases of tones")
-    )
+    amplitudes, motion, frequencies, tone_modulations = lines_of_machine(background, directions, phases)
     direct = None if corner > 0 or any(path.modes for path in own) else [[path.si()["direct"]] for path in own]
     return RigFilters(
         n=n,
@@ -116,8 +112,8 @@ def rig_filters(scenario: Scenario) -> RigFilters:
         chain=chain,
         noise=noise_factors(background, frequency, np.abs(chain), n),
         modulations=_modulations(recipe, phases("phases of modulation")),
-        motion=np.concatenate([motion, of_tones], axis=1),
-        amplitudes=np.concatenate([harmonics, tones]),
+        motion=motion,
+        amplitudes=amplitudes,
         steps=2 * math.pi / fs * frequencies,
         tone_modulations=tone_modulations,
         impulse_paths=impulse_paths.astype(np.complex64),
@@ -129,14 +125,9 @@ def _modulations(recipe: Recipe, rng: np.random.Generator) -> ComplexArray:
     """Modulations of the noise and of the path of each channel, shape (1 + channel, 2); channels on the common path share one."""
     own = [channel.path for channel in recipe.recording.channels]
     of_noise, of_path, *of_own = rng.random((2 + len(own), 2))
-    rows = [modulation_by_shaft(recipe.background.modulation, of_noise)]
-    for path, turns in zip(own, of_own, strict=True):
-        rows.append(
-            modulation_by_shaft(recipe.path.modulation, of_path)
-            if path is None
-            else modulation_by_shaft(path.modulation, turns)
-        )
-    return np.array(rows)
+    modulated = [(path or recipe.path, turns if path else of_path) for path, turns in zip(own, of_own, strict=True)]
+    parts = [(recipe.background, of_noise), *modulated]
+    return np.array([modulation_by_shaft(part.modulation, turns) for part, turns in parts])
 
 
 def high_pass(corner: float, frequency: FloatArray) -> ComplexArray:

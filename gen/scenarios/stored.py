@@ -23,15 +23,12 @@ def scenario_texts(scenarios: Sequence[Scenario]) -> list[str]:
 
 
 def _section_texts(recipe: Recipe, texts: dict[int, str]) -> list[str]:
-    found = []
-    for key in type(recipe).model_fields:
-        value = getattr(recipe, key)
-        if value is None or key not in recipe.model_fields_set:
-            continue
-        if id(value) not in texts:
-            texts[id(value)] = json.dumps(plain(value))
-        found += [f'"{key}": {texts[id(value)]}'] if texts[id(value)] != "{}" else []
-    return found
+    sections = []
+    for key, value in recipe:
+        if value is not None and key in recipe.model_fields_set:
+            text = texts.get(id(value)) or texts.setdefault(id(value), json.dumps(plain(value)))
+            sections += [f'"{key}": {text}'] if text != "{}" else []
+    return sections
 
 
 def read_scenarios(records: "xr.Dataset") -> list[Scenario]:

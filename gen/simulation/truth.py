@@ -50,10 +50,6 @@ def _of_widest(value: Callable[[Scenario, Spall], float], without: float = 0.0) 
     return of_run
 
 
-def _of_order(name: str) -> Callable[[Run], float]:
-    return lambda run: getattr(run.motion.means[1], name)
-
-
 def _width_share(scenario: Scenario, spall: Spall) -> float:
     bearing = scenario.bearing
     circumference = 2 * math.pi * bearing.radius(spall.site)
@@ -85,12 +81,15 @@ LABELS = (
         _of_widest(lambda scenario, spall: largest_drop_over(scenario, scenario.spalls.index(spall)))),
     Variable("width_share", "f8", "1", "label", "width of the widest spall over that from ball to ball, or round a ball; 0 without",
         _of_widest(_width_share)),
-    Variable("true_ftf", "f8", "1", "latent", "mean fundamental train frequency in shaft orders, slip included", _of_order("ftf")),
-    Variable("true_bpfo", "f8", "1", "latent", "mean ball pass frequency of the outer race in shaft orders, slip included",
-        _of_order("bpfo")),
-    Variable("true_bpfi", "f8", "1", "latent", "mean ball pass frequency of the inner race in shaft orders, slip included",
-        _of_order("bpfi")),
-    Variable("true_bsf", "f8", "1", "latent", "mean ball spin frequency in shaft orders", _of_order("bsf")),
+    *(
+        Variable(f"true_{name}", "f8", "1", "latent", f"mean {meaning}", lambda run, name=name: getattr(run.motion.means[1], name))
+        for name, meaning in (
+            ("ftf", "fundamental train frequency in shaft orders, slip included"),
+            ("bpfo", "ball pass frequency of the outer race in shaft orders, slip included"),
+            ("bpfi", "ball pass frequency of the inner race in shaft orders, slip included"),
+            ("bsf", "ball spin frequency in shaft orders"),
+        )
+    ),
     Variable("operating_clearance", "f8", "m", "latent", "diametral clearance in operation: warm, oiled, under axial load",
         lambda run: 2 * run.given.machine.half_clearance),
     Variable("loaded_hits", "i4", "1", "latent", "expected number of passages of loaded balls over spalls, -1 if not known",

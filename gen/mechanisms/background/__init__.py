@@ -5,10 +5,8 @@ module             responsibility
 ================== ==========================================================
 source             what a source is
 noise              colour, resonances and coherence of the noise
-harmonics          lines at multiples of the shaft rate
-tones              lines at fixed frequencies
-impulses           impulses at random times
-knocks             impulses locked to the shaft
+lines              lines at multiples of the shaft rate and at fixed frequencies
+impulses           impulses at random times and locked to the shaft
 gear_mesh          multiples of a tooth mesh with sidebands of both gears
 machine_conditions lines and bursts of machines that are not well
 looseness          machines whose support lifts off the ground

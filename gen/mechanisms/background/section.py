@@ -3,14 +3,12 @@
 from typing import TYPE_CHECKING, Any
 
 from gen.mechanisms.background.gear_mesh import GearMesh
-from gen.mechanisms.background.harmonics import Harmonics
-from gen.mechanisms.background.impulses import Impulses
-from gen.mechanisms.background.knocks import Knocks
+from gen.mechanisms.background.impulses import Impulses, Knocks
+from gen.mechanisms.background.lines import Harmonics, Tones
 from gen.mechanisms.background.looseness import Looseness
 from gen.mechanisms.background.machine_conditions import MachineConditions
 from gen.mechanisms.background.noise import Noise
 from gen.mechanisms.background.source import BackgroundSource, LockedSource
-from gen.mechanisms.background.tones import Tones
 from gen.mechanisms.mechanism import section_with
 
 SOURCES: tuple[type[BackgroundSource], ...] = (Harmonics, Tones, Impulses, Knocks)

@@ -3,8 +3,7 @@
 =============== =====================================================================
 module          responsibility
 =============== =====================================================================
-filtering       filters that several faults use
-sensor_fault    what a fault of the measuring chain is
+sensor_fault    what a fault of the measuring chain is, and a filter that several use
 loose_mount     sensors that are not held firmly
 drift           baselines that move slowly
 mains_hum       hum of the power supply

@@ -6,8 +6,7 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.chain.filtering import recursive
-from gen.mechanisms.chain.sensor_fault import Disturbed, FloatArray, SensorFault
+from gen.mechanisms.chain.sensor_fault import Disturbed, FloatArray, SensorFault, recursive
 
 
 class Saturation(SensorFault):

@@ -1,6 +1,9 @@
 """What a fault of the measuring chain is: a section of a recipe that changes a signal, and labels what it did."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from gen.mechanisms.mechanism import FloatArray, Mechanism
 
@@ -24,3 +27,10 @@ class SensorFault(Mechanism):
     def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:
         """New signal with the fault, of the shape (channel, time) of ``signal`` [m s-2], then the value of each of its labels."""
         raise NotImplementedError
+
+
+def recursive(gain: float, pole: complex, signal: NDArray[Any]) -> NDArray[Any]:
+    """Filter of first order along time: ``gain`` times the signal plus ``pole`` times the output one sample before."""
+    from scipy.signal import lfilter  # loads for half a second, and few recipes need it
+
+    return lfilter([gain], [1.0, -pole], signal)
