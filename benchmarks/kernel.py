@@ -75,7 +75,7 @@ def kernel_rate(recipe: Path | str, records: int) -> Rate:
     checked = checked.model_copy(update={"truth": once})
     axis, scenarios = timeline(checked), draw_scenarios(checked, 0, records)
     work = laid_out(scenarios)
-    total = axis.integrated * sum(run.oversampling for run in runs_of(scenarios))
+    total = (axis.dropped + axis.returned) * sum(run.oversampling for run in runs_of(scenarios))
     integrate_every(work, axis)  # compiles the kernels, or loads them
     return _rate(total, lambda: integrate_every(work, axis))
 
@@ -118,7 +118,8 @@ def _rate(total: int, run: Callable[[], None]) -> Rate:
 def _c_rate(recipe: Path | str, records: int, folder: Path) -> Rate:
     """Function that measures the record-steps per second of the C program at the number of lanes at which it is fastest here."""
     checked = read_recipe(recipe)
-    groups, samples = seed_records(checked, records), timeline(checked).integrated
+    axis, groups = timeline(checked), seed_records(checked, records)
+    samples = axis.dropped + axis.returned
     dt, steps = step_seconds(recipe)
     total = samples * steps * sum(map(len, groups.values()))
     rates = {}

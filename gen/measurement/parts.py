@@ -38,8 +38,8 @@ def parts_of(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[Parts]:
         noises.append(_noise(scenario, rig, rng))
         others.append(_others(scenario, rig, turned, rng))
     # transforms run side by side
-    noises = irfft(np.stack(noises), n)
-    others = irfft(np.stack(others), n) if np.any(others) else np.zeros_like(noises)
+    noises, others = irfft(np.stack(noises), n), np.stack(others)
+    others = irfft(others, n) if others.any() else np.zeros_like(noises)
     parts = list[Parts]()
     for place, (run, rig, turned) in enumerate(zip(runs, rigs, angles, strict=True)):
         signals = np.concatenate([noises[place][None, :, : axis.returned], bearings[place][..., : axis.returned]])

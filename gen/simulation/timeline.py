@@ -41,11 +41,6 @@ class Timeline(NamedTuple):
         return self.lead + self.record
 
     @property
-    def integrated(self) -> int:
-        """Samples that the kernel integrates for a record."""
-        return self.dropped + self.returned
-
-    @property
     def knots(self) -> int:
         """Knots at which speed and load are needed: the filters of the kernel look some samples ahead."""
         return self.settle + self.record + LAG + 2
