@@ -18,7 +18,7 @@ from gen.scenarios.scenario import Scenario, sound
 from gen.support.errors import RecipeError
 from gen.support.units import UNITS, split_unit, to_si
 
-FloatArray = NDArray[np.float64]
+FloatArray = NDArray[np.floating]
 _TRIES = 1000
 _HISTORIES = ("first_length", "load", "speed", "temperature", "growth")
 
@@ -111,7 +111,8 @@ def _snapshot_ages(section: Any, entry: float, count: int, damaged: float) -> Fl
 
 def at_snapshot(scenario: Scenario, aged: Aged) -> Scenario:
     """A record as a snapshot of the life of its specimen."""
-    (sections, snapshot, load, speed, rise), operation = aged, scenario.recipe.operation
+    sections, snapshot, load, speed, rise = aged
+    operation: Any = scenario.recipe.operation
     changes = {"load_n": operation.load_n * load, "shaft_rpm": operation.shaft_rpm * speed}
     operation = _plus(operation.model_copy(update=changes), temperature_celsius=rise)
     origin = scenario.origin.model_copy(update={"life": snapshot})
