@@ -7,7 +7,7 @@ export OMP_NUM_THREADS ?= 1
 unexport PYTHONDONTWRITEBYTECODE # each process would compile every module again
 FLOORS := .venv-floors
 # the fast half: everything that needs no kernel of the full model
-FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/support/test_yaml_files_laws.py \
+FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/raceway/importing tests/gen/physics tests/gen/support/test_yaml_files_laws.py \
 	tests/features tests/raceway/test_commands.py --ignore=tests/gen/physics/kernel
 
 .PHONY: quickstart test tests lint generated reference docs paper bench thorough floors clean

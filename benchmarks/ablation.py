@@ -24,9 +24,9 @@ from benchmarks.realism import UESTC, UESTC_LABELLED
 from features import feature_table
 from features.baselines import DEFAULT_ESTIMATOR, Model, Scores
 from gen import generate
-from gen.importers import import_cwru, import_generic, import_mfpt
 from gen.recipe import find_recipe
 from gen.recipe.fault_entries import fault_entries
+from raceway.importing import import_cwru, import_generic, import_mfpt
 
 MECHANISMS = Path(__file__).with_suffix(".yaml")
 GROUPS = ("lines", "shape")

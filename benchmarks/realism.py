@@ -16,7 +16,7 @@ from pathlib import Path
 from features.realism import Comparison, compare
 from features.realism.measures import MEASURES
 from gen import generate
-from gen.importers import import_cwru, import_generic, import_mfpt
+from raceway.importing import import_cwru, import_generic, import_mfpt
 
 UESTC = Path(__file__).with_name("uestc.csv")
 """Labels of the recordings, with speeds as measured on the first three harmonics of the line of the fault."""

@@ -21,7 +21,7 @@ from features.signal.speed import ShaftSpeed
 from features.table.recording_speeds import recording_numbers
 from gen import generate
 from gen.corpus import FAULTS, SIGNAL, open_corpus
-from gen.importers import import_cwru, import_generic, import_mfpt
+from raceway.importing import import_cwru, import_generic, import_mfpt
 
 UESTC_ERROR_PERCENT = {
     "I_800": -2.9,

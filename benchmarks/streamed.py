@@ -27,7 +27,7 @@ from features.baselines.predictions import predictions
 from features.baselines.records import all_records
 from features.baselines.scores import Scores, score
 from features.table.files import read_table, write_table
-from gen.importers import import_cwru, import_generic
+from raceway.importing import import_cwru, import_generic
 
 RECIPE, SEEDS, UNSEEN = "domain_randomised", (20260, 20261), 20299
 WINDOWS = {3000: 4500, 6000: 3000, 12_000: 0}  # records: distance of the windows of two seeds in both streams

@@ -24,8 +24,8 @@ from features import feature_table
 from features.baselines import Model, Scores, cross_validate
 from gen import generate
 from gen.corpus import FAULTS
-from gen.importers import import_cwru, import_generic, import_mfpt
 from gen.recipe import read_recipe
+from raceway.importing import import_cwru, import_generic, import_mfpt
 from raceway.kept_models import LONG, lasting
 
 RECIPE = "domain_randomised"

@@ -5,7 +5,7 @@ from .generation.memory import record as record, records as records, simulate as
 from .generation.replaying import replay as replay
 from .generation.stream import stream as stream, torch_stream as torch_stream
 from .generation.writing import write_corpus as write_corpus
-from .importers.bearing_text import bearing_orders as bearing_orders
+from .physics.bearing_text import bearing_orders as bearing_orders
 from .recipe import make_recipe as make_recipe, read_recipe as read_recipe, write_recipe as write_recipe
 from .recipe.constructors import (
     ball as ball,

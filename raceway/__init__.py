@@ -2,15 +2,16 @@
 
 From Python, ``raceway.reference_model()`` is its model, and ``raceway.show_progress()`` shows the progress of a call.
 
-=========== =======================================================================
+=========== ========================================================================
 module      responsibility
-=========== =======================================================================
+=========== ========================================================================
 console     options, results, progress, errors
 kept_models models trained on a recipe and kept per user; the reference model is one
 pages       tables and picture of docs/features.md
+importing   a job: recordings of people in the format of corpora
 commands    one function per command
 cli         the group of all commands, and the entry point
-=========== =======================================================================
+=========== ========================================================================
 """
 
 import lazy_loader

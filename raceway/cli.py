@@ -20,7 +20,6 @@ from raceway.commands import (
     doctor,
     exploring,
     feature_tables,
-    importing,
     lives,
     models,
     plotting,
@@ -28,13 +27,14 @@ from raceway.commands import (
 )
 from raceway.console.ending import BAD_INPUT, NoReader, exit_code
 from raceway.console.signals import listen_for_signals
+from raceway.importing import import_commands
 
 GROUPS: Mapping[str, tuple[click.Command, ...]] = {
     "Make corpora": (
         corpora.recipes,
         corpora.plan,
         corpora.generate,
-        importing.import_,
+        import_commands.import_,
         copying.copy,
         publishing.card,
     ),

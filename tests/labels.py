@@ -4,7 +4,7 @@ import csv
 
 from ruamel.yaml import YAML
 
-from gen.importers import import_generic
+from raceway.importing import import_generic
 
 
 def write_labels(folder, rows, *, mark=",", name="labels.csv", **common):

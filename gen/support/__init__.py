@@ -1,8 +1,8 @@
 """What all stages use: errors, limits, units, YAML, progress, and the executor that runs independent work.
 
-============== ==================================================================
+============== =============================================================================
 module         responsibility
-============== ==================================================================
+============== =============================================================================
 errors         one exception class per stage; each carries one sentence
 garbage        cheaper making of many objects
 sources        hash of source files
@@ -12,9 +12,10 @@ shown          what an object shows in print and in a notebook
 limits         how much a file from elsewhere may ask for
 units          units of recipes and labels, turned into SI
 yaml_files     recipes and common keys of labels, read within the limits
+key_types      types of keys that people write about their recordings
 sentences      an error sentence for each wrong key or value of these files
 executor       a function of many items: in this process, or by dask
 cluster        clients of dask: of processes of this machine, or of a scheduler
 copied_workers dask workers of this machine, copies of one process that loaded the libraries
-============== ==================================================================
+============== =============================================================================
 """

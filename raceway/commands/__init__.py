@@ -1,10 +1,9 @@
 """The commands: each reads its options, calls ``gen``, ``features`` or a study, and shows the result.
 
-================ ================================================================
+================ ===============================================================
 module           responsibility
-================ ================================================================
+================ ===============================================================
 corpora          commands that make corpora and look at them
-importing        commands that convert real recordings into the format
 copying          corpora copied, cut, joined, and in the forms of other programs
 plotting         a picture of one record or recording
 exploring        a page to browse a corpus
@@ -14,13 +13,12 @@ references       healthy records that the tested ones are compared with
 diagnosing       a diagnosis of a recording, or of each in a folder
 diagnosis_output facts of a diagnosis for programs and for its page
 diagnosis_tables diagnoses of a folder: table, index page and CSV file
-recordings       options and files of recordings of the user
 benchmarking     scores of all baselines
 lives            pictures of lives, scores of estimates of remaining life
 comparing        synthetic records against real ones
 publishing       the data card with terms of use, pictures and scores
 doctor           installed versions, and the speed of this machine
-================ ================================================================
+================ ===============================================================
 
 Heavy libraries are imported inside the commands, so that help and version are printed at once. A command that takes a recipe looks for
 its file before it imports the simulator, so that a misspelt name is reported at once.

@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.commands.diagnosis_tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
-from raceway.commands.recordings import (
+from raceway.console import show
+from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, model_option
+from raceway.console.progress import notice, notice_compilation
+from raceway.importing.reading import (
     Reading,
     read_as_stated,
     read_recording,
@@ -18,9 +21,6 @@ from raceway.commands.recordings import (
     rpm_option,
     set_aside,
 )
-from raceway.console import show
-from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, model_option
-from raceway.console.progress import notice, notice_compilation
 
 if TYPE_CHECKING:
     from features.diagnosis import Diagnosis, Given, Recorded
@@ -186,7 +186,7 @@ def _doubts(speeds: tuple[float, float] | None) -> tuple[str, ...]:
 
 def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dict[str, "Bearing"]:
     """Bearings by name: those that are given, or the catalogue."""
-    from gen.importers.bearing_text import bearing_from_text
+    from gen.physics.bearing_text import bearing_from_text
     from gen.physics.catalogue import CATALOGUE
 
     if not texts:

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from raceway.commands.recordings import Reading, read_recording, reading_options, rpm_option
 from raceway.console import show
 from raceway.console.options import A_PATH, Analysis, band_option, file_option
 from raceway.console.progress import notice
+from raceway.importing.reading import Reading, read_recording, reading_options, rpm_option
 
 if TYPE_CHECKING:
     from features.report.pictures import DrawnRecord

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.commands.feature_tables import table_of
-from raceway.commands.recordings import MARKS, mark_of
 from raceway.console.options import A_PATH, Analysis, Decorator, Team
 from raceway.console.progress import notice
+from raceway.importing.reading import MARKS, mark_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,8 +85,8 @@ def reference_table(
     ``reading`` has the values of the options that say how a recording is read; its speed is believed.
     """
     from features.baselines.reference_choice import check_durations, recording_reference
-    from gen.importers.signals import Place, read_shape
     from gen.support.units import rpm_to_hertz
+    from raceway.importing.signals import Place, read_shape
 
     if path.is_file():
         place = Place(*(reading[f"reference_{key}"] for key in Place._fields))

@@ -11,7 +11,7 @@ from scipy.io import savemat
 
 import features
 from features.signal import velocity_rms
-from gen.importers.bearing_text import bearing_orders
+from gen.physics.bearing_text import bearing_orders
 from gen.support.errors import CorpusError
 from tests.diagnoses import FS, call, told, write_csv, write_wav
 from tests.pulses import impulses_beside_a_shaft

@@ -13,8 +13,8 @@ from features.table.recording_speeds import SPEEDS
 from gen.support.errors import CorpusError
 from gen.support.executor import cores
 from raceway.commands import plotting
-from raceway.commands.recordings import _speeds
 from raceway.console.options import names, speed_option
+from raceway.importing.reading import _speeds
 from tests.command_tree import COMMANDS
 
 
@@ -122,7 +122,7 @@ def test_features_pass_on_one_channel_or_several(run, given, tiny_corpus):
 
 @pytest.mark.parametrize("name", ["cwru", "mfpt", "generic"])
 def test_import_passes_on_the_length_of_a_record(run, given, tmp_path, name):
-    options = given(f"gen.importers.import_{name}")
+    options = given(f"raceway.importing.import_{name}")
     line = ("import", name, tmp_path, "-o", tmp_path / "new")
     assert run(*line, "--window", 0.25).exit_code == 2
     assert options["window"] == 0.25
@@ -131,7 +131,7 @@ def test_import_passes_on_the_length_of_a_record(run, given, tmp_path, name):
 
 
 def test_import_passes_on_the_subset(run, given, tmp_path):
-    options = given("gen.importers.import_cwru")
+    options = given("raceway.importing.import_cwru")
     run("import", "cwru", tmp_path, "-o", tmp_path / "new", "--subset", "wang")
     assert options["subset"] == "wang"
     run("import", "cwru", tmp_path, "-o", tmp_path / "new")

@@ -22,7 +22,7 @@ from gen.corpus import (
     write_croissant,
 )
 from gen.generation.corpus import generate
-from gen.importers import import_generic
+from raceway.importing import import_generic
 from tests.labels import write_labels
 
 FACTS = {

@@ -13,8 +13,8 @@ from features.table.corpora import feature_table
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
 from gen.corpus.fault_classes import COMBS
-from gen.importers import import_cwru, import_mfpt
 from gen.support.errors import CorpusError
+from raceway.importing import import_cwru, import_mfpt
 from tests.paths import REAL
 
 

@@ -5,10 +5,10 @@ import pytest
 
 from gen.corpus import SignalCounts, read_manifest
 from gen.generation.corpus import generate
-from gen.importers.assemble import Collection, import_recordings
-from gen.importers.recordings import Candidate, Recording
 from gen.physics.catalogue import CATALOGUE
 from raceway.console.summary import describe
+from raceway.importing.assemble import Collection, import_recordings
+from raceway.importing.recordings import Candidate, Recording
 
 # of three machines the second exceeds the range of the converter by far
 ONE_LOUD_RIG = {"level": {"kind": "physical", "gain": "grid(1, 1000, 1)"}}

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from gen.importers.label_tables import keys_of_yaml
 from gen.recipe import read_recipe
 from gen.support.errors import CorpusError, RecipeError
 from gen.support.limits import VARIABLE
 from gen.support.yaml_files import read_yaml
+from raceway.importing.label_tables import keys_of_yaml
 
 LAYERS = range(1, 12)
 LAUGHS = [

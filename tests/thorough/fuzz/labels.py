@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from gen.importers.label_tables import read_table_of_labels
 from gen.physics.bearing import orders
 from gen.support.errors import RacewayError
+from raceway.importing.label_tables import read_table_of_labels
 from tests.thorough.fuzz import recipes
 
 SEEDS = {

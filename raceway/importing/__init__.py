@@ -1,0 +1,39 @@
+"""Importers: recordings of real machines, converted into the corpus format.
+
+=============== =========================================================
+module          responsibility
+=============== =========================================================
+cwru            Case Western Reserve University set, drive end, 12 kHz
+mfpt            MFPT fault data set of Bechhoefer
+femto           PRONOSTIA, run to failure, of the IEEE PHM 2012 challenge
+generic         recordings of the user, described by a table of labels
+label_tables    tables of labels, and the keys that all rows share
+labels          keys of one file of recordings
+label_values    types of the values of keys
+assumptions     sentences on what labels and units rest on
+resampling      recordings brought to another sample rate
+signals         one recording of the user, in m/s^2
+conversion      from the unit of a file to m/s^2
+matlab          one variable of a MATLAB file
+text            tables in text: encoding, mark between columns, fields
+sheets          tables in Excel files
+table           header, rows and notes of a table, whatever file it is in
+header          names, units and sample rate in the header of a table
+numerals        forms of numbers, and the one that suits a column
+axes            columns that hold the axes of one sensor
+columns         choice of a column, and the sample rate that times tell
+files           NumPy and WAV files; errors of libraries as sentences
+recordings      recordings, their checks, their division into records
+assemble        recordings written as a corpus
+reading         options and files of recordings of the user, for commands
+import_commands commands that convert recordings
+=============== =========================================================
+
+An importer lists its files with a function that reads each (:class:`~raceway.importing.recordings.Candidate`); ``assemble`` reads them one
+after the other. A file that cannot be used is skipped as a whole, with a sentence.
+"""
+
+import lazy_loader
+
+# a single recording needs neither dask nor the corpus format
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

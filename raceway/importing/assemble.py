@@ -1,0 +1,174 @@
+"""Write the recordings of a set as a corpus; a failed import leaves nothing behind.
+
+Files are read one after the other, and their records are written part by part.
+"""
+
+import hashlib
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.corpus import NewCorpus, Publication, Variable, check_new, identity, make_dataset, new_corpus
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
+from gen.support.progress import Progress, counter
+from raceway.importing.files import UnusableError
+from raceway.importing.recordings import Candidate, Record, cut, read_recording
+
+_PART_RECORDS = 256
+_PART_BYTES = 64_000_000
+
+
+class Collection(NamedTuple):
+    """Facts that all recordings of a set share.
+
+    ``origin`` is their owner and licence; ``facts`` are sentences on what labels and units rest on.
+    """
+
+    importer: str
+    title: str
+    origin: str
+    fs: float
+    channels: tuple[str, ...]
+    facts: tuple[str, ...] = ()
+    extra: tuple[Variable, ...] = ()
+
+
+class Import(NamedTuple):
+    """The new corpus, its counts, and a sentence for each skipped file, each assumption and each change of a signal."""
+
+    path: Path
+    recordings: int
+    records: int
+    skipped: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+class _Log(NamedTuple):
+    """Counts of recordings and records by fault, and sentences, collected while files are read."""
+
+    recordings: Counter[str]
+    records: Counter[str]
+    skipped: list[str]
+    warnings: list[str]
+
+
+def import_recordings(
+    collection: Collection,
+    candidates: Sequence[Candidate],
+    output: Path,
+    *,
+    window: float,
+    skipped: Sequence[str] = (),
+    warnings: Sequence[str] = (),
+    progress: Progress | None = None,
+) -> Import:
+    """Write a corpus of all usable candidates.
+
+    Parameters
+    ----------
+    collection : Collection
+        Facts that all recordings share.
+    candidates : sequence of Candidate
+        The files; a file that cannot be used is skipped with a sentence.
+    output : Path
+        New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
+    window : float
+        Length of a record [s].
+    skipped, warnings : sequence of str
+        Sentences that the lists of the result begin with.
+    progress : callable, optional
+        Called with the number of files done and the number of all.
+
+    Raises
+    ------
+    CorpusError
+        If the output exists, the window is shorter than two samples, no file can be used, or writing fails.
+    """
+    output = output.absolute()
+    check_new(output)
+    samples = window * collection.fs
+    length = round(samples) if math.isfinite(samples) else 0
+    if length < 2:
+        message = (
+            f"window: {window} s is shorter than two samples; give the length of a record in seconds, such as 0.5."
+        )
+        raise CorpusError(message)
+    check_limit("record_samples", length * len(collection.channels), f"window: {window:g} s are", CorpusError)
+    log = _Log(Counter(), Counter(), list(skipped), list(warnings))
+    with new_corpus(
+        output,
+        title=collection.title,
+        publication=Publication().dated(),
+        importer=collection.importer,
+        basis=collection.facts,
+    ) as corpus:
+        _write_parts(_records(candidates, collection, length, log, progress), collection, candidates, corpus)
+        if not corpus.rows:
+            raise CorpusError(_nothing_usable(collection.importer, log.skipped))
+        recordings, left_out, changes = log.recordings.total(), tuple(log.skipped), tuple(log.warnings)
+        corpus.facts |= {"recordings": recordings, "skipped": left_out, "warnings": changes}
+    return Import(output, recordings, log.records.total(), left_out, changes)
+
+
+def _records(
+    candidates: Sequence[Candidate], collection: Collection, length: int, log: _Log, progress: Progress | None
+) -> Iterator[Record]:
+    done = counter(progress, len(candidates))
+    for candidate in candidates:
+        try:
+            recording = read_recording(candidate, length, collection.fs, collection.channels)
+        except UnusableError as reason:
+            log.skipped.append(f"{candidate.source}: {reason}; skipped.")
+        else:
+            records = cut(recording, candidate.source, length, collection.fs)
+            log.recordings[recording.fault] += 1
+            log.records[recording.fault] += len(records)
+            log.warnings.extend(f"{candidate.source}: {warning}." for warning in recording.warnings)
+            yield from records
+        done(1)
+
+
+def _corpus_identity(importer: str, candidates: Sequence[Candidate], first: NDArray[np.float32]) -> str:
+    """First 12 digits of the SHA-256 of the importer, the names of all files and the first record: another set has another identity."""
+    digest = hashlib.sha256(first.tobytes())
+    for text in (importer, *(candidate.source for candidate in candidates)):
+        digest.update(f"{text}\n".encode())
+    return digest.hexdigest()[:12]
+
+
+def _write_parts(
+    records: Iterator[Record], collection: Collection, candidates: Sequence[Candidate], corpus: NewCorpus
+) -> None:
+    own = None
+    for signal, known in records:
+        own = own or _corpus_identity(collection.importer, candidates, signal)
+        size = max(1, min(_PART_RECORDS, _PART_BYTES // signal.nbytes))
+        batch = [(signal, known), *islice(records, size - 1)]
+        columns = {name: [values[name] for _, values in batch] for name in known}
+        numbers = zip(columns["rig"], columns["specimen"], columns["recording"], strict=True)
+        dataset = make_dataset(
+            np.stack([one for one, _ in batch]),
+            collection.fs,
+            collection.channels,
+            columns | {"identity": [identity(own, *some) for some in numbers]},
+            extra=collection.extra,
+            attributes={
+                "title": collection.title,
+                "source": collection.origin,
+                "history": f"cut from recordings by raceway import {collection.importer}",
+            },
+        )
+        corpus.write(dataset)
+
+
+def _nothing_usable(importer: str, skipped: list[str]) -> str:
+    if not skipped:
+        return f"import {importer}: no recording of the set was found; give the folder that holds them."
+    return f"import {importer}: no recording can be used; the first of {len(skipped)} skipped: {skipped[0]}"

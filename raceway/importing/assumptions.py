@@ -1,0 +1,52 @@
+"""Sentences on what the labels and units of an imported corpus rest on, for its data card.
+
+A corpus is only as right as its labels: a false unit or class shows in no number. So the card says where each fact comes from.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from gen.physics.bearing import orders
+from gen.physics.catalogue import CATALOGUE
+from gen.support.units import from_si
+from raceway.importing.labels import Labels
+
+_TOPICS = {"fault": "Class", "specimen": "Specimen", "shaft_rpm": "Shaft speed (rpm)", "load_n": "Load (N)"}
+_MOST_PATHS = 3  # shown of the files that a sentence holds for
+
+
+def assumptions(files: Sequence[Labels], fs: float) -> tuple[str, ...]:
+    """One sentence for each fact and its source; for each unit and bearing, with its files if not all have it."""
+    told = [f"{topic}: {_source(files, key)}" for key, topic in _TOPICS.items()]
+    rate = _source(files, "sample_rate_hz")
+    told.append(f"Sample rate: {rate if rate != 'not known' else 'stated in the files'}, stored at {fs:g} Hz")
+    paths_of: dict[str, list[str]] = {}
+    for labels in files:
+        for sentence in _of_file(labels):
+            paths_of.setdefault(sentence, []).append(labels.path)
+    for sentence, paths in paths_of.items():
+        more = f" and {len(paths) - _MOST_PATHS} more" if len(paths) > _MOST_PATHS else ""
+        some = "" if len(paths) == len(files) else f" ({', '.join(paths[:_MOST_PATHS])}{more})"
+        told.append(sentence + some)
+    return tuple(f"{sentence}." for sentence in sorted(told, key=lambda sentence: sentence.partition(":")[0]))
+
+
+def _of_file(labels: Labels) -> Iterator[str]:
+    for sensor in labels.sensors:
+        yield f"Unit{f' of channel {sensor.name}' if labels.channels else ''}: {sensor.scale}"
+    bearing = labels.bearing
+    source = "from the catalogue" if bearing in CATALOGUE.values() else "as given"
+    bpfo, bpfi, bsf = (getattr(orders(bearing), name) for name in ("bpfo", "bpfi", "bsf"))
+    yield (
+        f"Bearing: {bearing.designation}, geometry {source}: {bearing.n_balls} balls of "
+        f"{from_si(bearing.ball_diameter, 'mm'):g} mm on {from_si(bearing.pitch_diameter, 'mm'):g} mm; BPFO {bpfo:.4g}, BPFI {bpfi:.4g}, "
+        f"2 BSF {2 * bsf:.4g} orders"
+    )
+
+
+def _source(files: Sequence[Labels], key: str) -> str:
+    """Where a fact comes from, in words."""
+    values = {getattr(labels, key) for labels in files}
+    if len(values) > 1:
+        return "given for each file"
+    (value,) = values
+    return "not known" if value is None else f"given as {f'{value:.10g}' if isinstance(value, float) else value}"

@@ -1,0 +1,224 @@
+"""Choice of a column in a table, and the sample rate that a column of times tells."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from raceway.importing.axes import axes_of
+from raceway.importing.conversion import Unit
+from raceway.importing.files import ContradictionError, FloatArray, NoneChosenError, UnusableError
+from raceway.importing.header import SECONDS, Header, key_of, known_unit
+
+SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
+_SAME_RATE = 0.01  # relative
+_COARSE = 1e-3  # of the rate, relative
+_JITTER = 0.05  # of a step
+_FEW = 0.01  # of the steps
+_MOST_NAMED = 12
+_MOST_COLUMNS, LEAST_LENGTH = 64, 8  # of a table without names, whose longer axis is time
+
+
+class Values(NamedTuple):
+    """Values of a signal in the unit of its file, shape (time,), with what the file states of them.
+
+    ``rates`` are sample rates [Hz] and where they are stated, ``playback`` one in whose place another can be given; ``unit`` is as the
+    file writes it, and ``named`` tells where; ``absolute`` is False for shares of the full scale of a converter; ``notes`` are sentences
+    without their end.
+    """
+
+    values: FloatArray
+    rates: tuple[tuple[float, str], ...] = ()
+    playback: float | None = None
+    unit: str = ""
+    named: str = ""
+    absolute: bool = True
+    notes: tuple[str, ...] = ()
+
+    def rate(self, given: float | None, key: str) -> tuple[float | None, list[str]]:
+        """Sample rate to be used, or None; and a sentence without its end if another one is stated.
+
+        Raises
+        ------
+        UnusableError
+            If statements contradict each other or what is given, or the rate is beyond 500 Hz to 1 MHz and is not given.
+        """
+        stated = self.rates or (() if self.playback is None else ((self.playback, "header"),))
+        told = " and ".join(f"{rate:g} Hz by its {source}" for rate, source in stated)
+        fitting = [rate for rate, _ in stated if given is not None and math.isclose(given, rate, rel_tol=_SAME_RATE)]
+        if given is not None:
+            if fitting or not stated:
+                return given, []
+            if self.playback is None and any(SLOWEST <= rate <= FASTEST for rate, _ in stated):
+                message = f"is at {told}, and {given:g} Hz are given; correct what is given"
+                raise ContradictionError(message, "rate", key)
+            return given, [f"is at {told}; the given {given:g} Hz are used"]
+        if not stated:
+            return None, []
+        rates = [rate for rate, _ in stated]
+        if max(rates) > (1 + _SAME_RATE) * min(rates) or not SLOWEST <= rates[0] <= FASTEST:
+            beyond = "" if SLOWEST <= min(rates) <= max(rates) <= FASTEST else f", beyond {SLOWEST:g} Hz to 1 MHz"
+            message = f"is at {told}{beyond}; give the sample rate"
+            raise UnusableError(message, key)
+        return rates[0], []
+
+    def stated_unit(self, given: Unit | None) -> tuple[Unit, list[str]]:
+        """Unit to be used, and a sentence without its end if none or another one is stated.
+
+        Raises
+        ------
+        UnusableError
+            If the file states another known unit than the given one, or a unit that is not known and none is given.
+        """
+        known = known_unit(self.unit)
+        if given is None and self.unit and known is None:
+            message = f"states {self.named} in its header, which is no unit that is read; give the unit of the values"
+            raise UnusableError(message, "unit")
+        if given is not None and known not in (None, given):
+            message = f"states {self.named} in its header, and the unit {given} is given; correct what is given"
+            raise ContradictionError(message, "unit", "unit")
+        if given is not None:
+            said = self.unit and known is None
+            return given, [f"states {self.named} in its header; the given unit {given} is used"] if said else []
+        if known is not None:
+            return known, []
+        return "m/s2", ["it states no unit, and m/s2 is assumed"] if self.absolute else []
+
+
+def columns_to_load(header: Header, column: int | str | None, numeric: Sequence[int], even: Sequence[int]) -> list[int]:
+    """Columns that may hold the signal or times.
+
+    ``numeric`` columns hold numbers, which in ``even`` ones rise evenly at first, as times and counters do.
+
+    Raises
+    ------
+    UnusableError
+        If there is no such column, or several and none is chosen.
+    """
+    if column is None:
+        signals = [n for n in numeric if n not in even and not header.is_of_time(n)]
+        if len(signals) > 1:
+            raise _none_chosen(header, numeric, signals)
+        return [*numeric]
+    places = header.places(column)
+    if len(places) > 1:
+        message = f"has several columns {column} ({_listed(header, places)}); choose one by its number"
+        raise UnusableError(message, "column")
+    if not places or places[0] not in numeric:
+        message = f"has the columns {_listed(header, numeric)}, and no numbers in {column}; choose one"
+        raise UnusableError(message, "column")
+    return [places[0], *(n for n in numeric if n != places[0] and (n in even or header.is_of_time(n)))]
+
+
+def signal_of(header: Header, column: int | str | None, loaded: Mapping[int, FloatArray]) -> Values:
+    """Values of the chosen column, the first of those that are loaded, or of the only one that holds no times.
+
+    Raises
+    ------
+    UnusableError
+        If there is none or several, or if times are not evenly spaced, or frequencies.
+    """
+    times = [n for n, values in loaded.items() if is_even(values) or header.is_of_time(n)]
+    signals = [n for n in loaded if n not in times] if column is None else [*loaded][:1]
+    if len(signals) > 1:
+        raise _none_chosen(header, [*loaded], signals)
+    if not signals or signals[0] in times:
+        message = f"has times or a counter in column {_listed(header, signals or times)}, and no signal; choose another"
+        raise UnusableError(message, "column")
+    rates = [(rate, "header") for rate in header.rates]
+    for place in times:
+        name = header.name(place)
+        if header.is_of_spectrum(place):
+            raise UnusableError(f"has frequencies in column {name}; export the waveform, not its spectrum")
+        if not is_even(loaded[place]):
+            raise UnusableError(f"has times in column {name} that are not evenly spaced; export it at one sample rate")
+        unit = SECONDS.get(key_of(header.unit_of(place)))
+        rate = unit and _rate_of(loaded[place] * unit)
+        rates += [(rate, f"times in column {name}")] if rate else []
+    own = header.unit_of(signals[0])
+    named = f"column {header.name(signals[0])}" if own else header.unit
+    return Values(loaded[signals[0]], tuple(rates), unit=own or header.unit, named=named)
+
+
+def _none_chosen(header: Header, columns: Sequence[int], signals: Sequence[int]) -> NoneChosenError:
+    message = f"has {len(columns)} columns ({_listed(header, columns)}) and none is chosen; choose one"
+    return NoneChosenError(message, "column", tuple(map(header.key, axes_of(header, signals))))
+
+
+def table_signal(table: NDArray[Any], column: int | str | None) -> Values:
+    """Signal in a table without names, whose longer axis is time."""
+    columns = as_columns(table)
+    places = columns_to_load(Header(), column, range(len(columns)), range(len(columns)))
+    return signal_of(Header(), column, {n: columns[n].astype(np.float64, copy=False) for n in places})
+
+
+def as_columns(values: NDArray[Any]) -> NDArray[Any]:
+    """Table with its longer axis last.
+
+    Raises
+    ------
+    UnusableError
+        If the values are not real numbers, or not a table of which one axis is plainly that of time.
+    """
+    shorter, longer = (1, values.size) if values.ndim == 1 else sorted(values.shape) if values.ndim == 2 else (0, 0)
+    plain = shorter == 1 or (0 < shorter <= _MOST_COLUMNS and longer >= LEAST_LENGTH * shorter)
+    if values.dtype.kind not in "iuf" or values.size == 0 or not plain:
+        message = f"holds {values.dtype} of shape {values.shape}, not one column of real numbers, or a few long ones"
+        raise UnusableError(message)
+    columns = np.atleast_2d(values)
+    return columns.T if columns.shape[0] > columns.shape[1] else columns
+
+
+def is_even(values: FloatArray) -> bool:
+    """Whether values rise by a constant step within their rounding, as times and counters do.
+
+    >>> is_even(np.round(np.arange(1000) / 12800, 4)), is_even(np.array([0.0, 0.1, 0.3, 0.4, 0.5]))
+    (True, False)
+    """
+    steps = np.diff(values)
+    if values.size < 3 or not values[-1] > values[0] or not np.all(steps >= 0):  # NaN fails the comparison
+        return False
+    usual = float(np.median(steps))
+    odd = np.count_nonzero(np.abs(steps - usual) > 0.1 * usual) if usual else 0
+    if 0 < odd < max(_FEW * steps.size, 3):  # a gap; where times are rounded, more steps are longer
+        return False
+    line = np.linspace(values[0], values[-1], values.size)
+    return float(np.abs(values - line).max()) <= max(_resolution(values), _JITTER * (line[1] - line[0]))
+
+
+def _resolution(values: FloatArray) -> float:
+    """Place of the last decimal of the last values, or of the bits of a floating-point number.
+
+    >>> _resolution(np.array([0.1, 0.23, 0.35])), _resolution(np.arange(9.0) / 7) < 1e-14
+    (0.01, True)
+    """
+    last = values[-max(values.size // 10, 2) :] - values[0]
+    bits = 4 * float(np.spacing(np.abs(values).max()))
+    units = (10.0**-place for place in range(-2, 12) if 10.0**-place <= last.max())
+    close = (unit for unit in units if np.all(np.abs(last - unit * np.round(last / unit)) < max(1e-3 * unit, bits)))
+    return next(close, bits)
+
+
+def _rate_of(times: FloatArray) -> float | None:
+    """Sample rate [Hz] of even times [s], with as few digits as their rounding allows; None if they are too coarse.
+
+    >>> _rate_of(np.round(np.arange(1000) / 12800, 6)), _rate_of(np.arange(1000) / 97656.25)
+    (12800.0, 97656.25)
+    """
+    span, steps = float(times[-1] - times[0]), np.diff(times)
+    rate, doubt = (times.size - 1) / span, _resolution(times) / span
+    if np.ptp(steps) <= 1e-6 * steps[0]:
+        doubt = 1e-9
+    elif doubt > _COARSE:
+        return None
+    shorter = (float(f"{rate:.{digits}g}") for digits in range(2, 12))
+    return next((one for one in shorter if math.isclose(one, rate, rel_tol=doubt)), rate)
+
+
+def _listed(header: Header, columns: Sequence[int]) -> str:
+    """Numbers and names of columns."""
+    shown = [header.name(n)[:60] for n in columns[:_MOST_NAMED]]
+    more = len(columns) - len(shown)
+    return ", ".join(shown) + (f" and {more} more" if more else "")

@@ -1,0 +1,160 @@
+"""Tables of labels as spreadsheets save them: one row for each file of recordings.
+
+``table -> rows of texts -> numbers in one form -> with the keys of all rows -> labels``
+
+Keys that all rows share are in the YAML file of the same name beside the table, or are given by the caller.
+"""
+
+import csv
+import re
+from collections.abc import Mapping, Sequence
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit, limit
+from gen.support.sentences import sentences
+from gen.support.units import unit_suffix
+from gen.support.yaml_files import parse_yaml, read_yaml
+from raceway.importing.files import UnusableError, guarded, reason_of
+from raceway.importing.labels import Labels
+from raceway.importing.numerals import Form, is_number, number_in, numbers_in, readings
+from raceway.importing.text import encoding_of, lines_of
+
+_TABLES = (".csv", ".txt", ".tsv")
+_MARKS = "\t;,"
+_NUMBERS = {key for key in Labels.model_fields if unit_suffix(key) or key == "n_spalls"}
+_ALIKE = ("title", "origin", "resample_hz", "channel_names")
+_MOST_SENTENCES = 20
+
+
+_Row = tuple[str, Mapping[str, Any]]
+"""Place of a file in the table, and its keys."""
+
+
+def read_table_of_labels(path: Path, common: Mapping[str, Any]) -> list[tuple[str, Labels]]:
+    """Place and labels of each file that a table names, in its order.
+
+    ``common`` has keys of all rows, with values or texts as in cells. They go before those of the YAML file, and keys of a row before both.
+
+    Raises
+    ------
+    CorpusError
+        If the file is no table, or has wrong keys or values; one sentence for each, with row and column.
+    """
+    if path.suffix.lower() not in _TABLES:
+        raise CorpusError(
+            f"{path}: is no table of labels; save one as CSV, such as labels.csv, with a row for each file."
+        )
+    (first, names), *lines = _lines(path)
+    texts: list[_Row] = []
+    for number, cells in lines:
+        place, named = f"{path}, row {number}", [*names, *[""] * len(cells)]
+        lost = next((cell for name, cell in zip(named, cells, strict=False) if cell and not name), None)
+        if lost is not None:
+            message = f"{place}: {lost!r:.60} is in a column without a key in row {first}; give the key, or quote a text with commas."
+            raise CorpusError(message)
+        texts.append((place, {name: cell for name, cell in zip(named, cells, strict=False) if cell}))
+    numbers = [f"{text}\n" for _, keys in texts for key, text in keys.items() if key in _NUMBERS and is_number(text)]
+    form, *others = readings(numbers) or [None]
+    form = None if others else form
+    rows = [
+        (place, {key: _value(f"{place}, column {key}", key, text, form) for key, text in keys.items()})
+        for place, keys in texts
+    ]
+    beside = path.with_suffix(".yaml")
+    return _labels_of(rows, keys_of_yaml(beside) if beside.is_file() else {}, common, beside)
+
+
+def _labels_of(
+    rows: Sequence[_Row], shared: Mapping[str, Any], common: Mapping[str, Any], beside: Path
+) -> list[tuple[str, Labels]]:
+    """Place and labels of each row; ``shared`` keys are from the file ``beside``. A flaw of several rows is told of the first one."""
+    given = {key: _parsed(f"common key {key}", key, value) for key, value in common.items()}
+    found: list[tuple[str, Labels]] = []
+    problems: dict[str, str] = {}
+    for place, own in rows:
+        keys = {key: value for key, value in {**shared, **given, **own}.items() if value is not None}
+        try:
+            found.append((place, Labels.model_validate(keys)))
+        except ValidationError as error:
+            for sentence in sentences(error, Labels):
+                key = re.split(r"\W", sentence)[0]
+                start = place + (", column " if key in {*keys, *Labels.model_fields} else ": ")
+                if key in keys and key not in own:
+                    start = "common key " if key in given else f"{beside}: "
+                told = sentence.replace("; give it.", f"; give it there, or for all files in {beside.name}.")
+                problems.setdefault(told, start)
+    if problems:
+        raise CorpusError("\n".join(f"{start}{told}" for told, start in islice(problems.items(), _MOST_SENTENCES)))
+    for key in _ALIKE:
+        _check_alike(key, [(place, getattr(labels, key)) for place, labels in found], "give all files the same")
+    rates = [(place, labels.sample_rate_hz) for place, labels in found if labels.sample_rate_hz]
+    if found[0][1].resample_hz is None:
+        _check_alike("sample_rate_hz", rates, "give resample_hz")
+    return found
+
+
+def _check_alike(key: str, values: Sequence[tuple[str, Any]], advice: str) -> None:
+    for place, value in values:
+        if value != values[0][1]:
+            there, first = values[0]
+            raise CorpusError(
+                f"{place}: has {key} {value}, and {there} has {first}; {advice}, or make a corpus of each."
+            )
+
+
+def keys_of_yaml(path: Path) -> dict[str, Any]:
+    """Keys in a YAML file."""
+    keys = read_yaml(path, CorpusError)
+    if not isinstance(keys, dict) or not all(isinstance(key, str) for key in keys):
+        raise CorpusError(f"{path}: holds no keys; write those that all files share, such as unit: g.")
+    return keys
+
+
+def _lines(path: Path) -> list[tuple[int, list[str]]]:
+    """Lines of a table that are not empty, with their numbers from 1, as spreadsheets count; the first has the keys."""
+    try:
+        with guarded(path, "CSV"), path.open(encoding=encoding_of(path), errors="replace", newline="") as text:
+            head = next((line for line in lines_of(text) if line.strip(f" \r\n{_MARKS}")), "")
+            mark = next((mark for mark in _MARKS if mark in head), ",")
+            text.seek(0)
+            cells = ([cell.strip(" \xa0") for cell in line] for line in csv.reader(lines_of(text), delimiter=mark))
+            filled = ((number, line) for number, line in enumerate(cells, 1) if any(line))
+            lines = [*islice(filled, limit("recording_files") + 2)]
+    except (UnusableError, OSError) as error:
+        reason = error if isinstance(error, UnusableError) else reason_of(error)
+        raise CorpusError(f"{path}: {reason}.") from None
+    check_limit("recording_files", len(lines) - 1, f"{path}: names", CorpusError)
+    if len(lines) < 2:
+        message = f"{path}: has no rows; write one with keys such as path, fault and specimen, and below it one for each file."
+        raise CorpusError(message)
+    number, names = lines[0]
+    twice = next((name for name in names if name and names.count(name) > 1), None)
+    if twice is not None:
+        raise CorpusError(f"{path}, row {number}, column {twice}: is there twice; remove one of the two.")
+    return lines
+
+
+def _value(where: str, key: str, text: str, form: Form | None) -> Any:
+    """Value of a cell; its numbers are in the one form of the table, or each has one reading."""
+    if key not in _NUMBERS or not is_number(text):
+        return _parsed(where, key, text)
+    number = number_in(text) if form is None else float(numbers_in([f"{text}\n"], form)[0])
+    if number is None:
+        raise CorpusError(
+            f"{where}: {text} may be in thousands; write it without marks between them, or with four decimals."
+        )
+    return number
+
+
+def _parsed(where: str, key: str, value: Any) -> Any:
+    """Value of a key that may be written as text; channels are written as in YAML."""
+    if not isinstance(value, str):
+        return value
+    if key == "channels":
+        return parse_yaml(value, where, CorpusError)
+    return int(value) if key == "column" and value.isdecimal() else value

@@ -1,0 +1,106 @@
+"""Sheets of Excel files, read with python-calamine, which is an extra: ``size -> sheet -> lines of fields -> table``."""
+
+import re
+import zipfile
+from collections.abc import Iterator
+from datetime import date, datetime
+from pathlib import Path
+from typing import Any
+
+from gen.support.limits import check_limit
+from raceway.importing.columns import Values
+from raceway.importing.files import UnusableError, guarded
+from raceway.importing.numerals import POINT, is_number
+from raceway.importing.table import TableLine, read_table
+
+_CELL = re.compile(rb"r\s*=\s*[\"']([A-Za-z]{1,3})(\d{1,7})[\"']")
+_CELL_BYTES = 32  # that the library takes for each cell of the rectangle around all cells
+_CHUNK, _OVERLAP = 4_000_000, 20  # bytes
+
+
+def read_sheet(path: Path, sheet: str | None, column: int | str | None) -> Values:
+    """Signal in a sheet of an Excel file, by default the visible one that is active, or else the first visible one.
+
+    Raises
+    ------
+    UnusableError
+        If python-calamine is missing, the file is no such file or asks for too much memory, it does not have the sheet, or as in
+        :func:`~raceway.importing.table.read_table`.
+    """
+    try:
+        from python_calamine import CalamineWorkbook, SheetTypeEnum, SheetVisibleEnum
+    except ImportError:
+        raise UnusableError("is an Excel file, which needs python-calamine; pip install python-calamine") from None
+    with guarded(path, "spreadsheet"):
+        active = _check_size(path)
+        with CalamineWorkbook.from_path(str(path)) as book:
+            shown = SheetVisibleEnum.Visible, SheetTypeEnum.WorkSheet
+            visible = [one.name for one in book.sheets_metadata if (one.visible, one.typ) == shown]
+            name, notes = _chosen(book.sheet_names, visible, active, sheet)
+            rows = book.get_sheet_by_name(name).to_python(skip_empty_area=False)
+        found = read_table(_lines(rows), column, _place, POINT)
+        return found._replace(notes=(*notes, *found.notes))
+
+
+def _check_size(path: Path) -> int:
+    """Number of the active sheet, after a check of the memory that cells take: one cell far away asks for a large rectangle."""
+    with zipfile.ZipFile(path) as archive:
+        check_limit("file_bytes", sum(part.file_size for part in archive.infolist()), "is unpacked", UnusableError)
+        for part in archive.infolist():
+            columns, rows, rest = 0, 0, b""
+            with archive.open(part) as stream:
+                while block := stream.read(_CHUNK):
+                    for letters, row in _CELL.findall(rest + block):
+                        columns, rows = max(columns, _number(letters.upper())), max(rows, int(row))
+                    rest = block[-_OVERLAP:]
+            what = f"has a sheet of {columns} columns and {rows} rows, which takes"
+            check_limit("file_bytes", columns * rows * _CELL_BYTES, what, UnusableError)
+        found = re.search(rb"\bactiveTab\s*=\s*[\"'](\d{1,5})[\"']", archive.read("xl/workbook.xml"))
+        return int(found[1]) if found else 0
+
+
+def _number(letters: bytes) -> int:
+    """Number of the column with these letters, from 1."""
+    number = 0
+    for letter in letters:
+        number = 26 * number + letter - ord("A") + 1
+    return number
+
+
+def _chosen(names: list[str], visible: list[str], active: int, wanted: str | None) -> tuple[str, tuple[str, ...]]:
+    """Name of the sheet to be read, and a sentence if it was chosen of several."""
+    if wanted is not None and wanted in names:
+        return wanted, ()
+    if wanted is not None or not visible:
+        what = f"not {wanted}" if wanted is not None else "none of which is visible"
+        message = f"holds the sheets {', '.join(names)}, {what}; name one"
+        raise UnusableError(message, "variable")
+    name = names[active] if active < len(names) and names[active] in visible else visible[0]
+    others = [other for other in visible if other != name]
+    return name, (f"sheet {name} is read, and not {', '.join(others)}",) if others else ()
+
+
+def _lines(rows: list[list[Any]]) -> Iterator[TableLine]:
+    for number, row in enumerate(rows, 1):
+        yield TableLine(number, [_text(cell) for cell in row])
+
+
+def _text(cell: Any) -> str:
+    """Text of a cell; a number that is stored as text begins with an apostrophe, as it does when it is typed."""
+    if isinstance(cell, bool):
+        return str(cell)
+    if isinstance(cell, int | float):
+        return repr(cell)
+    if isinstance(cell, datetime | date):
+        return cell.isoformat(" ") if isinstance(cell, datetime) else cell.isoformat()
+    text = str(cell).strip()
+    return f"'{text}" if is_number(text) else text
+
+
+def _place(number: int, column: int) -> str:
+    letters = ""
+    column += 1
+    while column:
+        column, letter = divmod(column - 1, 26)
+        letters = chr(ord("A") + letter) + letters
+    return f"cell {letters}{number}"

@@ -1,0 +1,79 @@
+"""The importer of PRONOSTIA on small made-up files."""
+
+import numpy as np
+import pytest
+
+from gen.corpus import LIFE, open_corpus, validate_corpus
+from gen.support.errors import CorpusError
+from raceway.importing import import_femto
+
+
+def write(folder, number, *, mark=",", samples=2560, start=9 * 3600 + 39 * 60):
+    folder.mkdir(parents=True, exist_ok=True)
+    signal = np.random.default_rng(number).normal(size=(samples, 2))
+    clock = start + 10 * (number - 1)
+    time = [clock // 3600 % 24, clock % 3600 // 60, clock % 60, 65664.0]
+    rows = [mark.join(f"{value:g}" for value in (*time, *row)) for row in signal]
+    (folder / f"acc_{number:05d}.csv").write_text("\n".join(rows) + "\n")
+    return signal
+
+
+def imported(source, output):
+    done = import_femto(source, output)
+    assert validate_corpus(output) == []
+    with open_corpus(output) as corpus:
+        return done, corpus.load()
+
+
+def test_a_folder_is_a_life_whose_last_snapshot_is_its_end(tmp_path):
+    signals = [write(tmp_path / "set" / "Bearing1_1", number) for number in (1, 2, 3)]
+    for number in (1, 2):
+        write(tmp_path / "set" / "Bearing3_2", number, mark=";")
+    done, corpus = imported(tmp_path / "set", tmp_path / "corpus")
+    assert (done.recordings, done.records, done.skipped, done.warnings) == (5, 5, (), ())
+    assert {variable.name for variable in LIFE} <= set(corpus.variables)
+    assert corpus.bearing.values.tolist() == ["6804 Bearing1_1"] * 3 + ["6804 Bearing3_2"] * 2
+    assert corpus.age.values.tolist() == [0, 10, 20, 0, 10]
+    assert corpus.rul.values.tolist() == [20, 10, 0, 10, 0]
+    assert corpus.rul_revolutions.values.tolist() == [600, 300, 0, 250, 0]
+    assert corpus["load"].values.tolist() == [4000] * 3 + [5000] * 2
+    assert set(corpus.event.values) == {1}
+    np.testing.assert_allclose(corpus.acceleration[1].values, 9.80665 * signals[1].T, rtol=1e-4, atol=1e-3)
+
+
+def test_truncated_lives_are_censored(tmp_path):
+    for place in ("Test_set", "Full_Test_Set"):
+        write(tmp_path / "set" / place / "Bearing1_3", 1)
+    _, corpus = imported(tmp_path / "set", tmp_path / "corpus")
+    assert corpus.event.values.tolist() == [1, 0]
+    assert np.isnan(corpus.rul.values).tolist() == [False, True]
+
+
+def test_missing_and_damaged_snapshots_and_wrong_clocks_are_named(tmp_path):
+    folder = tmp_path / "set" / "Bearing2_1"
+    for number in (1, 2, 6, 7):
+        write(folder, number)
+    write(folder, 8, samples=900)
+    write(folder, 9, start=10 * 3600)
+    (folder / "acc_00006.csv").write_text("9,39,49,65664,0.1,x\n")
+    (folder / "acc_00007.csv").write_text("9,39,49,65664,0.1\n")
+    done, corpus = imported(tmp_path / "set", tmp_path / "corpus")
+    assert corpus.age.values.tolist() == [0, 10, 80]
+    assert corpus.rul.values.tolist() == [80, 70, 0]
+    assert done.warnings[0] == "Bearing2_1: 3 snapshots are missing, the first is acc_00003."
+    assert "acc_00009.csv: its clock is +1260 s from its number" in done.warnings[1]
+    assert [sentence.partition(":")[0] for sentence in done.skipped] == [
+        f"Bearing2_1/acc_0000{number}.csv" for number in (6, 7, 8)
+    ]
+
+
+def test_a_life_past_midnight_keeps_its_clock(tmp_path):
+    for number in (1, 2, 3):
+        write(tmp_path / "set" / "Bearing1_1", number, start=24 * 3600 - 15)
+    assert imported(tmp_path / "set", tmp_path / "corpus")[0].warnings == ()
+
+
+def test_a_folder_without_lives_is_refused(tmp_path):
+    write(tmp_path / "set" / "Other", 1)
+    with pytest.raises(CorpusError, match="has no folder such as Bearing1_1"):
+        import_femto(tmp_path / "set", tmp_path / "corpus")
