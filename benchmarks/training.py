@@ -16,7 +16,7 @@ import gen
 from benchmarks.features import PER_PART, noise_corpus
 from benchmarks.pairs import Line, cpu_seconds, interleaved, row
 from gen.corpus import SIGNAL, corpus_files, stored_blocks
-from gen.exporting.items import LabelledRecords
+from gen.corpus.items import LabelledRecords
 
 SCALE = np.float32(1e-3)  # of the counts of a noise corpus
 Places = np.ndarray

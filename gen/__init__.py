@@ -9,7 +9,6 @@ support     errors, limits, units, YAML, progress, tasks on cores and clusters
 physics     pure: bearing, Hertz contact, spalls, machine, kernel
 life        pure: when a spall begins, how it grows until the end
 corpus      the netCDF format: write, index, open, validate
-exporting   corpora copied, joined, in the forms of other programs
 drawing     what a recipe is made of: distributions, sections, draws
 mechanisms  what happens in a machine and its measuring chain, one file each
 recipe      YAML to a frozen model

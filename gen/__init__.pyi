@@ -1,5 +1,5 @@
-from .corpus import open_corpus as open_corpus, publish as publish, validate_corpus as validate_corpus
-from .exporting import copy as copy, torch_dataset as torch_dataset
+from .corpus import open_corpus as open_corpus, validate_corpus as validate_corpus
+from .corpus.items import torch_dataset as torch_dataset
 from .generation.corpus import generate as generate
 from .generation.memory import record as record, records as records, simulate as simulate
 from .generation.replaying import replay as replay

@@ -9,6 +9,7 @@ console     options, results, progress, errors
 kept_models models trained on a recipe and kept per user; the reference model is one
 pages       tables and picture of docs/features.md
 importing   a job: recordings of people in the format of corpora
+sharing     a job: corpora copied, described and published
 commands    one function per command
 cli         the group of all commands, and the entry point
 =========== ========================================================================

@@ -1,2 +1,3 @@
-from .kept_models import reference_model as reference_model
 from .console.progress import show_progress as show_progress
+from .kept_models import reference_model as reference_model
+from .sharing import copy as copy, describe as describe, publish as publish

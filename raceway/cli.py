@@ -14,7 +14,6 @@ import click
 from raceway.commands import (
     benchmarking,
     comparing,
-    copying,
     corpora,
     diagnosing,
     doctor,
@@ -23,11 +22,11 @@ from raceway.commands import (
     lives,
     models,
     plotting,
-    publishing,
 )
 from raceway.console.ending import BAD_INPUT, NoReader, exit_code
 from raceway.console.signals import listen_for_signals
 from raceway.importing import import_commands
+from raceway.sharing import card_command, copy_command
 
 GROUPS: Mapping[str, tuple[click.Command, ...]] = {
     "Make corpora": (
@@ -35,8 +34,8 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         corpora.plan,
         corpora.generate,
         import_commands.import_,
-        copying.copy,
-        publishing.card,
+        copy_command.copy,
+        card_command.card,
     ),
     "Look at them": (
         corpora.info,

@@ -15,7 +15,7 @@ def killed(action, moments, seed=0):
     Yields after every run, the undisturbed first one included: ``moments + 1`` times. Between two yields the caller looks at what is
     left and removes it, so that the next run begins as the first did:
 
-        for _ in killed(lambda: gen.copy(corpus, file), moments=5):
+        for _ in killed(lambda: raceway.copy(corpus, file), moments=5):
             if file.exists():
                 assert validate_corpus(file) == []
                 file.unlink()

@@ -16,8 +16,8 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from gen import copy
 from gen.corpus import part_name
+from raceway import copy
 from tests.corpora import COUNTS_PER_UNIT, dataset, write_parts
 
 COUNTS = (20, 10)  # records of the parts

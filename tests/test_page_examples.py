@@ -7,6 +7,7 @@ import scipy.io
 from scipy.io import wavfile
 
 import gen
+import raceway
 from tests.page_examples import blocks, run_blocks
 from tests.paths import ROOT
 from tests.tone_corpora import FS, write_corpus
@@ -25,7 +26,7 @@ def test_the_examples_of_sharing_read_a_record_from_a_file_and_from_a_table(tmp_
     monkeypatch.chdir(tmp_path)
     signals = write_corpus(tmp_path / "corpus")
     for form in ("corpus.nc", "corpus.parquet"):
-        gen.copy(["corpus"], form)
+        raceway.copy(["corpus"], form)
     names = run_blocks("sharing.md", tmp_path)
     np.testing.assert_array_equal(names["signal"], signals[17])
     np.testing.assert_array_equal(names["signals"], signals)

@@ -1,39 +1,37 @@
 """The corpus format: netCDF-4 files of records, one alone or several in a folder.
 
-=============== =============================================================
-module          responsibility
-=============== =============================================================
-codecs          codecs of stored signals
-fault_classes   the fault classes: colour, lines and telling features of each
-schema          dimensions, variables, units and roles
-simulated       further variables that readers know
-hdf5            lock of the HDF5 library, refusal of links to other files
-unicode_text    global attributes with letters beyond ASCII
-layout          allowed shapes, types and attributes in a file
-files           atomic writing, checksums
-locking         one call at a time writes into a folder
-outputs         places of results, none of them in a corpus
-signals         records that cannot be used
-facts           what a corpus holds, counted from its variables
-part            one file of records
-open_files      files that are open, a few at a time
-blocks          stored records of a file, some at a time
-reading         records as a Dataset, read lazily
-publication     licence, creators and references of a corpus
-manifest        files of a corpus with size and hash, and its facts
-acdd            global attributes of a published corpus
-index           the variables of all parts in one file; opening a corpus
-card            data card of a corpus
-croissant       files, fields and licence for catalogues of data sets
-finishing       index, manifest and data card of finished parts
-new             a new corpus, part by part
-where           conditions on records: parsed, never run
-choice          choice of records and channels
-joining         several corpora with the same variables and new numbers
-copying         chosen records of one or several corpora, block by block
-validation      all checks of a corpus
-description     page about the format
-=============== =============================================================
+============= =============================================================
+module        responsibility
+============= =============================================================
+codecs        codecs of stored signals
+fault_classes the fault classes: colour, lines and telling features of each
+schema        dimensions, variables, units and roles
+simulated     further variables that readers know
+hdf5          lock of the HDF5 library, refusal of links to other files
+unicode_text  global attributes with letters beyond ASCII
+layout        allowed shapes, types and attributes in a file
+files         atomic writing, checksums
+locking       one call at a time writes into a folder
+outputs       places of results, none of them in a corpus
+signals       records that cannot be used
+facts         what a corpus holds, counted from its variables
+part          one file of records
+open_files    files that are open, a few at a time
+blocks        stored records of a file, some at a time
+reading       records as a Dataset, read lazily
+publication   licence, creators and references of a corpus
+manifest      files of a corpus with size and hash, and its facts
+acdd          global attributes of a published corpus
+index         the variables of all parts in one file; opening a corpus
+finishing     index and manifest of finished parts
+new           a new corpus, part by part
+where         conditions on records: parsed, never run
+choice        choice of records and channels
+items         records one by one or in batches, for training
+joining       several corpora with the same variables and new numbers
+validation    all checks of a corpus
+description   page about the format
+============= =============================================================
 """
 
 import lazy_loader

@@ -8,15 +8,8 @@ from .blocks import (
     stored_blocks as stored_blocks,
     stored_columns as stored_columns,
 )
-from .card.page import (
-    card_folder as card_folder,
-    check_card as check_card,
-    data_card as data_card,
-    write_card as write_card,
-)
 from .choice import operating_variables as operating_variables
 from .codecs import CODECS as CODECS, Codec as Codec
-from .croissant import write_croissant as write_croissant
 from .description import format_page as format_page
 from .fault_classes import (
     FAULT_NAMES as FAULT_NAMES,
@@ -55,7 +48,6 @@ from .files import (
 from .finishing import (
     finish_corpus as finish_corpus,
     finish_file as finish_file,
-    publish as publish,
     remove_parts as remove_parts,
     remove_temporary_files as remove_temporary_files,
 )

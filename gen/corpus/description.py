@@ -19,6 +19,7 @@ A corpus is one netCDF-4 file, `NAME.nc`, or a folder of such files:
 | `README.md` | the [data card](sharing.md#the-data-card); `raceway card` adds `pictures/`, and `card.json` with captions and scores |
 | `croissant.json` | files with SHA-256, variables, licence and citation in the format Croissant 1.1, for catalogues of data sets |
 
+The commands write `README.md` and `croissant.json`; from Python `raceway.describe(corpus)` does.
 The data card of a single file `NAME.nc` lies in `NAME.card/`. While a single file is being generated, its parts lie in
 `NAME.nc.parts/`. An unfinished corpus lists no parts in its manifest: every whole part that lies in `parts/` counts.
 

@@ -21,6 +21,7 @@ from pathlib import Path
 from gen.support.errors import CorpusError
 
 INDEX_NAME, MANIFEST_NAME, RECIPE_NAME = "index.nc", "manifest.json", "recipe.yaml"
+CARD_NAME, CROISSANT_NAME = "README.md", "croissant.json"  # written by ``raceway.describe``
 CARD_SUFFIX = ".card"
 """Suffix of the folder of the data card beside a corpus in a single file."""
 Stamp = tuple[int, int]

@@ -9,8 +9,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.blocks import blocks_of, stored_blocks, stored_columns
-from gen.corpus.card.page import card_folder
-from gen.corpus.croissant import CROISSANT_NAME, croissant_text
 from gen.corpus.index import corpus_attributes, open_corpus
 from gen.corpus.layout import is_utf8
 from gen.corpus.manifest import (
@@ -33,8 +31,8 @@ _MADE_BY = ("recipe_sha256", "sources_sha256")
 def validate_corpus(path: Path | str) -> list[str]:
     """All problems of a corpus, one sentence each; an empty list if it has none.
 
-    Checks the bytes of every file, the manifest, the format of all variables, the values of the signal, the agreement of the index with
-    manifest and parts, and ``croissant.json``. One part at a time is held in memory.
+    Checks the bytes of every file, the manifest, the format of all variables, the values of the signal, and the agreement of the index
+    with manifest and parts. One part at a time is held in memory.
     """
     path = Path(path)
     try:
@@ -43,8 +41,7 @@ def validate_corpus(path: Path | str) -> list[str]:
         if problems or not manifest.complete:
             return problems or [f"{path}: is unfinished; run the raceway generate command that began it again."]
         with open_corpus(path, check="size") as corpus:
-            problems = [*_facts_problems(path, manifest, corpus), *_records_problems(path, manifest)]
-        return problems + _croissant_problems(path)
+            return [*_facts_problems(path, manifest, corpus), *_records_problems(path, manifest)]
     except CorpusError as error:
         return [str(error)]
 
@@ -124,11 +121,3 @@ def _signal_problems(file: Path, listed: SignalCounts) -> list[str]:
         counts = counts_in_words(count_verdicts(verdicts))
         problems.append(f"{file}: {counts} of its records cannot be used, {counts_in_words(listed)} are listed.")
     return problems
-
-
-def _croissant_problems(path: Path) -> list[str]:
-    """``croissant.json`` if it is not that of the corpus."""
-    file = card_folder(path) / CROISSANT_NAME
-    if not file.is_file() or file.read_bytes() == croissant_text(path).encode():
-        return []
-    return [f"{file}: is not that of the corpus; run raceway card again."]

@@ -108,7 +108,7 @@ def generate(
         Replace the seed and the number of records of the recipe.
     parts : range, optional
         Parts that are made, of a folder; the corpus then has their records, and those of parts that are in the folder. Corpora of other
-        parts, such as those of other machines, are joined by :func:`gen.copy`.
+        parts, such as those of other machines, are joined by :func:`raceway.copy`.
     progress : callable, optional
         Called with the number of records that are on disk and of all records.
     notice : callable, optional

@@ -1,10 +1,9 @@
 """The commands: each reads its options, calls ``gen``, ``features`` or a study, and shows the result.
 
-================ ===============================================================
+================ ========================================================
 module           responsibility
-================ ===============================================================
+================ ========================================================
 corpora          commands that make corpora and look at them
-copying          corpora copied, cut, joined, and in the forms of other programs
 plotting         a picture of one record or recording
 exploring        a page to browse a corpus
 feature_tables   features of all records
@@ -16,9 +15,8 @@ diagnosis_tables diagnoses of a folder: table, index page and CSV file
 benchmarking     scores of all baselines
 lives            pictures of lives, scores of estimates of remaining life
 comparing        synthetic records against real ones
-publishing       the data card with terms of use, pictures and scores
 doctor           installed versions, and the speed of this machine
-================ ===============================================================
+================ ========================================================
 
 Heavy libraries are imported inside the commands, so that help and version are printed at once. A command that takes a recipe looks for
 its file before it imports the simulator, so that a misspelt name is reported at once.

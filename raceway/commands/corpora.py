@@ -212,9 +212,13 @@ def _range_of(text: str) -> range:
 
 def _generate(recipe: str, output: Path, **options: Any) -> "Generated":
     from gen import generate as generate_corpus
+    from raceway.sharing import describe
 
     with progress("generating", "records") as report:
-        return generate_corpus(recipe, output, **options, progress=report, notice=notice)
+        made = generate_corpus(recipe, output, **options, progress=report, notice=notice)
+    if made.path.is_dir():
+        describe(made.path)
+    return made
 
 
 def _show_generated(made: "Generated", wanted: "Recipe") -> None:
@@ -272,16 +276,18 @@ def validate(corpus: Path, as_json: bool) -> int:
     """Check every byte of the corpus in DIR.
 
     Exits with 1 if anything is wrong. The checks cover the hash of each file, the manifest, the format, the samples, and whether
-    index.nc agrees with manifest and parts. It warns of records whose step was too coarse, and of splits of an imported corpus that can
-    leak: one recording under two specimens, each file a specimen of its own, a class of one specimen.
+    index.nc agrees with manifest and parts, and croissant.json with the corpus. It warns of records whose step was too coarse, and of
+    splits of an imported corpus that can leak: one recording under two specimens, each file a specimen of its own, a class of one
+    specimen.
 
       raceway validate corpus && echo sound
     """
     from gen.corpus import read_manifest, validate_corpus
+    from raceway.sharing import croissant_problems
 
     if not corpus.is_file() and not (corpus / "manifest.json").exists():
         read_manifest(corpus)  # raises: a folder without a manifest is bad input, not a damaged corpus
-    problems = validate_corpus(corpus)
+    problems = validate_corpus(corpus) or croissant_problems(corpus)
     warnings: list[str] = []
     if not problems:
         warnings += filter(None, [_coarse_steps(corpus)])

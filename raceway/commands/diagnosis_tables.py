@@ -108,7 +108,7 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
 
 
 def _csv_text(rows: Sequence[DiagnosisRow]) -> str:
-    from gen.exporting.tables import cell_text
+    from raceway.sharing.tables import cell_text
 
     stream = io.StringIO()
     table = csv.writer(stream, lineterminator="\n")

@@ -4,7 +4,7 @@ import numpy as np
 
 from benchmarks import streamed
 from gen.recipe import Recipe
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 
 
 def test_a_folder_goes_on_where_it_ended_and_teaches_an_ensemble(tmp_path, monkeypatch):

@@ -101,7 +101,7 @@ def start(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pictures on data cards take no time: they are not what is tested."""
-    monkeypatch.setattr("features.report.card_pictures.small_png", lambda _figure: b"picture" * 10_000)
+    monkeypatch.setattr("raceway.sharing.card_pictures.small_png", lambda _figure: b"picture" * 10_000)
 
 
 @pytest.fixture(scope="session")

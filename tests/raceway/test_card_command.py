@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from features.report import card_pictures
-from gen.corpus import card_folder, lock, open_corpus, read_manifest, validate_corpus
+from gen.corpus import lock, open_corpus, read_manifest, validate_corpus
 from gen.support.errors import CorpusError
-from raceway.commands.publishing import card
+from raceway import describe
+from raceway.sharing import card_pictures
+from raceway.sharing.card.page import card_folder
+from raceway.sharing.card_command import card
 from tests.tone_corpora import write_corpus
 
 ORDERS = {"ftf": 0.4, "bpfo": 9.0, "bpfi": 4.0, "bsf": 2.4}  # so that the lines of the pictures are those of the tones
@@ -111,6 +113,7 @@ def test_later_facts_join_the_others_and_the_scores_stay(told, copied, tmp_path)
 
 def test_a_wrong_fact_is_one_sentence_and_changes_nothing(run, copied):
     """Which facts are wrong is tested in tests/gen/corpus/test_publication_laws.py."""
+    describe(copied)
     before = contents(copied)
     for option, value, sentence in (
         ("--license", "my own", "is not an SPDX identifier"),

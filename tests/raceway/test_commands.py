@@ -15,10 +15,10 @@ from features.baselines.names import DEFAULT_ESTIMATOR
 from features.table.files import read_table
 from features.table.indicators import feature_names
 from gen.corpus import FAULTS, SIGNAL, open_corpus
-from gen.exporting import FORMS
 from gen.support.limits import VARIABLE
 from raceway.cli import GROUPS, cli
 from raceway.console.summary import _shown_faults
+from raceway.sharing import FORMS
 from tests.command_tree import commands
 from tests.labels import write_labels
 

@@ -9,7 +9,7 @@ from gen.corpus import open_corpus
 from gen.generation.corpus import generate
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 from tests.recipes import LIVES
 
 

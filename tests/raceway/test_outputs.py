@@ -14,13 +14,15 @@ import xarray as xr
 from features.baselines import Model
 from features.table.corpora import feature_table
 from features.table.files import write_table
-from gen import copy, generate, write_corpus
-from gen.corpus import card_folder, corpus_files, read_manifest, result_folder
+from gen import generate, write_corpus
+from gen.corpus import corpus_files, read_manifest, result_folder
 from gen.corpus.files import _HOST
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
+from raceway import copy
+from raceway.sharing.card.page import card_folder
 from tests.command_tree import COMMANDS
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 from tests.pulses import write_pulses
 from tests.recipes import LIVES
 

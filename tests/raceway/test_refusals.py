@@ -6,8 +6,9 @@ import shutil
 
 import pytest
 
-from gen import copy, generate
+from gen import generate
 from gen.support import cluster
+from raceway import copy
 from tests.tampering import edit_manifest
 
 PARTS = 4

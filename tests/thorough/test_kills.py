@@ -6,9 +6,10 @@ import shutil
 import pytest
 
 import gen
-from features.report import card_pictures
-from gen.corpus import card_folder, open_corpus, sha256, validate_corpus
-from gen.exporting import FORMS
+import raceway
+from gen.corpus import open_corpus, sha256, validate_corpus
+from raceway.sharing import FORMS, card_pictures
+from raceway.sharing.card.page import card_folder
 from tests import corpora
 from tests.kills import killed
 from tests.same_corpora import files
@@ -29,8 +30,8 @@ def records():
 
 ACTIONS = {
     "write": lambda _, records, output: gen.write_corpus(records, output),
-    "copy": lambda corpus, _, output: gen.copy(corpus, output, where="rig != 4", float32=True),
-    **{form: lambda corpus, _, output, form=form: gen.copy(corpus, output, to=form) for form in FORMS},
+    "copy": lambda corpus, _, output: raceway.copy(corpus, output, where="rig != 4", float32=True),
+    **{form: lambda corpus, _, output, form=form: raceway.copy(corpus, output, to=form) for form in FORMS},
 }
 
 

@@ -11,7 +11,7 @@ from gen.recipe import Recipe
 from gen.support import cluster, executor
 from gen.support.errors import ClusterError
 from gen.support.executor import run
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 from tests.gen.support.test_cluster_laws import threaded
 from tests.worker_processes import worker_processes
 

@@ -11,18 +11,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gen.corpus import (
-    card_folder,
-    open_corpus,
-    publish,
-    read_manifest,
-    read_publication,
-    sha256,
-    validate_corpus,
-    write_croissant,
-)
+from gen.corpus import open_corpus, read_manifest, read_publication, sha256, validate_corpus
 from gen.generation.corpus import generate
+from raceway import publish
 from raceway.importing import import_generic
+from raceway.sharing.card.page import card_folder
+from raceway.sharing.croissant import write_croissant
 from tests.labels import write_labels
 
 FACTS = {

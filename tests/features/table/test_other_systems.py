@@ -7,7 +7,8 @@ import sys
 import numpy as np
 
 from features import feature_table
-from gen import copy, open_corpus
+from gen import open_corpus
+from raceway import copy
 
 READ = """
 import os, sys

@@ -207,14 +207,12 @@ def test_a_changed_fact_of_the_manifest_is_found(copied_folder, fact):
         assert_refused(copied_folder, r"is the index of other parts than manifest\.json lists")
 
 
-def test_a_changed_recipe_and_a_changed_croissant_are_found(tiny_corpus, tmp_path):
-    for name, sentence in (
-        ("recipe.yaml", "manifest.json and index.nc disagree about recipe_text"),
-        ("croissant.json", "croissant.json: is not that of the corpus; run raceway card again"),
-    ):
-        folder = shutil.copytree(tiny_corpus, tmp_path / name)
-        (folder / name).write_bytes((folder / name).read_bytes().replace(b"i", b"j", 1))
-        assert any(sentence in problem for problem in validate_corpus(folder))
+def test_a_changed_recipe_is_found(tiny_corpus, tmp_path):
+    folder = shutil.copytree(tiny_corpus, tmp_path / "c")
+    (folder / "recipe.yaml").write_bytes((folder / "recipe.yaml").read_bytes().replace(b"i", b"j", 1))
+    assert any(
+        "manifest.json and index.nc disagree about recipe_text" in problem for problem in validate_corpus(folder)
+    )
 
 
 @pytest.mark.parametrize("name", ["recipe_sha256", "sources_sha256"])

@@ -7,8 +7,8 @@ from gen.mechanisms.background.section import LOCKED, SOURCES
 from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.recipe import Recipe, read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios
+from tests.conftest import small_with
 from tests.drawn_values import numbers_of
-from tests.gen.conftest import small_with
 from tests.recipes import EVERYTHING
 
 RECIPES = (*shipped_recipes(), "everything")

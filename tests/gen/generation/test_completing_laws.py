@@ -7,7 +7,6 @@ import shutil
 
 import pytest
 
-from gen import copy
 from gen.corpus import SignalCounts, open_corpus, part_name, read_manifest, write_manifest
 from gen.generation import sources as sources_of_records
 from gen.generation.corpus import generate
@@ -15,6 +14,7 @@ from gen.generation.sources import sources_sha256
 from gen.recipe import read_recipe
 from gen.support import sources
 from gen.support.errors import ClusterError, CorpusError
+from raceway import copy
 from tests.paths import ROOT
 from tests.same_corpora import assert_the_same_corpus, files
 from tests.tampering import edit_manifest, edited, manifest_content
@@ -40,8 +40,7 @@ def unfinished(folder):
     """The corpus as a killed call leaves it before its last steps."""
     nothing = {"records": 0, "signals": SignalCounts()._asdict(), "parts_sha256": "0" * 64, "parts": []}
     write_manifest(folder, manifest_content(folder) | {"complete": False} | nothing)
-    for name in ("index.nc", "README.md", "croissant.json"):
-        (folder / name).unlink()
+    (folder / "index.nc").unlink()
     return folder
 
 
@@ -206,7 +205,7 @@ def test_the_hash_of_the_sources_changes_with_every_file_that_makes_records(tmp_
         (package / name).write_text((package / name).read_text() + "\n# changed\n")
         found.add(sources_sha256())
     assert len(found) == 6
-    (package / "corpus" / "card" / "page.py").write_text("")
+    (package / "corpus" / "validation.py").write_text("")
     assert sources_sha256() in found
 
 

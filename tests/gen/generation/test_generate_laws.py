@@ -11,6 +11,7 @@ from gen.corpus import SIGNAL, open_corpus, read_manifest, recipe_text, validate
 from gen.corpus.manifest import Overrides
 from gen.generation.corpus import generate
 from gen.support.errors import ClusterError, CorpusError, RecipeError
+from raceway.sharing.card.page import data_card
 from tests.same_corpora import assert_the_same_corpus
 from tests.worker_processes import worker_processes
 
@@ -27,7 +28,7 @@ def test_one_call_makes_a_complete_and_valid_corpus(whole):
     assert manifest.complete
     assert manifest.recipe == "small"
     assert [row.records for row in manifest.parts] == [8, 8, 8]
-    assert "A small corpus for tests" in (whole.path / "README.md").read_text()
+    assert "A small corpus for tests" in data_card(whole.path)
     leftovers = [path.name for path in whole.path.rglob(".*")]
     assert leftovers == []
 

@@ -2,12 +2,12 @@
 
 import pytest
 
-from gen import copy
 from gen.corpus import open_corpus, validate_corpus
 from gen.generation.corpus import generate
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
 from gen.support.errors import CorpusError, RecipeError
+from raceway import copy
 from tests.same_corpora import assert_the_same_corpus
 
 CHANGES = {

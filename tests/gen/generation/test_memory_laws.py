@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import gen
+import raceway
 from gen.corpus import SIGNAL
 from gen.support.errors import CorpusError, RecipeError, SimulationError
 
@@ -56,7 +57,7 @@ def test_records_do_not_depend_on_the_number_of_workers(ladder):
 def test_the_corpus_of_a_whole_dataset_is_that_of_its_recipe_byte_by_byte(ladder, tmp_path):
     written = gen.write_corpus(ladder, tmp_path / "written")
     gen.generate(written / "recipe.yaml", tmp_path / "generated")
-    names = ["manifest.json", "index.nc", "recipe.yaml", "README.md", "parts/part-00000.nc", "parts/part-00001-2.nc"]
+    names = ["manifest.json", "index.nc", "recipe.yaml", "parts/part-00000.nc", "parts/part-00001-2.nc"]
     for name in names:
         assert (written / name).read_bytes() == (tmp_path / "generated" / name).read_bytes()
     assert gen.validate_corpus(written) == []
@@ -311,7 +312,7 @@ WRONG_TYPES = [
     (lambda _: gen.simulate([1]), RecipeError, "scenarios: list given; give a list of scenarios"),
     (lambda _: gen.read_recipe(None), RecipeError, "recipe: NoneType given; give a path, the name of"),
     (lambda _: gen.write_recipe({}, "recipe.yaml"), RecipeError, "recipe: dict given; give one that gen.make_recipe"),
-    (lambda _: gen.publish("corpus", [1]), CorpusError, r"publication: \[1\] is not a mapping; give keys"),
+    (lambda _: raceway.publish("corpus", [1]), CorpusError, r"publication: \[1\] is not a mapping; give keys"),
 ]
 
 

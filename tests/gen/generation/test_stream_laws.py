@@ -12,7 +12,7 @@ from gen.generation.stream import endless, records_from
 from gen.recipe import Recipe
 from gen.support.errors import ClusterError, RecipeError, SimulationError
 from gen.support.executor import run
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ from gen.physics.catalogue import CATALOGUE
 from raceway.console.summary import describe
 from raceway.importing.assemble import Collection, import_recordings
 from raceway.importing.recordings import Candidate, Recording
+from raceway.sharing.card.page import data_card
 
 # of three machines the second exceeds the range of the converter by far
 ONE_LOUD_RIG = {"level": {"kind": "physical", "gain": "grid(1, 1000, 1)"}}
@@ -29,7 +30,7 @@ def loud(write_recipe, tmp_path_factory):
 def test_a_usable_corpus_counts_nothing(tiny_corpus):
     assert read_manifest(tiny_corpus).signals == SignalCounts()
     assert part_counts(tiny_corpus) == [SignalCounts()] * 4
-    assert "Records that cannot be used: none." in (tiny_corpus / "README.md").read_text()
+    assert "Records that cannot be used: none." in data_card(tiny_corpus)
 
 
 def test_each_part_has_its_own_count(loud):
@@ -68,4 +69,4 @@ def test_recordings_that_cannot_be_used_are_counted_when_they_are_imported(tmp_p
     expected = SignalCounts(clipped=1, dead=1, constant=1)
     assert part_counts(tmp_path / "c") == [expected]
     assert describe(tmp_path / "c")["signals"] == expected._asdict()
-    assert "cannot be used: 1 clipped, 1 dead, 1 constant." in (tmp_path / "c" / "README.md").read_text()
+    assert "cannot be used: 1 clipped, 1 dead, 1 constant." in data_card(tmp_path / "c")

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 from tests.measuring import measure
 
 TOLERANCE = 1e-3

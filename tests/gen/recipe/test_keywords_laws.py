@@ -13,7 +13,7 @@ from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_hash, recipe
 from gen.recipe.keywords import _places
 from gen.recipe.life import LifeSection
 from gen.support.errors import CorpusError, RecipeError
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 
 OUTER = gen.outer(width_mm=0.5)
 text = st.text(st.characters(codec="utf-8", exclude_characters="\0"), min_size=1, max_size=30)

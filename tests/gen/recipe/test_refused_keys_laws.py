@@ -9,7 +9,7 @@ from gen.recipe.keys import recipe_keys
 from gen.scenarios import draw_scenarios
 from gen.support.errors import RecipeError
 from tests.cases import for_each
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 
 KEYS = {key.key: key for key in recipe_keys() if not key.key.startswith("distribution.")}
 LEAVES = [key for key in KEYS.values() if not key.key.endswith("kind")]

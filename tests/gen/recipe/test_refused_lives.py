@@ -4,7 +4,7 @@ import pytest
 
 from gen.recipe import Recipe
 from gen.support.errors import RecipeError
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 from tests.recipes import LIVES
 
 

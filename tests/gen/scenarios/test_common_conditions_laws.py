@@ -9,8 +9,8 @@ from gen import uniform
 from gen.recipe import Recipe, recipe_hash
 from gen.scenarios import draw_scenarios
 from gen.support.units import split_unit
+from tests.conftest import small_with
 from tests.drawn_values import anywhere, with_key_of
-from tests.gen.conftest import small_with
 
 
 def of_each(scenarios, level, name):

@@ -14,8 +14,8 @@ from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
 from gen.support.errors import RecipeError
 from gen.support.units import decibel_to_ratio
+from tests.conftest import small_with
 from tests.drawn_values import anywhere
-from tests.gen.conftest import small_with
 
 SAMPLINGS = ("random", "sobol", "halton")
 FAULTY = ("inner", "outer", "ball")

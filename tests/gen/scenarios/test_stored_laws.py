@@ -8,7 +8,7 @@ import pytest
 from gen.recipe import Recipe, read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios, read_scenario, scenario_texts
 from gen.support.errors import CorpusError
-from tests.gen.conftest import small_with
+from tests.conftest import small_with
 from tests.paths import ROOT
 from tests.recipes import EVERYTHING
 

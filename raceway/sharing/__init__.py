@@ -1,17 +1,23 @@
 """Copies of corpora, joined and in the forms of other programs: ``sources -> choose -> blocks -> one function per form -> target``.
 
-============= =================================================================
+============= ========================================================
 module        responsibility
-============= =================================================================
-items         records one by one or in batches, for training
+============= ========================================================
 columns       columns with safe names, and the page about a copy
+copying       chosen records of one or several corpora, block by block
 tables        labels and units as CSV; one file per record
 csv_files     CSV
 parquet_files Parquet
 huggingface   Parquet by split with the card of the Hugging Face hub
 zarr_store    Zarr
 forms         all forms; ``copy``
-============= =================================================================
+card          the data card: a page, its facts and additions
+croissant     files, fields and licence for catalogues of data sets
+publishing    terms of use; the pages that describe a corpus
+card_pictures pictures and scores of a data card
+copy_command  the command copy
+card_command  the command card
+============= ========================================================
 """
 
 import lazy_loader

@@ -12,16 +12,14 @@ from typing import Any
 import xarray as xr
 
 from gen.corpus.acdd import content_id, license_address, publication_attributes
-from gen.corpus.card.citation import bibtex
-from gen.corpus.card.page import card_folder
 from gen.corpus.fault_classes import FAULT_NAMES
-from gen.corpus.files import sha256, write_text_durably
+from gen.corpus.files import CROISSANT_NAME, sha256, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
 from gen.corpus.publication import Publication
 from gen.corpus.schema import SIGNAL, SPLITS
-
-CROISSANT_NAME = "croissant.json"
+from raceway.sharing.card.citation import bibtex
+from raceway.sharing.card.page import card_folder
 
 _PARTS = {
     "@type": "cr:FileSet",
@@ -57,6 +55,14 @@ _CONTEXT = {
 def write_croissant(path: Path) -> None:
     """Write ``croissant.json`` of a finished corpus, whole or not at all; the same corpus gives the same bytes."""
     write_text_durably(croissant_text(path), card_folder(path) / CROISSANT_NAME)
+
+
+def croissant_problems(path: Path) -> list[str]:
+    """A sentence if ``croissant.json`` is not that of the corpus; a corpus without one has no problem."""
+    file = card_folder(path) / CROISSANT_NAME
+    if not file.is_file() or file.read_bytes() == croissant_text(path).encode():
+        return []
+    return [f"{file}: is not that of the corpus; run raceway card again."]
 
 
 def croissant_text(path: Path) -> str:

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from gen.corpus.card import additions
-from gen.corpus.card.citation import bibtex, citation
-from gen.corpus.card.facts import card_facts, needs_plugin
-from gen.corpus.card.markdown import code_text, plain_text
 from gen.corpus.fault_classes import FAULTS
-from gen.corpus.files import CARD_SUFFIX, corpus_around, place_of, write_text_durably
+from gen.corpus.files import CARD_NAME, CARD_SUFFIX, corpus_around, place_of, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import RECIPE_NAME, Manifest, corpus_files, read_manifest, recipe_text
 from gen.corpus.schema import listed_flags
 from gen.support.errors import CorpusError
+from raceway.sharing.card import additions
+from raceway.sharing.card.citation import bibtex, citation
+from raceway.sharing.card.facts import card_facts, needs_plugin
+from raceway.sharing.card.markdown import code_text, plain_text
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -36,7 +36,7 @@ def check_card(path: Path) -> None:
         return
     if (corpus := corpus_around(place_of(path).parent)) is not None:
         raise CorpusError(f"{path}: is a file of the corpus {corpus}; give that corpus.")
-    is_card = (folder / additions.CARD_NAME).exists() and corpus_around(folder) is None
+    is_card = (folder / additions.ADDITIONS_NAME).exists() and corpus_around(folder) is None
     if not is_card and any(folder.glob("[!.]*")):  # hidden files are those of a killed call
         raise CorpusError(f"{folder}: holds no data card of raceway; move it, or give the corpus another name.")
 
@@ -92,7 +92,7 @@ def _template() -> "Template":
     from jinja2 import Environment, PackageLoader, StrictUndefined  # takes 50 ms
 
     environment = Environment(
-        loader=PackageLoader("gen.corpus.card", ""),
+        loader=PackageLoader("raceway.sharing.card", ""),
         autoescape=False,  # noqa: S701 - Markdown, of which plain_text leaves nothing
         # what a filter of the template has made harmless is marked as safe there
         finalize=lambda value: (
@@ -117,4 +117,4 @@ def write_card(path: Path | str) -> None:
     path = Path(path)
     if path.is_file() and (recipe := recipe_text(path)) is not None:
         write_text_durably(recipe, card_folder(path) / RECIPE_NAME)
-    write_text_durably(data_card(path), card_folder(path) / "README.md")
+    write_text_durably(data_card(path), card_folder(path) / CARD_NAME)

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from gen.corpus.card.markdown import plain_text
 from gen.corpus.schema import SPLITS
-from gen.exporting.columns import Column, Export
-from gen.exporting.parquet_files import known_classes, write_shards
+from raceway.sharing.card.markdown import plain_text
+from raceway.sharing.columns import Column, Export
+from raceway.sharing.parquet_files import known_classes, write_shards
 
 _LICENCES = (
     "apache-2.0", "bsd-2-clause", "bsd-3-clause", "cc0-1.0", "cc-by-4.0", "cc-by-nc-4.0", "cc-by-nc-nd-4.0", "cc-by-nc-sa-4.0",

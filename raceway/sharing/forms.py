@@ -7,17 +7,18 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from gen.corpus.codecs import CODECS, Codec
-from gen.corpus.copying import choose
 from gen.corpus.files import remove_left_behind_of, whole_folder_or_none, whole_or_not_at_all
 from gen.corpus.new import NewCorpus, new_corpus
 from gen.corpus.outputs import check_new
-from gen.exporting.columns import Export
-from gen.exporting.csv_files import write_csv
-from gen.exporting.huggingface import write_huggingface
-from gen.exporting.parquet_files import write_parquet, write_parquet_file
-from gen.exporting.zarr_store import write_store, write_zarr
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
+from raceway.sharing.columns import Export
+from raceway.sharing.copying import choose
+from raceway.sharing.csv_files import write_csv
+from raceway.sharing.huggingface import write_huggingface
+from raceway.sharing.parquet_files import write_parquet, write_parquet_file
+from raceway.sharing.publishing import describe
+from raceway.sharing.zarr_store import write_store, write_zarr
 
 _PART_BYTES = 16_000_000  # of single precision
 
@@ -111,6 +112,8 @@ def copy(
         with _place(form, target, chosen.recipe, codec or "zlib") as place:
             write(export, place)
             chosen.check_repeats()
+    if form == "folder":
+        describe(target)
     files = [target] if target.is_file() else [path for path in target.rglob("*") if path.is_file()]
     size = sum(path.stat().st_size for path in files)
     return Copied(target, form, chosen.count, chosen.of, tuple(chosen.channels), chosen.filled, len(files), size)

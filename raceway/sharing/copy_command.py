@@ -72,7 +72,7 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
 
     Next: raceway info TARGET, raceway validate TARGET
     """
-    from gen import copy as copy_corpora
+    from raceway.sharing import copy as copy_corpora
 
     with progress("copying", "records") as report:
         made = copy_corpora(sources, output, to=to, **choice, progress=report)

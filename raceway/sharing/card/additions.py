@@ -13,7 +13,7 @@ from gen.corpus.manifest import Manifest, Strict, first_problem
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
-CARD_NAME = "card.json"
+ADDITIONS_NAME = "card.json"
 PICTURES = "pictures"
 
 
@@ -66,9 +66,9 @@ def read_additions(directory: Path, manifest: Manifest) -> CardAdditions:
         If the file is not what ``raceway card`` writes.
     """
     nothing = CardAdditions(parts=manifest.parts_sha256 or "")
-    if not (directory / CARD_NAME).exists():
+    if not (directory / ADDITIONS_NAME).exists():
         return nothing
-    path = plain_file(directory, CARD_NAME)
+    path = plain_file(directory, ADDITIONS_NAME)
     check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
     try:
         additions = CardAdditions.model_validate_json(path.read_bytes())
@@ -79,4 +79,4 @@ def read_additions(directory: Path, manifest: Manifest) -> CardAdditions:
 
 def write_additions(directory: Path, additions: CardAdditions) -> None:
     """Write ``card.json``, whole or not at all."""
-    write_text_durably(json.dumps(additions.model_dump(mode="json"), indent=1) + "\n", directory / CARD_NAME)
+    write_text_durably(json.dumps(additions.model_dump(mode="json"), indent=1) + "\n", directory / ADDITIONS_NAME)

@@ -5,10 +5,11 @@ import shutil
 import numpy as np
 import pytest
 
-from gen import copy, open_corpus, validate_corpus
-from gen.corpus import SIGNAL, Publication, open_part, publish, read_manifest
+from gen import open_corpus, validate_corpus
+from gen.corpus import SIGNAL, Publication, open_part, read_manifest
 from gen.corpus.layout import stored_signal
 from gen.support.errors import CorpusError
+from raceway import copy, publish
 from tests import corpora
 from tests.same_corpora import files
 
@@ -109,8 +110,8 @@ def test_the_history_tells_the_choice_and_the_manifest_keeps_the_publication(sou
 
 def test_far_apart_records_are_read_and_written_like_near_ones(tmp_path, monkeypatch):
     corpora.write_corpus(tmp_path / "source", (1,) * 12)
-    monkeypatch.setattr("gen.corpus.copying._SPAN", 2)
-    monkeypatch.setattr("gen.corpus.copying._MOST_IN_BLOCK", 3)
+    monkeypatch.setattr("raceway.sharing.copying._SPAN", 2)
+    monkeypatch.setattr("raceway.sharing.copying._MOST_IN_BLOCK", 3)
     copy(tmp_path / "source", tmp_path / "some", where="rig in (0, 1, 6, 11)")
     assert_same(contents(tmp_path / "some"), contents(tmp_path / "source", [0, 1, 6, 11]))
     assert [row.records for row in read_manifest(tmp_path / "some").parts] == [3, 1]

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from gen.corpus.copying import Block
 from gen.corpus.schema import DRAWS
-from gen.exporting.columns import Column, Export
+from raceway.sharing.columns import Column, Export
+from raceway.sharing.copying import Block
 
 LABELS, VARIABLES = "labels.csv", "variables.csv"
 _FORMULA = ("=", "+", "-", "@")

@@ -1,6 +1,6 @@
 """Chosen records and channels of one or several corpora, read in blocks as if they were one corpus.
 
-``sources -> choose -> Chosen -> blocks of stored records -> a corpus, or a form of another program (gen.exporting)``
+``sources -> choose -> Chosen -> blocks of stored records -> a corpus, or a form of another program (raceway.sharing)``
 
 Nothing of a record changes but the numbers of machines in corpora that are joined, and what was asked for: names of channels, and
 floating point in place of counts.

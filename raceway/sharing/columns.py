@@ -13,10 +13,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus.card.markdown import plain_text
 from gen.corpus.choice import per_record
-from gen.corpus.copying import Block, Chosen
 from gen.corpus.schema import DRAWS, SCHEMA, class_names
+from raceway.sharing.card.markdown import plain_text
+from raceway.sharing.copying import Block, Chosen
 
 _LONGEST_NAME = 60  # letters; PostgreSQL cuts names after 63
 _RESERVED = ("record", "file")
@@ -54,7 +54,7 @@ class Export:
     """Called with the number of records of each block that is done."""
 
     def blocks(self, most_bytes: int, places: NDArray[np.intp] | None = None) -> Iterator[Block]:
-        """Blocks of records (:meth:`gen.corpus.copying.Chosen.blocks`), each reported when the next one is asked for."""
+        """Blocks of records (:meth:`raceway.sharing.copying.Chosen.blocks`), each reported when the next one is asked for."""
         for block in self.chosen.blocks(most_bytes, places):
             yield block
             self.report(len(block.numbers))

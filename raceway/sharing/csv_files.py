@@ -5,8 +5,8 @@ Numbers have the nine digits that single precision needs, so that nothing is los
 
 from pathlib import Path
 
-from gen.exporting.columns import Export
-from gen.exporting.tables import label_table, record_file
+from raceway.sharing.columns import Export
+from raceway.sharing.tables import label_table, record_file
 
 _BLOCK_BYTES = 4_000_000  # of single precision; as Python numbers a value takes ten times the memory
 

@@ -10,12 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.corpus import FAULTS, Publication, data_card, open_corpus, publish, read_manifest, read_publication
-from gen.corpus.card.additions import CardAdditions, CardPicture, write_additions
-from gen.corpus.card.citation import bibtex
-from gen.corpus.card.facts import ranges, rebuilding
+from gen.corpus import FAULTS, Publication, open_corpus, read_manifest, read_publication
 from gen.corpus.manifest import Manifest, Overrides
 from gen.support.errors import CorpusError
+from raceway import publish
+from raceway.sharing.card.additions import CardAdditions, CardPicture, write_additions
+from raceway.sharing.card.citation import bibtex
+from raceway.sharing.card.facts import ranges, rebuilding
+from raceway.sharing.card.page import data_card
 from tests.tone_corpora import write_corpus
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from gen.corpus.layout import PACKING
 from gen.corpus.schema import SIGNAL
-from gen.exporting.columns import Export
+from raceway.sharing.columns import Export
 
 _BLOCK_BYTES = 16_000_000  # of single precision
 _CHUNK_BYTES = 4_000_000  # of single precision, half of that as counts

@@ -14,12 +14,13 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-import gen
-from gen.corpus import SIGNAL, Publication, copying, new_corpus, open_corpus, publish, stored_signal
-from gen.exporting import FORMS, parquet_files
-from gen.exporting.columns import plain_names
-from gen.exporting.tables import cell_text
+import raceway
+from gen.corpus import SIGNAL, Publication, new_corpus, open_corpus, stored_signal
 from gen.support.errors import CorpusError
+from raceway import publish
+from raceway.sharing import FORMS, copying, parquet_files
+from raceway.sharing.columns import plain_names
+from raceway.sharing.tables import cell_text
 from tests.corpora import FS, dataset, write_corpus, write_parts
 from tests.same_corpora import files
 
@@ -67,7 +68,7 @@ def lines_on_reading(folder):
 
 
 def test_parquet_gives_back_every_record_with_units(corpus, tmp_path):
-    made = gen.copy(corpus, tmp_path / "out", to="parquet")
+    made = raceway.copy(corpus, tmp_path / "out", to="parquet")
     assert (made.records, made.channels) == (9, ("a", "b"))
     table, expected = pq.read_table(tmp_path / "out/data"), opened(corpus)
     for place, name in enumerate("ab"):
@@ -83,7 +84,7 @@ def test_parquet_gives_back_every_record_with_units(corpus, tmp_path):
 
 
 def test_csv_gives_back_every_bit_of_single_precision(corpus, tmp_path):
-    gen.copy(corpus, tmp_path / "out", to="csv")
+    raceway.copy(corpus, tmp_path / "out", to="csv")
     expected, labels = opened(corpus), rows(tmp_path / "out/labels.csv")
     assert [row["fault"] for row in labels] == fault_names(expected)
     assert [float(row["width"]) for row in labels] == expected["width"].values.tolist()
@@ -99,7 +100,7 @@ def test_csv_gives_back_every_bit_of_single_precision(corpus, tmp_path):
 
 
 def test_xarray_opens_the_zarr_store_as_the_corpus(corpus, tmp_path):
-    gen.copy(corpus, tmp_path / "out", to="zarr")
+    raceway.copy(corpus, tmp_path / "out", to="zarr")
     expected = opened(corpus)
     with xr.open_zarr(tmp_path / "out/corpus.zarr") as found:
         assert {"title", "history", "id", "Conventions"} <= set(found.attrs)
@@ -118,7 +119,7 @@ def test_xarray_opens_the_zarr_store_as_the_corpus(corpus, tmp_path):
 def test_the_lines_on_the_page_of_a_copy_read_it(counts, tmp_path, monkeypatch, to):
     if to in ("parquet", "csv"):
         pytest.importorskip("pandas")
-    gen.copy(counts, tmp_path / "out", to=to)
+    raceway.copy(counts, tmp_path / "out", to=to)
     monkeypatch.chdir(tmp_path / "out")
     found = {}
     exec(lines_on_reading(tmp_path / "out"), found)  # noqa: S102 - our own page
@@ -132,9 +133,9 @@ def test_the_lines_on_the_page_of_a_copy_read_it(counts, tmp_path, monkeypatch, 
 
 
 def test_the_zarr_store_of_many_blocks_is_that_of_one(counts, tmp_path, monkeypatch):
-    gen.copy(counts, tmp_path / "one", to="zarr")
+    raceway.copy(counts, tmp_path / "one", to="zarr")
     monkeypatch.setattr(copying, "_MOST_IN_BLOCK", 2)
-    gen.copy(counts, tmp_path / "many", to="zarr")
+    raceway.copy(counts, tmp_path / "many", to="zarr")
     with xr.open_zarr(tmp_path / "one/corpus.zarr") as one, xr.open_zarr(tmp_path / "many/corpus.zarr") as many:
         xr.testing.assert_identical(one.load(), many.load())
 
@@ -142,7 +143,7 @@ def test_the_zarr_store_of_many_blocks_is_that_of_one(counts, tmp_path, monkeypa
 def test_hugging_face_loads_the_folder_without_a_network(counts, tmp_path, monkeypatch):
     monkeypatch.setenv("HF_HUB_OFFLINE", "1")
     monkeypatch.setattr(parquet_files, "FILE_BYTES", 4 * 2 * 50 * 2)  # two records
-    gen.copy(counts, tmp_path / "out", to="huggingface")
+    raceway.copy(counts, tmp_path / "out", to="huggingface")
     assert (tmp_path / "out/data/train-00001-of-00002.parquet").is_file()
     code = (
         f"{lines_on_reading(tmp_path / 'out')}\nimport json; part = records['test']; one = part.with_format('numpy')[:]\n"
@@ -169,29 +170,29 @@ def test_hugging_face_loads_the_folder_without_a_network(counts, tmp_path, monke
 @pytest.mark.parametrize("to", FORMS)
 def test_a_choice_has_the_same_records_and_channels_and_the_same_bytes_each_time(counts, tmp_path, monkeypatch, to):
     choice = {"to": to, "where": "fault in ('inner', 'outer')", "split": "test", "channels": ["b"]}
-    made = gen.copy(counts, tmp_path / "out", **choice)
+    made = raceway.copy(counts, tmp_path / "out", **choice)
     assert (made.records, made.channels) == (2, ("b",))
     assert (made.files, made.bytes) == (len(files(tmp_path / "out")), sum(map(len, files(tmp_path / "out").values())))
     assert "2 of 9 records" in (tmp_path / "out/README.md").read_text()
     monkeypatch.setattr("time.time", lambda: 0.0)
-    gen.copy(counts, tmp_path / "again", **choice)
+    raceway.copy(counts, tmp_path / "again", **choice)
     assert files(tmp_path / "out") == files(tmp_path / "again")
 
 
 def test_a_single_file_gives_the_same_bytes_as_its_folder(counts, tmp_path):
-    gen.copy(counts, tmp_path / "one.nc")
-    gen.copy(tmp_path / "one.nc", tmp_path / "folder")
+    raceway.copy(counts, tmp_path / "one.nc")
+    raceway.copy(tmp_path / "one.nc", tmp_path / "folder")
     for to in ("parquet", "csv"):
-        gen.copy(tmp_path / "folder", tmp_path / f"folder_{to}", to=to)
-        gen.copy(tmp_path / "one.nc", tmp_path / f"file_{to}", to=to)
+        raceway.copy(tmp_path / "folder", tmp_path / f"folder_{to}", to=to)
+        raceway.copy(tmp_path / "one.nc", tmp_path / f"file_{to}", to=to)
         assert files(tmp_path / f"folder_{to}") == files(tmp_path / f"file_{to}")
 
 
 def test_a_target_with_a_suffix_is_one_table_or_one_store(corpus, tmp_path):
     choice = {"split": "train", "where": "rig > 0"}
     for to in ("parquet", "zarr"):
-        gen.copy(corpus, tmp_path / to, to=to, **choice)
-        assert gen.copy(corpus, tmp_path / f"one.{to}", **choice).form == to
+        raceway.copy(corpus, tmp_path / to, to=to, **choice)
+        assert raceway.copy(corpus, tmp_path / f"one.{to}", **choice).form == to
     assert pq.read_table(tmp_path / "one.parquet").equals(pq.read_table(tmp_path / "parquet/data"), check_metadata=True)
     assert files(tmp_path / "one.zarr") == files(tmp_path / "zarr/corpus.zarr")
 
@@ -200,9 +201,9 @@ def test_a_target_with_a_suffix_is_one_table_or_one_store(corpus, tmp_path):
 def test_a_form_of_several_corpora_is_that_of_the_joined_corpus(counts, tmp_path, to):
     write_parts(tmp_path / "other", [dataset(100, 3)])
     choice = {"where": "fault != 'outer'", "channels": ["b"]}
-    gen.copy([counts, tmp_path / "other"], tmp_path / "at_once", to=to, **choice)
-    gen.copy([counts, tmp_path / "other"], tmp_path / "joined", **choice)
-    gen.copy(tmp_path / "joined", tmp_path / "in_steps", to=to)
+    raceway.copy([counts, tmp_path / "other"], tmp_path / "at_once", to=to, **choice)
+    raceway.copy([counts, tmp_path / "other"], tmp_path / "joined", **choice)
+    raceway.copy(tmp_path / "joined", tmp_path / "in_steps", to=to)
     one, other = (read_labels_and_signals(tmp_path / name, to) for name in ("at_once", "in_steps"))
     assert [*one] == [*other]
     for name in one:
@@ -229,7 +230,7 @@ def test_licence_and_creators_go_along(tmp_path):
     write_corpus(tmp_path / "c", (3,))
     publish(tmp_path / "c", Publication(license="CC-BY-4.0", creators=[{"name": "Jane Doe"}]))
     for to in ("csv", "huggingface"):
-        gen.copy(tmp_path / "c", tmp_path / to, to=to)
+        raceway.copy(tmp_path / "c", tmp_path / to, to=to)
         page = (tmp_path / to / "README.md").read_text()
         assert "Licence: CC-BY-4.0" in page
         assert "Creators: Jane Doe" in page
@@ -244,7 +245,7 @@ def test_texts_of_strangers_stay_texts(tmp_path):
     with new_corpus(folder, title='a"\n---\nlicense: mit # \x1b[2J') as corpus:
         corpus.write(part)
     for to in FORMS:
-        gen.copy(folder, tmp_path / to, to=to)
+        raceway.copy(folder, tmp_path / to, to=to)
         assert all(
             re.fullmatch(r"[\w./-]+", name) and ".." not in name
             for name in map(str, files(tmp_path / to))
@@ -267,17 +268,17 @@ def test_hugging_face_gets_the_classes_that_are_there_and_null_for_a_fault_that_
     part["fault"] = ("record", np.array([1, 127, 5], np.int8), part["fault"].attrs)
     part["split"] = ("record", np.zeros(3, np.int8), part["split"].attrs)
     write_parts(tmp_path / "c", [part])
-    gen.copy(tmp_path / "c", tmp_path / "out", to="huggingface")
+    raceway.copy(tmp_path / "c", tmp_path / "out", to="huggingface")
     assert pq.read_table(tmp_path / "out/data")["fault"].to_pylist() == [0, None, 1]
     card = (tmp_path / "out/README.md").read_text()
     assert '{"name": "fault", "dtype": {"class_label": {"names": {"0": "inner", "1": "compound"}}}}' in card
-    gen.copy(tmp_path / "c", tmp_path / "tables", to="parquet")
+    raceway.copy(tmp_path / "c", tmp_path / "tables", to="parquet")
     assert pq.read_table(tmp_path / "tables/data")["fault"].to_pylist() == ["inner", "unknown", "compound"]
 
 
 def test_refusals_are_one_sentence(counts, tmp_path, monkeypatch):
     with pytest.raises(CorpusError, match=r"to: there is no form 'xls'; allowed are parquet, zarr, csv"):
-        gen.copy(counts, tmp_path / "out", to="xls")
+        raceway.copy(counts, tmp_path / "out", to="xls")
     for name, to, sentence in (
         ("a.csv", None, "csv is a folder of files; give it by --to csv"),
         (
@@ -288,10 +289,10 @@ def test_refusals_are_one_sentence(counts, tmp_path, monkeypatch):
         ("a.nc", "csv", "nc is one file, and --to csv makes a folder; leave one of the two out"),
     ):
         with pytest.raises(CorpusError, match=sentence):
-            gen.copy(counts, tmp_path / name, to=to)
-    monkeypatch.setattr("gen.exporting.forms.find_spec", lambda _: None)
+            raceway.copy(counts, tmp_path / name, to=to)
+    monkeypatch.setattr("raceway.sharing.forms.find_spec", lambda _: None)
     with pytest.raises(CorpusError, match=r"zarr: needs zarr; pip install zarr, or"):
-        gen.copy(counts, tmp_path / "out", to="zarr")
+        raceway.copy(counts, tmp_path / "out", to="zarr")
     assert not (tmp_path / "out").exists()
 
 

@@ -4,10 +4,14 @@ import netCDF4
 import pytest
 from ruamel.yaml import YAML
 
-from gen.corpus import Publication, new_corpus, open_corpus, publish, read_manifest, read_publication, validate_corpus
+from gen.corpus import Publication, new_corpus, open_corpus, read_manifest, read_publication, validate_corpus
+from gen.corpus.finishing import finish_corpus
 from gen.corpus.publication import check_doi, check_orcid
 from gen.recipe import read_recipe, recipe_hash
 from gen.support.errors import CorpusError, RecipeError
+from raceway import describe, publish
+from raceway.sharing import croissant_problems
+from raceway.sharing.card.page import data_card
 from tests import corpora
 from tests.paths import ROOT
 from tests.same_corpora import files
@@ -41,9 +45,12 @@ def test_a_published_corpus_has_the_files_of_one_that_was_made_with_its_publicat
     with new_corpus(made, title="A corpus", publication=WHOLE) as new:
         for part in parts:
             new.write(part)
+    if corpus.is_dir():
+        describe(corpus)
     before = files(corpus)
     publish(corpus, WHOLE)
     if corpus.is_dir():
+        describe(made)
         assert files(corpus) == files(made)
     with open_corpus(corpus) as changed, open_corpus(made) as from_the_start:
         assert changed.identical(from_the_start)
@@ -68,7 +75,12 @@ def test_the_facts_stand_in_the_attributes(corpus):
     assert found["date_created"] == "2026-03-31"
 
 
-STEPS = ("write_index", "write_manifest", "write_card", "write_croissant")
+STEPS = (
+    "gen.corpus.finishing.write_index",
+    "gen.corpus.finishing.write_manifest",
+    "raceway.sharing.publishing.write_card",
+    "raceway.sharing.publishing.write_croissant",
+)
 
 
 @pytest.mark.parametrize("step", STEPS)
@@ -77,11 +89,11 @@ def test_a_call_that_ends_between_two_files_is_found_and_repaired(copied_folder,
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(f"gen.corpus.finishing.{step}", killed)
+        patch.setattr(step, killed)
         with pytest.raises(KeyboardInterrupt):
             publish(copied_folder, WHOLE)
     open_corpus(copied_folder).close()
-    assert (validate_corpus(copied_folder) == []) == (step == "write_index")
+    assert (validate_corpus(copied_folder) == []) == (not step.endswith("manifest"))
     publish(copied_folder, WHOLE)
     assert validate_corpus(copied_folder) == []
     assert read_manifest(copied_folder).publication == WHOLE
@@ -187,7 +199,7 @@ def test_a_title_beyond_ascii_is_read_back_from_every_file(tmp_path, form):
     for file in [tmp_path / form] if form == "c.nc" else (tmp_path / form).rglob("*.nc"):
         with netCDF4.Dataset(file) as opened:
             assert opened.title == title
-    assert form == "c.nc" or title in (tmp_path / form / "README.md").read_text()
+    assert title in data_card(tmp_path / form)
 
 
 def test_the_example_of_the_page_has_every_fact_of_a_publication():
@@ -196,3 +208,15 @@ def test_the_example_of_the_page_has_every_fact_of_a_publication():
     assert set(example) == set(Publication.model_fields)
     example["date"] = str(example["date"])  # Raceway reads dates as text
     read_publication(example)
+
+
+def test_a_card_of_another_content_is_removed_and_a_changed_croissant_is_found(copied_folder):
+    describe(copied_folder)
+    assert croissant_problems(copied_folder) == []
+    croissant = copied_folder / "croissant.json"
+    croissant.write_bytes(croissant.read_bytes().replace(b"i", b"j", 1))
+    (problem,) = croissant_problems(copied_folder)
+    assert problem.endswith("croissant.json: is not that of the corpus; run raceway card again.")
+    finish_corpus(copied_folder, read_manifest(copied_folder).parts, title="Another")
+    assert not croissant.exists()
+    assert not (copied_folder / "README.md").exists()

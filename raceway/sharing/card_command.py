@@ -60,8 +60,8 @@ def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None
     Next: read DIR/README.md, then raceway copy DIR -o NAME.nc
     """
     publication = _publication(corpus, {name: value for name, value in given.items() if value})
-    from features.report.card_pictures import complete_card
-    from gen.corpus import card_folder
+    from raceway.sharing.card.page import card_folder
+    from raceway.sharing.card_pictures import complete_card
 
     added = complete_card(corpus, scores)
     written = card_folder(corpus) / "README.md"
@@ -86,7 +86,8 @@ def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None
 
 def _publication(corpus: Path, given: dict[str, Any]) -> "Publication":
     """Facts of the corpus after those that are given have replaced others."""
-    from gen.corpus import publish, read_manifest
+    from gen.corpus import read_manifest
+    from raceway.sharing.publishing import publish
 
     publish(corpus, read_manifest(corpus).publication.stored | given)
     return read_manifest(corpus).publication

@@ -3,9 +3,9 @@
 import re
 from collections.abc import Sequence
 
-from gen.corpus.card.markdown import plain_text
 from gen.corpus.manifest import Manifest
 from gen.corpus.publication import Creator, Publication
+from raceway.sharing.card.markdown import plain_text
 
 
 def _note(manifest: Manifest) -> str:

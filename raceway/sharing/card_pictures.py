@@ -22,19 +22,18 @@ from features.report.summaries import draw_content
 from gen.corpus import (
     FAULT_NAMES,
     UNKNOWN,
-    card_folder,
-    check_card,
     class_counts,
     lock,
     open_corpus,
     read_manifest,
     remove_temporary_files,
-    write_card,
-    write_croissant,
     write_durably,
     writing,
 )
-from gen.corpus.card.additions import (
+from gen.corpus.fault_classes import LOOKS
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
+from raceway.sharing.card.additions import (
     PICTURES,
     CardAdditions,
     CardPicture,
@@ -43,9 +42,8 @@ from gen.corpus.card.additions import (
     read_additions,
     write_additions,
 )
-from gen.corpus.fault_classes import LOOKS
-from gen.support.errors import CorpusError
-from gen.support.limits import check_limit
+from raceway.sharing.card.page import card_folder, check_card
+from raceway.sharing.publishing import describe
 
 DPI = 110
 COLOURS = 48  # of a picture: lines, text and shades look the same, and the file has half the size
@@ -76,8 +74,7 @@ def complete_card(path: Path, scores: Path | None = None) -> CardAdditions:
             pictures = _write_pictures(folder / PICTURES, corpus)
             added = CardAdditions(parts=known.parts, pictures=pictures, scores=given or known.scores)
             write_additions(folder, added)
-            write_card(path)
-            write_croissant(path)
+            describe(path)
     return added
 
 
