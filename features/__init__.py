@@ -1,12 +1,12 @@
-"""Features of vibration records: a corpus in, a feature table, scores and a report out.
+"""Features of vibration records: a corpus in, a feature table and scores out.
 
 It uses the format of a corpus and not the simulator, so that recordings of real machines are treated in the same way.
 
-``corpus -> feature_table -> Model -> report``, and ``one recording -> diagnose -> report``
+``corpus -> feature_table -> Model -> scores``
 
-========= ==============================================================================
+========= ===================================================================================
 module    responsibility
-========= ==============================================================================
+========= ===================================================================================
 signal    spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
 table     records -> feature table: bands, definitions, indicators, files
 accessor  the functions of `signal` on xarray
@@ -16,8 +16,7 @@ ranking   features by how well they tell the classes, or follow a series to its 
 lives     remaining life of bearings run to failure, with and without the signal
 realism   synthetic records against real ones: AUC of measures, class by class
 diagnosis class of one recording, and the lines that speak for it
-report    figures of records, corpora and scores, and one page with all of them
-========= ==============================================================================
+========= ===================================================================================
 """
 
 import lazy_loader

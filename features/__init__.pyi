@@ -9,4 +9,3 @@ from .table.speed import shaft_speed as shaft_speed
 from .table.corpora import feature_table as feature_table
 from .table.transformer import IndicatorTransformer as IndicatorTransformer
 from .table.waveforms import open_waveforms as open_waveforms
-from .report.maps import plot as plot

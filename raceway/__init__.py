@@ -10,6 +10,7 @@ kept_models models trained on a recipe and kept per user; the reference model is
 pages       tables and picture of docs/features.md
 importing   a job: recordings of people in the format of corpora
 sharing     a job: corpora copied, described and published
+reports     a job: pages and pictures of corpora and scores
 commands    one function per command
 cli         the group of all commands, and the entry point
 =========== ========================================================================

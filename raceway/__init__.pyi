@@ -1,3 +1,4 @@
 from .console.progress import show_progress as show_progress
 from .kept_models import reference_model as reference_model
+from .reports.maps import plot as plot
 from .sharing import copy as copy, describe as describe, publish as publish

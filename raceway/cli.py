@@ -17,7 +17,6 @@ from raceway.commands import (
     corpora,
     diagnosing,
     doctor,
-    exploring,
     feature_tables,
     lives,
     models,
@@ -26,6 +25,7 @@ from raceway.commands import (
 from raceway.console.ending import BAD_INPUT, NoReader, exit_code
 from raceway.console.signals import listen_for_signals
 from raceway.importing import import_commands
+from raceway.reports import explore_command
 from raceway.sharing import card_command, copy_command
 
 GROUPS: Mapping[str, tuple[click.Command, ...]] = {
@@ -42,7 +42,7 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         corpora.validate,
         corpora.replay,
         plotting.plot,
-        exploring.explore,
+        explore_command.explore,
         lives.life,
         comparing.compare,
     ),

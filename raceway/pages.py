@@ -14,13 +14,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import gen
-from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, picture
 from features.signal.demodulation import analytic_band
 from features.signal.spectra import band_energies, fourier_coefficients, psd
 from features.table.band import DEFAULT_BAND
 from features.table.definitions import FITTED, LINES, RAW, RIVALS, SHAPES, VIEWS, Feature, define_features
 from features.table.indicators import Orders, bands_of, levels_and_shape
 from gen.support.units import from_si
+from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, picture
 
 _TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 _HEADER = ("feature", "unit", "range", "meaning", "formula", "depends on", "source")

@@ -121,7 +121,7 @@ CLASSES: Mapping[str, FaultClass] = {
         FaultClass("compound", "#56B4E9", (BPFI[0], BPFO[0], BSF[0], FTF[0]), words="Several faults", n_spalls=2),
     )
 }
-"""Rows by name. Colours: see `features.report.pictures`."""
+"""Rows by name. Colours: see `raceway.reports.pictures`."""
 
 FAULTS = tuple(CLASSES)
 """Names of the classes; the code of a class is its place."""

@@ -5,7 +5,6 @@ module           responsibility
 ================ ========================================================
 corpora          commands that make corpora and look at them
 plotting         a picture of one record or recording
-exploring        a page to browse a corpus
 feature_tables   features of all records
 models           a model trained, and scored on another corpus
 references       healthy records that the tested ones are compared with

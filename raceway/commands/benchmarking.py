@@ -162,8 +162,8 @@ def benchmark(
     chosen = _makers(estimators)
     from features.baselines import benchmark as run
     from features.baselines import read_results
-    from features.report.page import write_report
     from gen.corpus import result_folder
+    from raceway.reports.page import write_report
 
     protocol = {"track": tracks[0], "folds": folds, "seed": seed}
     match output, submit, check:

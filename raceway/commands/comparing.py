@@ -53,7 +53,7 @@ def compare(
       raceway compare corpus cwru mfpt -o realism
     """
     from features.realism import compare as run
-    from features.report.comparison import write_comparison
+    from raceway.reports.comparison import write_comparison
 
     with progress("measuring", "corpora") as report:
         comparison = run(synthetic, real, top=top, window=window, records=records, progress=report)

@@ -168,8 +168,8 @@ def _write_page(
     name: str,
     facts: list[tuple[str, str]],
 ) -> None:
-    from features.report.diagnosis import write_diagnosis
     from gen.corpus import make_result_folder
+    from raceway.reports.diagnosis import write_diagnosis
 
     if not page.parent.is_dir():  # of a folder of recordings
         make_result_folder(page.parent)

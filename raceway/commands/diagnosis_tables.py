@@ -90,9 +90,9 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
     CorpusError
         If one of the two exists and was not made by Raceway, or the disk refuses it.
     """
-    from features.report.templates import template
     from gen.corpus import check_result, make_result_folder, write_text_durably
     from gen.corpus.fault_classes import CLASSES
+    from raceway.reports.templates import template
 
     page = template("diagnoses.html.jinja").render(
         name=name,

@@ -109,8 +109,8 @@ def features(
 def _ranking(table: "xr.Dataset", path: Path) -> "DataFrame":
     """Features from best to worst, of which the best are drawn."""
     from features import rank_features
-    from features.report.pictures import write_picture
-    from features.report.ranking import draw_ranking
+    from raceway.reports.pictures import write_picture
+    from raceway.reports.ranking import draw_ranking
 
     ranked = rank_features(table)
     write_picture(draw_ranking(ranked), path)

@@ -35,8 +35,8 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
 
     The picture has the spectra of its snapshots over its age, its rms, and the true length of its spall with the first detection.
     """
-    from features.report.lives import draw_life
-    from features.report.pictures import check_picture, write_picture
+    from raceway.reports.lives import draw_life
+    from raceway.reports.pictures import check_picture, write_picture
 
     check_picture(output)
     write_picture(draw_life(corpus, bearing, like), output)

@@ -11,7 +11,7 @@ from raceway.console.progress import notice
 from raceway.importing.reading import Reading, read_recording, reading_options, rpm_option
 
 if TYPE_CHECKING:
-    from features.report.pictures import DrawnRecord
+    from raceway.reports.pictures import DrawnRecord
 
 PICTURES = (".png", ".svg", ".pdf")
 VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "waterfall", "cepstrum")
@@ -70,10 +70,10 @@ def plot(
     if _is_corpus(source) and (record, view, healthy, band, band_by) == (None,) * 5:
         _draw_classes(source, output)
         return
-    from features.report.pictures import draw_record, write_picture
-    from features.report.views import band_by as chosen_band
-    from features.report.views import draw_view
     from gen.support.errors import CorpusError
+    from raceway.reports.pictures import draw_record, write_picture
+    from raceway.reports.views import band_by as chosen_band
+    from raceway.reports.views import draw_view
 
     shown = _shown(source, record, bearing, speeds, band, reading)
     if band_by is not None:
@@ -94,10 +94,10 @@ def plot(
 
 
 def _draw_classes(corpus: Path, output: Path) -> None:
-    from features.report.examples import draw_overview
-    from features.report.pictures import write_picture
     from gen.corpus import open_corpus
     from gen.support.errors import CorpusError
+    from raceway.reports.examples import draw_overview
+    from raceway.reports.pictures import write_picture
 
     with open_corpus(corpus) as opened:
         try:
@@ -120,9 +120,9 @@ def _shown(
     band: tuple[float, float] | None,
     reading: Reading,
 ) -> "DrawnRecord":
-    from features.report.shown import shown_record, shown_recording
     from gen import bearing_orders
     from gen.support.units import rpm_to_hertz
+    from raceway.reports.shown import shown_record, shown_recording
 
     options = Analysis(band=band).options()
     if len(reading.channels) > 1:

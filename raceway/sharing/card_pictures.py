@@ -15,10 +15,6 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from PIL import Image
 
-from features.report.examples import chosen_example
-from features.report.page import quantities
-from features.report.pictures import STYLE, WIDTH, DrawnRecord, draw_envelope_spectrum, draw_waveform, picture
-from features.report.summaries import draw_content
 from gen.corpus import (
     FAULT_NAMES,
     UNKNOWN,
@@ -33,6 +29,10 @@ from gen.corpus import (
 from gen.corpus.fault_classes import LOOKS
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
+from raceway.reports.examples import chosen_example
+from raceway.reports.page import quantities
+from raceway.reports.pictures import STYLE, WIDTH, DrawnRecord, draw_envelope_spectrum, draw_waveform, picture
+from raceway.reports.summaries import draw_content
 from raceway.sharing.card.additions import (
     PICTURES,
     CardAdditions,

@@ -8,10 +8,10 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.report.pictures import BLUE, STYLE, picture
-from features.report.templates import template
 from gen.corpus import make_result_folder, write_numbers, write_text_durably
 from raceway.console.show import plain
+from raceway.reports.pictures import BLUE, STYLE, picture
+from raceway.reports.templates import template
 from studies.ophel2025.experiments import UNITS, constant
 from studies.ophel2025.paper import CHANNELS, FIGURES, FS, PRESETS, Preset, Run, power_spectrum, run_many
 from studies.ophel2025.schematics import draw_crack, draw_model

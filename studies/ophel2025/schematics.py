@@ -13,9 +13,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Annulus, Circle, Polygon
 
-from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION
 from gen.physics.catalogue import CATALOGUE
 from gen.support.units import from_si
+from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION
 from studies.ophel2025.paper import CRACK, SHAFT_MASS, FloatArray, Preset
 
 Point = tuple[float, float]

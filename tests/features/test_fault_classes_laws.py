@@ -10,12 +10,12 @@ import pytest
 
 from features.baselines import estimators
 from features.baselines.estimators import EnvelopeRule
-from features.report import pictures
-from features.report.pictures import DrawnRecord, draw_record, fault_lines
 from features.signal.lines import FAMILIES
 from features.table.indicators import Orders, feature_names
 from gen.corpus import FAULTS
 from gen.corpus.fault_classes import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, LOOKS, FaultClass, NominalLine
+from raceway.reports import pictures
+from raceway.reports.pictures import DrawnRecord, draw_record, fault_lines
 from tests.paths import ROOT
 
 ORDERS = Orders(*map(np.float64, (0.4, 3.6, 5.4, 2.35)))

@@ -10,9 +10,9 @@ from features.baselines.importance import permutation_importance
 from features.baselines.records import Records
 from features.baselines.tracks import track_splits
 from features.ranking import MEASURES, SERIES_MEASURES, series_measures
-from features.report.pictures import picture
-from features.report.ranking import draw_ranking
 from gen.support.errors import CorpusError
+from raceway.reports.pictures import picture
+from raceway.reports.ranking import draw_ranking
 
 
 def table_of(fault, specimen, recording, **features):

@@ -4,11 +4,11 @@ import re
 
 import pytest
 
-from features.report.lives import draw_life
 from gen.corpus import open_corpus
 from gen.generation.corpus import generate
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
+from raceway.reports.lives import draw_life
 from tests.conftest import small_with
 from tests.recipes import LIVES
 

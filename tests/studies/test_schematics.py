@@ -7,7 +7,7 @@ import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.patches import Circle
 
-from features.report.pictures import VERMILION
+from raceway.reports.pictures import VERMILION
 from studies.ophel2025.paper import PRESETS
 from studies.ophel2025.schematics import draw_crack, draw_model
 

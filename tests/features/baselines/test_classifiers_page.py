@@ -9,8 +9,8 @@ import pytest
 import gen
 from features import Model, open_waveforms
 from tests import tone_corpora
-from tests.features.report.test_report import write_corpus
 from tests.page_examples import blocks, run_blocks
+from tests.raceway.reports.test_report import write_corpus
 
 
 @pytest.fixture

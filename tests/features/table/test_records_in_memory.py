@@ -7,10 +7,10 @@ import xarray as xr
 import gen
 from features import Model, audit_splits, feature_table, open_waveforms, rank_features
 from features.baselines import benchmark, cross_validate, learning_curve
-from features.report.explore import write_explorer
-from features.report.shown import shown_record
 from features.table.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
+from raceway.reports.explore import write_explorer
+from raceway.reports.shown import shown_record
 
 
 @pytest.fixture(scope="module")

@@ -10,12 +10,12 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from features.lives.prognosis import FIRST, check_lives
-from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 from gen.corpus import SIGNAL, open_corpus
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
+from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 
 
 @rc_context(STYLE)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-import features
+import raceway
 from features import signal
 from tests.pulses import pulse_train
 
@@ -26,7 +26,7 @@ RESULTS = {
 
 
 def drawn(result, record=0):
-    axes = features.plot(result, Figure().subplots(), record=record)
+    axes = raceway.plot(result, Figure().subplots(), record=record)
     return axes.get_title(), [np.asarray(one.get_array()) for one in axes.collections]
 
 
@@ -50,7 +50,7 @@ def test_the_title_of_bands_tells_the_quantity_its_highest_value_and_its_band(co
 
 
 def test_the_coherence_of_an_impact_train_is_darkest_at_its_rate(records):
-    axes = features.plot(signal.spectral_coherence(records[1], FS, 400.0), Figure().subplots())
+    axes = raceway.plot(signal.spectral_coherence(records[1], FS, 400.0), Figure().subplots())
     (mesh,) = axes.collections
     shade = np.asarray(mesh.get_array())
     edges = mesh.get_coordinates()[0, :, 0]
@@ -60,7 +60,7 @@ def test_the_coherence_of_an_impact_train_is_darkest_at_its_rate(records):
 
 def test_another_result_is_refused():
     with pytest.raises(TypeError, match="tuple is not a BandTree, OrderMap or Coherence"):
-        features.plot((), Figure().subplots())
+        raceway.plot((), Figure().subplots())
 
 
 @pytest.mark.parametrize("compute", [*RESULTS.values(), lambda x: signal.separate_random(x, FS)])

@@ -12,13 +12,13 @@ import numpy as np
 from features.realism.comparison import SHARES, Comparison
 from features.realism.measures import MEASURES, NAMES, Measure
 from features.realism.windows import Windows, typical_window
-from features.report.pictures import DrawnRecord, picture
-from features.report.sides import draw_distributions, draw_sides
-from features.report.templates import template, three_digits
 from features.signal.rows import FloatArray
 from features.table.indicators import Orders
 from gen.corpus import FAULTS, make_result_folder, write_numbers, write_text_durably
 from gen.corpus.fault_classes import CLASSES
+from raceway.reports.pictures import DrawnRecord, picture
+from raceway.reports.sides import draw_distributions, draw_sides
+from raceway.reports.templates import template, three_digits
 
 TYPICAL = "kurtosis"  # an example has the median of this measure, which every class has
 

@@ -53,8 +53,8 @@ def explore(
 
     A record takes 1.5 kB on the page, its features another 0.8 kB and its sound 4 kB: 10,000 records are 15 MB.
     """
-    from features.report.explore import write_explorer
     from gen.corpus import read_manifest
+    from raceway.reports.explore import write_explorer
 
     options = team.options(min(records, read_manifest(corpus).records)) | analysis.options()
     with progress("reading", "records") as report:

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
-from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULT_NAMES
 from gen.corpus.fault_classes import LOOKS
+from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 
 if TYPE_CHECKING:
     from features.baselines import Baseline, Scores

@@ -5,11 +5,11 @@ import re
 import numpy as np
 import pytest
 
-from features.report.pictures import draw_record, picture, squared_envelope
-from features.report.shown import shown_recording
-from features.report.views import MAPS, VIEWS, band_by, draw_view
 from features.table.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
+from raceway.reports.pictures import draw_record, picture, squared_envelope
+from raceway.reports.shown import shown_recording
+from raceway.reports.views import MAPS, VIEWS, band_by, draw_view
 from tests.pulses import pulse_train
 
 FS = 12_000.0

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from features.report.pictures import DrawnRecord
 from features.signal.orders import angles_from_speed
 from features.signal.rows import FloatArray
 from features.signal.tracking import track_speed
@@ -17,6 +16,7 @@ from gen.corpus import FAULT_NAMES, SIGNAL, corpus_name, open_corpus
 from gen.corpus.fault_classes import UNKNOWN
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
+from raceway.reports.pictures import DrawnRecord
 
 CONSTANT = 1.02  # largest ratio of two speeds that count as one
 MARGIN = 1.05  # by which a tracked speed may leave the labelled range

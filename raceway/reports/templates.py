@@ -9,7 +9,7 @@ import numpy as np
 from gen.support.shown import visible
 
 
-def template(name: str, package: str = "features.report") -> jinja2.Template:
+def template(name: str, package: str = "raceway.reports") -> jinja2.Template:
     """Template of a package; filter ``image`` makes an address of a picture, ``figure`` three decimals or a dash.
 
     Texts are escaped, and without control and format characters.
@@ -18,7 +18,7 @@ def template(name: str, package: str = "features.report") -> jinja2.Template:
     """
 
     def read(wanted: str) -> str:
-        return files(package if wanted == name else "features.report").joinpath(wanted).read_text(encoding="utf-8")
+        return files(package if wanted == name else "raceway.reports").joinpath(wanted).read_text(encoding="utf-8")
 
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(read),

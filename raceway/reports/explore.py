@@ -21,19 +21,6 @@ import numpy as np
 import xarray as xr
 from scipy.signal import resample
 
-from features.report.maps import BRIGHTEST_DB
-from features.report.pictures import (
-    SEGMENT,
-    TOLERANCE,
-    TURNS,
-    DrawnRecord,
-    fault_lines,
-    highest_drawn_order,
-    squared_envelope,
-)
-from features.report.shown import can_be_drawn, check_band, shown_of
-from features.report.templates import template
-from features.report.views import envelope_map
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 from features.table.band import DEFAULT_BAND, Band, checked_band
@@ -59,6 +46,19 @@ from gen.support.executor import run
 from gen.support.progress import Progress, counter
 from gen.support.shown import visible
 from gen.support.units import READABLE, range_text, shown_unit
+from raceway.reports.maps import BRIGHTEST_DB
+from raceway.reports.pictures import (
+    SEGMENT,
+    TOLERANCE,
+    TURNS,
+    DrawnRecord,
+    fault_lines,
+    highest_drawn_order,
+    squared_envelope,
+)
+from raceway.reports.shown import can_be_drawn, check_band, shown_of
+from raceway.reports.templates import template
+from raceway.reports.views import envelope_map
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -156,7 +156,7 @@ def write_explorer(
         sensor = str(opened["channel"].values[number]) if opened.sizes["channel"] > 1 else ""
         title = _text(opened.attrs.get("title", "untitled corpus"))
         facts = {"band": [*band], "fs": float(opened["sample_rate"][0]), "sound": sound, "axes": _axes(known)}
-    folder = files("features.report")
+    folder = files("raceway.reports")
     script = "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
     page = template("explore.html.jinja").render(
         title=title,

@@ -11,7 +11,14 @@ from matplotlib.figure import Figure
 from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels, Recorded
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.diagnosis.wording import probability_in_words
-from features.report.pictures import (
+from features.signal.lines import Orders
+from features.signal.motion import velocity_band
+from features.signal.rows import FloatArray
+from features.table.band import DEFAULT_BAND, Band
+from gen.corpus import check_result, write_text_durably
+from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT
+from gen.support.units import from_si
+from raceway.reports.pictures import (
     FAINT,
     INK,
     STYLE,
@@ -23,14 +30,7 @@ from features.report.pictures import (
     name_lines,
     picture,
 )
-from features.report.templates import template, three_digits
-from features.signal.lines import Orders
-from features.signal.motion import velocity_band
-from features.signal.rows import FloatArray
-from features.table.band import DEFAULT_BAND, Band
-from gen.corpus import check_result, write_text_durably
-from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT
-from gen.support.units import from_si
+from raceway.reports.templates import template, three_digits
 
 LOWEST_DB, MARGIN_DB = -5.0, 4.0  # ends of the axis of levels: below the floor, and above the highest
 DRAWN_HARMONICS = 3  # of each family

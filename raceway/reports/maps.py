@@ -1,6 +1,6 @@
 """Drawings of what `features.signal` computes as a map: kurtogram, order map, spectral coherence.
 
-``features.plot(signal.kurtogram(x, fs))`` draws into the current axes of pyplot, or into given ones.
+``raceway.plot(signal.kurtogram(x, fs))`` draws into the current axes of pyplot, or into given ones.
 """
 
 from __future__ import annotations
@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from features.report.pictures import VERMILION
 from features.signal.cyclic import Coherence
 from features.signal.impulsive import BandTree
 from features.signal.orders import OrderMap
 from features.signal.rows import FloatArray
 from gen.support.units import from_si
+from raceway.reports.pictures import VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -13,10 +13,15 @@ from hypothesis import strategies as st
 
 from features.baselines import ESTIMATORS, Model, benchmark, learning_curve
 from features.baselines.detection import detection
-from features.report import examples
-from features.report.curves import draw_curve, draw_detection, draw_reliability, draw_roc
-from features.report.page import _findings, quantities, write_report
-from features.report.pictures import (
+from features.table.band import DEFAULT_BAND
+from features.table.corpora import feature_table
+from features.table.indicators import Orders
+from gen.corpus import FAULTS, open_corpus
+from gen.support.errors import CorpusError
+from raceway.reports import examples
+from raceway.reports.curves import draw_curve, draw_detection, draw_reliability, draw_roc
+from raceway.reports.page import _findings, quantities, write_report
+from raceway.reports.pictures import (
     DrawnRecord,
     draw_record,
     fault_lines,
@@ -25,13 +30,8 @@ from features.report.pictures import (
     thin,
     write_picture,
 )
-from features.report.shown import shown_record
-from features.report.summaries import draw_scores
-from features.table.band import DEFAULT_BAND
-from features.table.corpora import feature_table
-from features.table.indicators import Orders
-from gen.corpus import FAULTS, open_corpus
-from gen.support.errors import CorpusError
+from raceway.reports.shown import shown_record
+from raceway.reports.summaries import draw_scores
 from tests.browser import CHROMIUM, browser
 from tests.corpora import write_records
 

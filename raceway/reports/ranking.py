@@ -5,9 +5,9 @@ from matplotlib.figure import Figure
 from pandas import DataFrame
 
 from features.ranking import MEASURES
-from features.report.pictures import BLUE, INK, STYLE, WIDTH
-from features.report.summaries import TEST_MARKERS
 from features.table.definitions import GROUPS
+from raceway.reports.pictures import BLUE, INK, STYLE, WIDTH
+from raceway.reports.summaries import TEST_MARKERS
 
 DRAWN = 25  # features
 COLOURS: dict[str, str] = dict(zip(GROUPS, (BLUE, *(colour for colour, _ in TEST_MARKERS)), strict=False))

@@ -8,9 +8,9 @@ import pytest
 
 from features.realism import compare
 from features.realism.measures import MEASURES
-from features.report.comparison import write_comparison
-from tests.features.report.test_report import Links
+from raceway.reports.comparison import write_comparison
 from tests.pulses import write_pulses
+from tests.raceway.reports.test_report import Links
 
 HOSTILE = "<b>{{ 7 * 7 }}'"
 

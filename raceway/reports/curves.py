@@ -10,8 +10,8 @@ from matplotlib.ticker import NullLocator
 
 from features.baselines import CurvePoint, Scores
 from features.baselines.detection import Roc, WidthBin
-from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 from gen.support.units import from_si
+from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 
 PANEL = (2.6, 2.4)  # inches, of a figure that stands beside others
 DASHED = (0, (4, 3))

@@ -5,7 +5,11 @@ import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from features.report.pictures import (
+from features.table.indicators import Orders, feature_names, indicators
+from gen.corpus import FAULT_NAMES
+from gen.corpus.fault_classes import COMBS, LOOKS
+from gen.support.units import from_si
+from raceway.reports.pictures import (
     STYLE,
     WIDTH,
     DrawnRecord,
@@ -14,11 +18,7 @@ from features.report.pictures import (
     draw_waveform,
     picture,
 )
-from features.report.shown import can_be_drawn, shown_of
-from features.table.indicators import Orders, feature_names, indicators
-from gen.corpus import FAULT_NAMES
-from gen.corpus.fault_classes import COMBS, LOOKS
-from gen.support.units import from_si
+from raceway.reports.shown import can_be_drawn, shown_of
 
 CANDIDATES = 15  # records of a class among which its example is chosen
 

@@ -11,8 +11,15 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.report.maps import BRIGHTEST_DB, FAINTEST, draw_coherence, draw_grid, level_over_median, plot
-from features.report.pictures import (
+from features.signal.cyclic import spectral_coherence
+from features.signal.impulsive import comb_bands, kurtogram
+from features.signal.orders import order_map, order_spectrum, resample_to_angle
+from features.signal.rows import FloatArray
+from features.signal.separation import cepstrum
+from features.table.band import Band
+from gen.corpus.fault_classes import FUNDAMENTALS, LOOKS, SHAFT
+from raceway.reports.maps import BRIGHTEST_DB, FAINTEST, draw_coherence, draw_grid, level_over_median, plot
+from raceway.reports.pictures import (
     FAINT,
     OVER,
     PER_TURN,
@@ -28,13 +35,6 @@ from features.report.pictures import (
     fault_lines,
     name_lines,
 )
-from features.signal.cyclic import spectral_coherence
-from features.signal.impulsive import comb_bands, kurtogram
-from features.signal.orders import order_map, order_spectrum, resample_to_angle
-from features.signal.rows import FloatArray
-from features.signal.separation import cepstrum
-from features.table.band import Band
-from gen.corpus.fault_classes import FUNDAMENTALS, LOOKS, SHAFT
 
 HEIGHT = 3.6  # inches
 MAP_TURNS = 24  # revolutions of a window of the waterfall

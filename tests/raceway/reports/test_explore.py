@@ -9,7 +9,13 @@ from unicodedata import category
 import numpy as np
 import pytest
 
-from features.report.explore import (
+from features.table.band import DEFAULT_BAND
+from features.table.corpora import feature_table
+from features.table.files import read_table, write_table
+from gen.corpus import open_corpus
+from gen.corpus.choice import chosen_records
+from gen.support.errors import CorpusError
+from raceway.reports.explore import (
     BLOCK,
     FIELDS,
     LEVELS,
@@ -20,16 +26,10 @@ from features.report.explore import (
     reduce_record,
     write_explorer,
 )
-from features.report.shown import shown_recording
-from features.table.band import DEFAULT_BAND
-from features.table.corpora import feature_table
-from features.table.files import read_table, write_table
-from gen.corpus import open_corpus
-from gen.corpus.choice import chosen_records
-from gen.support.errors import CorpusError
+from raceway.reports.shown import shown_recording
 from tests.browser import CHROMIUM, browser
-from tests.features.report.test_report import write_corpus
 from tests.pulses import ORDERS, pulse_train, write_pulses
+from tests.raceway.reports.test_report import write_corpus
 
 FS = 12_000.0
 SEEN = "</script><script>alert(1)</script>'\"{{ 7 * 7 }}"

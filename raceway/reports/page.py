@@ -15,11 +15,6 @@ from features.baselines import Results, Scores, interval_text, percent_text, sev
 from features.baselines.names import UNTRAINED
 from features.baselines.results_file import write_results
 from features.baselines.tracks import NOVELTY
-from features.report.curves import draw_curve, draw_detection, draw_reliability, draw_roc
-from features.report.examples import draw_examples
-from features.report.pictures import picture
-from features.report.summaries import draw_content, draw_scores
-from features.report.templates import template
 from gen.corpus import (
     SPLITS,
     UNITS,
@@ -36,6 +31,11 @@ from gen.corpus.choice import per_record
 from gen.corpus.fault_classes import HEALTHY, LOOKS
 from gen.corpus.schema import stored_unit
 from gen.support.units import READABLE, shown_unit
+from raceway.reports.curves import draw_curve, draw_detection, draw_reliability, draw_roc
+from raceway.reports.examples import draw_examples
+from raceway.reports.pictures import picture
+from raceway.reports.summaries import draw_content, draw_scores
+from raceway.reports.templates import template
 
 LONGEST_TEXT = 300
 BARS, LEAST_IMPORTANCE = 15, 5e-4  # of the drawn quantities

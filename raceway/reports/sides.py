@@ -10,7 +10,10 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.report.pictures import (
+from features.signal.rows import FloatArray
+from features.signal.spectra import psd
+from gen.support.units import from_si
+from raceway.reports.pictures import (
     BLUE,
     INK,
     SEGMENT,
@@ -23,9 +26,6 @@ from features.report.pictures import (
     squared_envelope,
     thin,
 )
-from features.signal.rows import FloatArray
-from features.signal.spectra import psd
-from gen.support.units import from_si
 
 COLOURS = (VERMILION, BLUE, "#009E73", "#CC79A7", "#E69F00", "#56B4E9")  # of the sets, as of the classes
 COLUMN = 2.6  # inches, width of one set

@@ -1,0 +1,23 @@
+"""Pictures of records and of scores, and pages: a corpus and its benchmark, a comparison, a diagnosis, a corpus to browse.
+
+=============== ==================================================================
+module          responsibility
+=============== ==================================================================
+pictures        drawings of one record, and the style of all
+shown           what is drawn: a record, or a recording of the user
+maps            drawings of kurtograms, order maps and coherence
+views           one view of a record, over orders at any speed
+summaries       drawings of the contents of a corpus, and of scores
+curves          drawing of a learning curve
+ranking         drawing of the best features of a ranking
+lives           drawing of a life, and of many lives
+sides           drawings of several sets side by side: examples, and distributions
+examples        an example of each class as a picture
+templates       templates of pages
+page            a corpus and its benchmark on one page
+comparison      a synthetic corpus and real ones on one page
+diagnosis       a diagnosis on one page
+explore         a corpus on one page to browse
+explore_command the command explore
+=============== ==================================================================
+"""
