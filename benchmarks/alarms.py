@@ -21,12 +21,13 @@ import xarray as xr
 from benchmarks.speed import real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import UNSURE
-from features.diagnosis import Given, Recorded, diagnose_recording
 from features.table.indicators import Orders
 from gen.corpus.fault_classes import CLASSES, HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.support.units import rpm_to_hertz
+from raceway.diagnosis import Given, diagnose_recording
+from raceway.importing.recorded import Recorded
 from raceway.kept_models import load_reference_model
 
 BEARING = "ER-12K"  # of the machine of limerick

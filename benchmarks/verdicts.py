@@ -4,7 +4,7 @@
 model is the reference model. "Damaged" is the share of faulty recordings whose part is not named, "wrong" that of recordings with another
 fault than the true one, or any on a healthy machine, "damaged" included, and "called healthy" that of faulty ones among all. The second
 table shows, at the right speed and bearing, how often the lines agree with the class that the classifier is sure of. ``--missed`` prints
-instead how many faulty recordings are called healthy by their length, which is `MISSED` of `features.diagnosis.wording`.
+instead how many faulty recordings are called healthy by their length, which is `MISSED` of `raceway.diagnosis.wording`.
 """
 
 import argparse
@@ -18,11 +18,12 @@ import numpy as np
 from benchmarks.speed import Recording, real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
-from features.diagnosis import ANY_RATE, Diagnosis, Given, Recorded, diagnose_recording
 from features.table.indicators import Orders
 from gen.corpus.fault_classes import CLASSES, HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
+from raceway.diagnosis import ANY_RATE, Diagnosis, Given, diagnose_recording
+from raceway.importing.recorded import Recorded
 from raceway.kept_models import load_reference_model
 
 RIGHT = "right speed and bearing"

@@ -15,7 +15,6 @@ baselines classifiers on a feature table, scored by specimen or rig beside their
 ranking   features by how well they tell the classes, or follow a series to its end
 lives     remaining life of bearings run to failure, with and without the signal
 realism   synthetic records against real ones: AUC of measures, class by class
-diagnosis class of one recording, and the lines that speak for it
 ========= ===================================================================================
 """
 

@@ -1,6 +1,5 @@
 from .auditing import audit_splits as audit_splits
 from .baselines import Model as Model
-from .diagnosis import diagnose as diagnose
 from .table.line_bands import fault_bands as fault_bands, fault_metrics as fault_metrics
 from .table.network_input import envelope_orders as envelope_orders
 from .lives.prognosis import score_lives as score_lives

@@ -15,7 +15,6 @@ from raceway.commands import (
     benchmarking,
     comparing,
     corpora,
-    diagnosing,
     doctor,
     feature_tables,
     lives,
@@ -24,6 +23,7 @@ from raceway.commands import (
 )
 from raceway.console.ending import BAD_INPUT, NoReader, exit_code
 from raceway.console.signals import listen_for_signals
+from raceway.diagnosis import diagnose_command
 from raceway.importing import import_commands
 from raceway.reports import explore_command
 from raceway.sharing import card_command, copy_command
@@ -52,7 +52,7 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         models.evaluate,
         benchmarking.benchmark,
         lives.prognose,
-        diagnosing.diagnose,
+        diagnose_command.diagnose,
     ),
     "Raceway itself": (doctor.doctor,),
 }

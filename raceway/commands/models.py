@@ -160,8 +160,8 @@ def evaluate(
       raceway evaluate pump --model model.skops --reference new.csv --reference-rate 12000 --reference-rpm 1480
     """
     from features.baselines import Model, count_unknown, unlabelled_answers
-    from features.diagnosis import count_verdicts
     from gen import open_corpus
+    from raceway.diagnosis import count_verdicts
     from raceway.kept_models import load_reference_model
 
     given = [name for name, value in reading.items() if value is not None]

@@ -13,6 +13,7 @@ label_values    types of the values of keys
 assumptions     sentences on what labels and units rest on
 resampling      recordings brought to another sample rate
 signals         one recording of the user, in m/s^2
+recorded        a recording in memory
 conversion      from the unit of a file to m/s^2
 matlab          one variable of a MATLAB file
 text            tables in text: encoding, mark between columns, fields

@@ -4,14 +4,12 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import click
 
 from raceway.console.options import Decorator, gathered, names
-
-if TYPE_CHECKING:
-    from features.diagnosis import Recorded
+from raceway.importing.recorded import ACCELERATION, Recorded
 
 UNITS = ("g", "mg", "m/s2", "mm/s2", "V", "mV")
 MARKS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
@@ -137,7 +135,7 @@ def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
 
 def readings_of(
     paths: Sequence[Path], reading: Reading, unusable: dict[Path, str] | None
-) -> "Iterator[tuple[Path, Recorded, Reading, tuple[str, ...]]]":
+) -> Iterator[tuple[Path, Recorded, Reading, tuple[str, ...]]]:
     """Recordings that can be read, one after the other; those of a folder as they state."""
     read = read_recording if unusable is None else read_as_stated
     for path in paths:
@@ -161,7 +159,7 @@ def set_aside(path: Path, unusable: dict[Path, str] | None) -> Iterator[None]:
         unusable[path] = str(error)
 
 
-def read_as_stated(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str, ...]]:
+def read_as_stated(path: Path, reading: Reading) -> tuple[Recorded, Reading, tuple[str, ...]]:
     """Read one of several recordings: as `read_recording`, without the options that the file contradicts."""
     from raceway.importing.signals import StatedOtherwiseError
 
@@ -176,7 +174,7 @@ def read_as_stated(path: Path, reading: Reading) -> tuple["Recorded", Reading, t
     return recorded, used, (*notes, note)
 
 
-def read_recording(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str, ...]]:
+def read_recording(path: Path, reading: Reading) -> tuple[Recorded, Reading, tuple[str, ...]]:
     """Channels of a file, how they were read, with the unit, and sentences on what was assumed.
 
     Without a choice the axes of one sensor are all read. The diagnosis itself warns of an implausible rms.
@@ -197,7 +195,7 @@ def read_recording(path: Path, reading: Reading) -> tuple["Recorded", Reading, t
     return recorded._replace(signals={"": recorded.signals[name]}), used, (note, *notes)
 
 
-def _read(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str, ...]]:
+def _read(path: Path, reading: Reading) -> tuple[Recorded, Reading, tuple[str, ...]]:
     from gen.support.errors import CorpusError
     from raceway.importing.signals import read_signal
 
@@ -213,11 +211,6 @@ def _read(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str,
             raise CorpusError(f"{path}: does not state its sample rate; give it with --rate HZ.")
         signals[channel or ""] = signal
         notes += [note for note in signal.warnings if "its rms" not in note]
-    from features.diagnosis import (
-        ACCELERATION,
-        Recorded,
-    )  # it takes seconds, and a file that cannot be used is told before
-
     shortest = min(signal.values.size for signal in signals.values())
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}
     unit = "unit of the file" if reading.unit is None and path.suffix.lower() == ".wav" else ACCELERATION

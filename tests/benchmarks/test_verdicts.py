@@ -8,10 +8,10 @@ import pytest
 from benchmarks.speed import recordings
 from benchmarks.verdicts import ERRORS, RIGHT, SEEDS, WITHOUT_FAULT, answer, conditions, rows, without_fault
 from features.baselines.predictions import DAMAGED, UNSURE
-from features.diagnosis.evidence import find_evidence
-from features.diagnosis.search import find_pairs, mean_spectra
-from features.diagnosis.spectrum import band_spectra
-from features.diagnosis.verdict import judge
+from raceway.diagnosis.evidence import find_evidence
+from raceway.diagnosis.search import find_pairs, mean_spectra
+from raceway.diagnosis.spectrum import band_spectra
+from raceway.diagnosis.verdict import judge
 from tests.features.table.test_recording_speeds import write_machines
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-import features
+import raceway
 from features.signal import velocity_rms
 from gen.physics.bearing_text import bearing_orders
 from gen.support.errors import CorpusError
@@ -195,24 +195,24 @@ def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
     signal = signal.astype(np.float32)
     known = {"orders": bearing_orders("6205"), "model": model}
     found = told(write_wav(tmp_path / "r.wav", signal), "--bearing", "6205", "--rpm", rpm, "--model", model)
-    diagnosis = features.diagnose(signal, FS, rpm=rpm, **known)
+    diagnosis = raceway.diagnose(signal, FS, rpm=rpm, **known)
     assert diagnosis.sentence == found["sentence"]
     assert diagnosis.probabilities == found["probabilities"]
-    axes = features.diagnose([signal, signal], FS, rpm=(0.9 * rpm, 1.1 * rpm), healthy=[[signal, signal]], **known)
+    axes = raceway.diagnose([signal, signal], FS, rpm=(0.9 * rpm, 1.1 * rpm), healthy=[[signal, signal]], **known)
     assert [levels.channel for levels in axes.levels] == ["0", "1", "0", "1"]
-    several = features.diagnose(
+    several = raceway.diagnose(
         signal, FS, rpm=rpm, model=model, orders={"6205": known["orders"], "other": (0.4, 4, 6, 3)}
     )
     assert several.bearing == "6205"
     assert axes.sentence.endswith("; channels 0 and 1, as axes of one housing.")
     with pytest.raises(CorpusError, match=r"has other channels \(one without a name\) than the recording \(0 and 1\)"):
-        features.diagnose([signal, signal], FS, rpm=rpm, healthy=[signal], **known)
+        raceway.diagnose([signal, signal], FS, rpm=rpm, healthy=[signal], **known)
     for wrong, shape in (([[[1.0, 2.0]]], (1, 1, 2)), (signal[:, None], (len(signal), 1)), (signal[:3], (3,))):
         sentence = f"an array of shape {shape} is given in place of (channel, time) or (time,), with at least 8 samples in time."
         with pytest.raises(ValueError, match=re.escape(sentence)):
-            features.diagnose(wrong, FS, rpm=rpm, **known)
+            raceway.diagnose(wrong, FS, rpm=rpm, **known)
     with pytest.raises(ValueError, match="not positive numbers"):
-        features.diagnose(signal, FS, rpm=-rpm, **known)
+        raceway.diagnose(signal, FS, rpm=-rpm, **known)
 
 
 def test_channels_of_a_matlab_file_are_its_variables_or_the_columns_of_one(model, recordings, tmp_path):
@@ -226,7 +226,7 @@ def test_channels_of_a_matlab_file_are_its_variables_or_the_columns_of_one(model
 
 
 def test_a_signal_that_tells_nothing_gives_unsure_and_advice(model, recordings, tmp_path):
-    """Which signals do is tested in tests/features/diagnosis/test_quality_laws.py."""
+    """Which signals do is tested in tests/raceway/diagnosis/test_quality_laws.py."""
     signal, rpm = recordings["inner"]
     page, sentence = tmp_path / "report.html", "the signal is constant"
     path = write_wav(tmp_path / "r.wav", 0 * signal + 3.7)

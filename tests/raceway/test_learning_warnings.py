@@ -37,7 +37,7 @@ def folder(tmp_path, monkeypatch):
     def returning(made):
         for module in (feature_tables, models, benchmarking):
             monkeypatch.setattr(module, "table_of", lambda *_: made)
-        monkeypatch.setattr("features.diagnosis.count_verdicts", lambda *_: {})  # the folder has no recordings
+        monkeypatch.setattr("raceway.diagnosis.count_verdicts", lambda *_: {})  # the folder has no recordings
         return tmp_path / "corpus"
 
     return returning

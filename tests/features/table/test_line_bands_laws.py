@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-import features
 import gen
+import raceway
 from features.signal import order_spectrum
 from features.signal.demodulation import amplitude_spectrum
 from features.table.line_bands import fault_bands, fault_metrics
@@ -26,7 +26,7 @@ def envelope(records=1, noise=0.01):
 
 
 def diagnose_with(orders):
-    return features.diagnose(np.zeros(100), FS, orders=orders, model="unread.skops")
+    return raceway.diagnose(np.zeros(100), FS, orders=orders, model="unread.skops")
 
 
 def test_bands_are_at_harmonics_and_at_sidebands_of_shaft_and_cage():

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from features.diagnosis.evidence import SHAFT_DRIFT, TOLERANCE, Line, side_of
 from features.signal.demodulation import ZERO_PADDING
 from features.signal.lines import families
 from features.signal.rows import FloatArray, centre
@@ -36,6 +35,7 @@ from features.table.band import DEFAULT_BAND
 from features.table.indicators import SHORTEST, Orders
 from features.table.speed import LONGEST, level_spectra
 from gen.corpus.fault_classes import CLASSES
+from raceway.diagnosis.evidence import SHAFT_DRIFT, TOLERANCE, Line, side_of
 
 ANY_RATE = (5.0, 100.0)  # Hz, of a shaft whose speed is not known
 TURNS = 4.0  # of the shaft in a window at least

@@ -2,7 +2,7 @@
 
 ``recordings of the corpus -> lines at their speeds; feature table -> predictions -> verdicts -> counts``
 
-The verdict is as of `features.diagnosis.answer` at the speed and bearing of the corpus, which are not searched.
+The verdict is as of `raceway.diagnosis.answer` at the speed and bearing of the corpus, which are not searched.
 """
 
 from collections import Counter
@@ -15,14 +15,14 @@ from features.baselines.classifying import predict
 from features.baselines.models import Model
 from features.baselines.predictions import UNSURE, Predictions
 from features.baselines.reference_choice import choose_reference
-from features.diagnosis.evidence import Line, find_evidence
-from features.diagnosis.quality import quality_of
-from features.diagnosis.spectrum import band_spectra
-from features.diagnosis.verdict import judge
 from features.table.channels import channel_number
 from features.table.indicators import Orders
 from features.table.recording_speeds import rates_to_use
 from gen.corpus import FAULTS, SIGNAL, UNKNOWN_CODE, open_corpus
+from raceway.diagnosis.evidence import Line, find_evidence
+from raceway.diagnosis.quality import quality_of
+from raceway.diagnosis.spectrum import band_spectra
+from raceway.diagnosis.verdict import judge
 
 
 def count_verdicts(

@@ -3,11 +3,11 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from features.diagnosis.evidence import LEAST_LEVEL, Line
-from features.diagnosis.search import STRONG_COMB, Given, Pair
 from features.signal.speed import DISAGREEMENT
 from gen.corpus.fault_classes import CLASSES, HEALTHY, SIDES
 from gen.support.units import from_si
+from raceway.diagnosis.evidence import LEAST_LEVEL, Line
+from raceway.diagnosis.search import STRONG_COMB, Given, Pair
 
 AT_END = 0.002  # distance of a speed from the end of the search, relative
 MISSED = ((0.5, (15, 86), (1, 288)), (2.0, (12, 86), (0, 288)), (10.0, (10, 86), (0, 288)))

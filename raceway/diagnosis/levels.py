@@ -10,8 +10,7 @@ import numpy as np
 from features.signal.motion import velocity_rms
 from features.signal.rows import FloatArray
 from gen.support.units import from_si
-
-ACCELERATION = "m/s²"
+from raceway.importing.recorded import ACCELERATION
 
 
 class Levels(NamedTuple):

@@ -22,24 +22,6 @@ from features.baselines.classifying import estimator_probabilities, predict
 from features.baselines.models import Model
 from features.baselines.predictions import DAMAGED, UNSURE, Predictions, impulsiveness_of, predictions
 from features.baselines.references import with_energies
-from features.diagnosis.evidence import Line, find_evidence
-from features.diagnosis.levels import levels_of
-from features.diagnosis.quality import ENOUGH, Quality, quality_of
-from features.diagnosis.result import LONGEST, Diagnosis, Recorded
-from features.diagnosis.search import Given, Pair, find_pairs, mean_spectra, strange_comb
-from features.diagnosis.spectrum import BandSpectrum, band_spectra
-from features.diagnosis.verdict import judge
-from features.diagnosis.wording import (
-    answer_in_words,
-    candidates,
-    damaged_in_words,
-    different_classes,
-    listed,
-    missed_faults,
-    pair_in_words,
-    speed_warning,
-    unexplained,
-)
 from features.signal.rows import FloatArray, mean_row
 from features.table.band import Band
 from features.table.channels import joined_channels
@@ -50,6 +32,25 @@ from features.table.recordings import recording_table, windows_of
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
+from raceway.diagnosis.evidence import Line, find_evidence
+from raceway.diagnosis.levels import levels_of
+from raceway.diagnosis.quality import ENOUGH, Quality, quality_of
+from raceway.diagnosis.result import Diagnosis
+from raceway.diagnosis.search import Given, Pair, find_pairs, mean_spectra, strange_comb
+from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
+from raceway.diagnosis.verdict import judge
+from raceway.diagnosis.wording import (
+    answer_in_words,
+    candidates,
+    damaged_in_words,
+    different_classes,
+    listed,
+    missed_faults,
+    pair_in_words,
+    speed_warning,
+    unexplained,
+)
+from raceway.importing.recorded import LONGEST, Recorded
 
 WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
 

@@ -20,9 +20,9 @@ A class is answered if the classifier is sure of it and the lines do not tell an
 from collections.abc import Mapping, Sequence
 
 from features.baselines.predictions import DAMAGED, UNSURE
-from features.diagnosis.evidence import Line
-from features.diagnosis.wording import by_family, family_in_words, faulty, line_of
 from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT, SIDES
+from raceway.diagnosis.evidence import Line
+from raceway.diagnosis.wording import by_family, family_in_words, faulty, line_of
 
 PLAIN = 15.0  # dB, level of lines that contradict a class
 OBVIOUS = 25.0  # dB, the same for a class of which the classifier is sure

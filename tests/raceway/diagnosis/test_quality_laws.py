@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from features.diagnosis.quality import clipped_share, quality_of
 from features.table.indicators import Orders
+from raceway.diagnosis.quality import clipped_share, quality_of
 
 FS, RATE = 12_000.0, 29.5
 ORDERS = Orders(0.3983, 3.5848, 5.4152, 2.3567)

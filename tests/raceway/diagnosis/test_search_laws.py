@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from features.diagnosis import ANY_RATE, Given, Pair
-from features.diagnosis.evidence import Line
-from features.diagnosis.search import LevelSpectra, find_pairs, mean_spectra, strange_comb
-from features.diagnosis.wording import speed_warning
 from features.table.indicators import Orders
+from raceway.diagnosis import ANY_RATE, Given, Pair
+from raceway.diagnosis.evidence import Line
+from raceway.diagnosis.search import LevelSpectra, find_pairs, mean_spectra, strange_comb
+from raceway.diagnosis.wording import speed_warning
 from tests.pulses import impulses_beside_a_shaft
 
 FS, RATE = 12_000.0, 29.5

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import kurtosis
 
-from features.diagnosis.levels import ACCELERATION, levels_of
+from raceway.diagnosis.levels import ACCELERATION, levels_of
 
 FS = 12_000.0
 

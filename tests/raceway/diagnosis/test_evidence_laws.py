@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from features.diagnosis.evidence import _near_shaft, find_evidence
-from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.table.indicators import Orders
+from raceway.diagnosis.evidence import _near_shaft, find_evidence
+from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
 
 FS, RATE = 12_000.0, 29.5
 ORDERS = Orders(0.3983, 3.5848, 5.4152, 2.3567)

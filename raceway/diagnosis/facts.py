@@ -8,15 +8,16 @@ from gen.support.units import from_si
 from raceway.importing.reading import Reading
 
 if TYPE_CHECKING:
-    from features.diagnosis import Diagnosis, Pair, Recorded
     from gen.physics.bearing import Bearing
+    from raceway.diagnosis import Diagnosis, Pair
+    from raceway.importing.recorded import Recorded
 
 
 def diagnosis_facts(
     diagnosis: "Diagnosis", recorded: "Recorded", path: Path, source: Path, output: Path | None, notes: tuple[str, ...]
 ) -> dict[str, Any]:
     """Facts of one diagnosis, for JSON."""
-    from features.diagnosis import FALSE_ALARM, line_facts
+    from raceway.diagnosis import FALSE_ALARM, line_facts
 
     pairs = [(pair, True) for pair in diagnosis.explanations] + [(pair, False) for pair in diagnosis.elsewhere]
     return {

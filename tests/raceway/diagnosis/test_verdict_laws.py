@@ -5,15 +5,15 @@ import pytest
 
 from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
-from features.diagnosis import Given, Pair, Recorded
-from features.diagnosis.answer import Judged, _conclude, _usable
-from features.diagnosis.evidence import Line
-from features.diagnosis.result import LONGEST
-from features.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
-from features.diagnosis.wording import MISSED, answer_in_words, missed_faults
 from features.table.indicators import Orders
 from features.table.recordings import windows_of
 from gen.corpus import FAULTS
+from raceway.diagnosis import Given, Pair
+from raceway.diagnosis.answer import Judged, _conclude, _usable
+from raceway.diagnosis.evidence import Line
+from raceway.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
+from raceway.diagnosis.wording import MISSED, answer_in_words, missed_faults
+from raceway.importing.recorded import LONGEST, Recorded
 
 FS, RATE = 12_000.0, 25.0
 ORDERS = Orders(*map(np.asarray, (0.3983, 3.5848, 5.4152, 2.3567)))

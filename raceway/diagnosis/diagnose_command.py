@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from raceway.commands.diagnosis_tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
 from raceway.console import show
 from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, model_option
 from raceway.console.progress import notice, notice_compilation
+from raceway.diagnosis.tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
 from raceway.importing.reading import (
     Reading,
     read_as_stated,
@@ -23,8 +23,9 @@ from raceway.importing.reading import (
 )
 
 if TYPE_CHECKING:
-    from features.diagnosis import Diagnosis, Given, Recorded
     from gen.physics.bearing import Bearing
+    from raceway.diagnosis import Diagnosis, Given
+    from raceway.importing.recorded import Recorded
 
 ONE_TURN = 60.0  # rpm; lower speeds may be meant in Hz
 
@@ -123,8 +124,8 @@ def diagnose(
 
     with keep_garbage():
         loaded, source = _model(model)
-        from features.diagnosis import diagnose_recording
-        from raceway.commands.diagnosis_output import assumptions, diagnosis_facts
+        from raceway.diagnosis import diagnose_recording
+        from raceway.diagnosis.facts import assumptions, diagnosis_facts
 
     found = []
     for path, recorded, used, of_file in chain((first,), readings):
@@ -169,7 +170,7 @@ def _write_page(
     facts: list[tuple[str, str]],
 ) -> None:
     from gen.corpus import make_result_folder
-    from raceway.reports.diagnosis import write_diagnosis
+    from raceway.diagnosis.page import write_diagnosis
 
     if not page.parent.is_dir():  # of a folder of recordings
         make_result_folder(page.parent)
@@ -207,10 +208,10 @@ def _name(bearing: "Bearing") -> str:
 def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -> "Given":
     import numpy as np
 
-    from features.diagnosis import ANY_RATE, Given
     from features.table.indicators import Orders
     from gen.physics.bearing import orders
     from gen.support.units import rpm_to_hertz
+    from raceway.diagnosis import ANY_RATE, Given
 
     nominal = {name: Orders(*(np.asarray(order) for order in orders(one))) for name, one in bearings.items()}
     return Given(nominal, ANY_RATE if speeds is None else (rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])))

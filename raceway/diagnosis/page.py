@@ -8,9 +8,6 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels, Recorded
-from features.diagnosis.spectrum import BandSpectrum, band_spectra
-from features.diagnosis.wording import probability_in_words
 from features.signal.lines import Orders
 from features.signal.motion import velocity_band
 from features.signal.rows import FloatArray
@@ -18,6 +15,10 @@ from features.table.band import DEFAULT_BAND, Band
 from gen.corpus import check_result, write_text_durably
 from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT
 from gen.support.units import from_si
+from raceway.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels
+from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
+from raceway.diagnosis.wording import probability_in_words
+from raceway.importing.recorded import Recorded
 from raceway.reports.pictures import (
     FAINT,
     INK,
@@ -66,7 +67,7 @@ def write_diagnosis(
         If the disk refuses the file.
     """
     drawn = diagnosis.spectrum is not None
-    page = template("diagnosis.html.jinja").render(
+    page = template("diagnosis.html.jinja", "raceway.diagnosis").render(
         name=name,
         diagnosis=diagnosis,
         colour=CLASSES[diagnosis.verdict].colour if diagnosis.verdict in CLASSES else FAINT,

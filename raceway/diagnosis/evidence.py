@@ -21,9 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.diagnosis.spectrum import TOP_ORDER, BandSpectrum
 from features.table.indicators import Orders
 from gen.corpus.fault_classes import CLASSES, SHAFT, FaultClass
+from raceway.diagnosis.spectrum import TOP_ORDER, BandSpectrum
 
 FALSE_ALARM = 0.01  # probability that noise has a first line in a recording, and that it adds a further line to one
 TOLERANCE = 0.02  # of an order: slip, contact angle and the remaining error of the speed
@@ -78,7 +78,7 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     Parameters
     ----------
     spectra
-        Of `features.diagnosis.spectrum.band_spectra`.
+        Of `raceway.diagnosis.spectrum.band_spectra`.
     shaft_rate
         [Hz]
     orders

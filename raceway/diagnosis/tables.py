@@ -94,7 +94,7 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
     from gen.corpus.fault_classes import CLASSES
     from raceway.reports.templates import template
 
-    page = template("diagnoses.html.jinja").render(
+    page = template("diagnoses.html.jinja", "raceway.diagnosis").render(
         name=name,
         rows=rows,
         counts=Counter(row.verdict for row in rows),

@@ -2,36 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
-from features.diagnosis.evidence import Line
-from features.diagnosis.levels import ACCELERATION, Levels
-from features.diagnosis.search import Given, Pair
-from features.diagnosis.spectrum import BandSpectrum
-from features.diagnosis.wording import candidates
-from features.signal.rows import FloatArray
 from features.table.indicators import Orders
 from gen.support.shown import Shown
 from gen.support.units import from_si
-
-LONGEST = 60.0  # s; of a longer recording the beginning is used
-
-
-class Recorded(NamedTuple):
-    """A recording: signals of equal length by the name of their channel, shape (time,), sample rate [Hz], name, and unit."""
-
-    signals: Mapping[str, FloatArray]
-    fs: float
-    name: str = "the recording"
-    unit: str = ACCELERATION
-
-    @property
-    def used(self) -> "Recorded":
-        """At most the first 60 s."""
-        most = round(LONGEST * self.fs)
-        return self._replace(signals={name: signal[:most] for name, signal in self.signals.items()})
+from raceway.diagnosis.evidence import Line
+from raceway.diagnosis.levels import Levels
+from raceway.diagnosis.search import Given, Pair
+from raceway.diagnosis.spectrum import BandSpectrum
+from raceway.diagnosis.wording import candidates
 
 
 @dataclass(frozen=True, repr=False)

@@ -7,12 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from features.baselines.models import Model
-from features.diagnosis.answer import diagnose_recording
-from features.diagnosis.result import Diagnosis, Recorded
-from features.diagnosis.search import ANY_RATE, Given
 from features.signal.door import fault_orders, rows
 from features.table.indicators import Orders
 from gen.support.units import from_si, rpm_to_hertz
+from raceway.diagnosis.answer import diagnose_recording
+from raceway.diagnosis.result import Diagnosis
+from raceway.diagnosis.search import ANY_RATE, Given
+from raceway.importing.recorded import Recorded
 
 
 def diagnose(

@@ -1,0 +1,26 @@
+"""A recording in memory: its channels, sample rate, name and unit."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+ACCELERATION = "m/s²"
+LONGEST = 60.0  # s; of a longer recording the beginning is used
+
+
+class Recorded(NamedTuple):
+    """A recording: signals of equal length by the name of their channel, shape (time,), sample rate [Hz], name, and unit."""
+
+    signals: Mapping[str, FloatArray]
+    fs: float
+    name: str = "the recording"
+    unit: str = ACCELERATION
+
+    @property
+    def used(self) -> "Recorded":
+        """At most the first 60 s."""
+        most = round(LONGEST * self.fs)
+        return self._replace(signals={name: signal[:most] for name, signal in self.signals.items()})
