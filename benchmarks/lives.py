@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from scipy.fft import rfft, rfftfreq
 from scipy.stats import ks_2samp, kurtosis
 
-from features.lives.prognosis import METHODS, Lives, score_methods, scores_of
 from gen import generate
 from gen.corpus import SIGNAL, open_corpus
+from raceway.lives.prognosis import METHODS, Lives, score_methods, scores_of
 
 EVERY, CADENCE = 10.0, 60.0  # s
 BANDS = (

@@ -13,9 +13,9 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from features.realism import Comparison, compare
-from features.realism.measures import MEASURES
 from gen import generate
+from raceway.comparing import Comparison, compare
+from raceway.comparing.measures import MEASURES
 from raceway.importing import import_cwru, import_generic, import_mfpt
 
 UESTC = Path(__file__).with_name("uestc.csv")

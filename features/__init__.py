@@ -13,8 +13,6 @@ accessor  the functions of `signal` on xarray
 auditing  splits of real recordings that can leak
 baselines classifiers on a feature table, scored by specimen or rig beside their controls
 ranking   features by how well they tell the classes, or follow a series to its end
-lives     remaining life of bearings run to failure, with and without the signal
-realism   synthetic records against real ones: AUC of measures, class by class
 ========= ===================================================================================
 """
 

@@ -2,7 +2,6 @@ from .auditing import audit_splits as audit_splits
 from .baselines import Model as Model
 from .table.line_bands import fault_bands as fault_bands, fault_metrics as fault_metrics
 from .table.network_input import envelope_orders as envelope_orders
-from .lives.prognosis import score_lives as score_lives
 from .ranking import rank_features as rank_features, rank_series as rank_series
 from .table.speed import shaft_speed as shaft_speed
 from .table.corpora import feature_table as feature_table

@@ -1,5 +1,6 @@
 from .console.progress import show_progress as show_progress
 from .diagnosis import diagnose as diagnose
 from .kept_models import reference_model as reference_model
+from .lives.prognosis import score_lives as score_lives
 from .reports.maps import plot as plot
 from .sharing import copy as copy, describe as describe, publish as publish

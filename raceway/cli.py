@@ -13,18 +13,18 @@ import click
 
 from raceway.commands import (
     benchmarking,
-    comparing,
     corpora,
     doctor,
     feature_tables,
-    lives,
     models,
     plotting,
 )
+from raceway.comparing import compare_command
 from raceway.console.ending import BAD_INPUT, NoReader, exit_code
 from raceway.console.signals import listen_for_signals
 from raceway.diagnosis import diagnose_command
 from raceway.importing import import_commands
+from raceway.lives import lives_commands
 from raceway.reports import explore_command
 from raceway.sharing import card_command, copy_command
 
@@ -43,15 +43,15 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         corpora.replay,
         plotting.plot,
         explore_command.explore,
-        lives.life,
-        comparing.compare,
+        lives_commands.life,
+        compare_command.compare,
     ),
     "Learn from them": (
         feature_tables.features,
         models.train,
         models.evaluate,
         benchmarking.benchmark,
-        lives.prognose,
+        lives_commands.prognose,
         diagnose_command.diagnose,
     ),
     "Raceway itself": (doctor.doctor,),

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS
-from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.models import warn_of_durations, warn_of_seen, warn_of_severities
 from raceway.console import show
+from raceway.console.corpus_table import notice_of_unknown, table_of
 from raceway.console.options import (
     A_CORPUS,
     A_MODEL,

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 import click
 
 from raceway.console import show
+from raceway.console.corpus_table import table_of
 from raceway.console.options import (
     A_CORPUS,
-    USUAL,
-    USUAL_ANALYSIS,
     Analysis,
     Team,
     band_option,
@@ -19,7 +18,6 @@ from raceway.console.options import (
     speed_option,
     worker_options,
 )
-from raceway.console.progress import notice, progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -126,26 +124,3 @@ def _list_features(analysis: Analysis, as_json: bool) -> None:
         return
     rows = ((one.group, one.name, one.unit, one.range, one.meaning) for one in defined)
     show.columns([("group", "feature", "unit", "range", "meaning"), *rows])
-
-
-def notice_of_unknown(corpus: Path, unknown: int) -> None:
-    """Say how many records of a corpus are left out because their class is not known."""
-    if unknown:
-        notice(f"{corpus}: {show.count_text(unknown, 'record')} of class unknown left out.")
-
-
-def table_of(
-    corpus: Path, speed: "Speed" = "off", team: Team = USUAL, analysis: Analysis = USUAL_ANALYSIS
-) -> "xr.Dataset":
-    """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
-    from features import feature_table
-    from features.table.corpora import band_warnings
-    from features.table.recording_speeds import speed_warnings
-    from gen.corpus import read_manifest
-
-    options = team.options(read_manifest(corpus).records) | analysis.options()
-    with progress("computing features", "parts") as report:
-        table = feature_table(corpus, speed=speed, **options, progress=report)
-    for sentence in (*band_warnings(table), *speed_warnings(table)):
-        notice(f"warning: {sentence}")
-    return table

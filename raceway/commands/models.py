@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR
-from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.references import reference_options, reference_table
 from raceway.console import show
+from raceway.console.corpus_table import notice_of_unknown, table_of
 from raceway.console.options import (
     USUAL_ANALYSIS,
     Analysis,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from raceway.commands.feature_tables import table_of
+from raceway.console.corpus_table import table_of
 from raceway.console.options import A_PATH, Analysis, Decorator, Team
 from raceway.console.progress import notice
 from raceway.importing.reading import MARKS, mark_of

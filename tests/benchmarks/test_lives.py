@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from benchmarks.lives import NAMES, indicators, lives_of_file, once_a_minute, report, shape
-from features.lives.prognosis import Lives
+from raceway.lives.prognosis import Lives
 
 FS = 25_600.0
 

@@ -5,9 +5,9 @@ import pytest
 import scipy.io
 
 from benchmarks.realism import medians, real_corpora, table, verdicts
-from features.realism import compare
-from features.realism.measures import MEASURES
 from gen.corpus import FAULTS, SIGNAL, open_corpus
+from raceway.comparing import compare
+from raceway.comparing.measures import MEASURES
 from tests.pulses import write_pulses
 
 

@@ -10,11 +10,11 @@ from click.testing import CliRunner
 from features import feature_table
 from features.baselines import DEFAULT_GROUPS, UNSURE, Model, benchmark, count_unknown, predict, unlabelled_answers
 from features.baselines.records import all_records, features_of, labelled_records
-from features.realism.windows import common_ground, measured_windows
 from gen.corpus import FAULT_NAMES, UNKNOWN_CODE, open_corpus, validate_corpus
 from gen.support.errors import CorpusError
 from raceway.cli import cli
 from raceway.commands import models
+from raceway.comparing.windows import common_ground, measured_windows
 from raceway.console.summary import describe
 from raceway.reports.examples import draw_examples
 from raceway.reports.page import write_report

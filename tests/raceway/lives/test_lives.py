@@ -8,7 +8,7 @@ from gen.corpus import open_corpus
 from gen.generation.corpus import generate
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
-from raceway.reports.lives import draw_life
+from raceway.lives.pictures import draw_life
 from tests.conftest import small_with
 from tests.recipes import LIVES
 
@@ -65,7 +65,7 @@ def test_the_commands_draw_and_score(run, told, lives, tmp_path):
 def test_only_lives_are_scored_and_others_are_refused_before_any_feature_is_computed(
     run, lives, tiny_corpus, monkeypatch, options
 ):
-    monkeypatch.setattr("raceway.commands.lives.table_of", lambda *_: pytest.fail("features were computed"))
+    monkeypatch.setattr("raceway.lives.lives_commands.table_of", lambda *_: pytest.fail("features were computed"))
     result = run("prognose", *([lives] if options else []), *options, tiny_corpus)
     assert result.exit_code == 2
     sentence = f"{tiny_corpus}: has no lives; make one of a recipe with life, such as run_to_failure.\n"

@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from features.realism import compare
-from features.realism.measures import MEASURES
-from raceway.reports.comparison import write_comparison
+from raceway.comparing import compare
+from raceway.comparing.measures import MEASURES
+from raceway.comparing.page import write_comparison
 from tests.pulses import write_pulses
 from tests.raceway.reports.test_report import Links
 

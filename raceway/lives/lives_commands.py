@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
-from raceway.commands.feature_tables import table_of
 from raceway.console import show
+from raceway.console.corpus_table import table_of
 from raceway.console.options import (
     A_CORPUS,
     USUAL_ANALYSIS,
@@ -35,7 +35,7 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
 
     The picture has the spectra of its snapshots over its age, its rms, and the true length of its spall with the first detection.
     """
-    from raceway.reports.lives import draw_life
+    from raceway.lives.pictures import draw_life
     from raceway.reports.pictures import check_picture, write_picture
 
     check_picture(output)
@@ -61,9 +61,9 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
       raceway prognose corpus --test pronostia
       raceway prognose corpus --json
     """
-    from features.lives.prognosis import SHARES, check_lives, score_lives
     from gen.corpus import open_corpus
     from gen.support.units import from_si
+    from raceway.lives.prognosis import SHARES, check_lives, score_lives
 
     for one in (corpus, tested or corpus):
         with open_corpus(one) as opened:

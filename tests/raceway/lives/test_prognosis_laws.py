@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from features.lives.prognosis import lives_of, score_lives, scores_of
 from gen.support.errors import CorpusError
+from raceway.lives.prognosis import lives_of, score_lives, scores_of
 
 CADENCE = 10.0
 

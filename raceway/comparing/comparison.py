@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from features.realism.contrast import auc, quantiles
-from features.realism.measures import MEASURES, NAMES
-from features.realism.windows import CommonForm, Windows, common_ground, measured_windows
 from features.signal.rows import FloatArray
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
+from raceway.comparing.contrast import auc, quantiles
+from raceway.comparing.measures import MEASURES, NAMES
+from raceway.comparing.windows import CommonForm, Windows, common_ground, measured_windows
 
 FEWEST = 10  # windows of a class, below which a set is not compared in it
 SHARES = (0.05, 0.5, 0.95)

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from features.realism import compare
-from features.realism import windows as windows_module
-from features.realism.measures import NAMES
-from features.realism.windows import common_ground, measured_windows
 from gen.support.errors import CorpusError
+from raceway.comparing import compare
+from raceway.comparing import windows as windows_module
+from raceway.comparing.measures import NAMES
+from raceway.comparing.windows import common_ground, measured_windows
 from tests.pulses import write_pulses
 
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from features.realism.comparison import SHARES, Comparison
-from features.realism.measures import MEASURES, NAMES, Measure
-from features.realism.windows import Windows, typical_window
 from features.signal.rows import FloatArray
 from features.table.indicators import Orders
 from gen.corpus import FAULTS, make_result_folder, write_numbers, write_text_durably
 from gen.corpus.fault_classes import CLASSES
+from raceway.comparing.comparison import SHARES, Comparison
+from raceway.comparing.measures import MEASURES, NAMES, Measure
+from raceway.comparing.windows import Windows, typical_window
 from raceway.reports.pictures import DrawnRecord, picture
 from raceway.reports.sides import draw_distributions, draw_sides
 from raceway.reports.templates import template, three_digits
@@ -36,7 +36,7 @@ def write_comparison(comparison: Comparison, output: Path | str) -> Path:
         If a corpus has changed since it was measured, or the disk refuses.
     """
     output = Path(output)
-    page = template("comparison.html.jinja").render(
+    page = template("comparison.html.jinja", "raceway.comparing").render(
         comparison=comparison,
         measures=MEASURES,
         shares=[f"{100 * share:g} %" for share in SHARES],

@@ -9,12 +9,12 @@ import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from features.lives.prognosis import FIRST, check_lives
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 from gen.corpus import SIGNAL, open_corpus
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
+from raceway.lives.prognosis import FIRST, check_lives
 from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 
 

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from raceway.commands.feature_tables import notice_of_unknown
 from raceway.console import show
+from raceway.console.corpus_table import notice_of_unknown
 from raceway.console.options import A_CORPUS, json_option, pages_option
 from raceway.console.progress import progress
 
 if TYPE_CHECKING:
-    from features.realism import Comparison
+    from raceway.comparing import Comparison
 
 
 @click.command()
@@ -52,8 +52,8 @@ def compare(
 
       raceway compare corpus cwru mfpt -o realism
     """
-    from features.realism import compare as run
-    from raceway.reports.comparison import write_comparison
+    from raceway.comparing import compare as run
+    from raceway.comparing.page import write_comparison
 
     with progress("measuring", "corpora") as report:
         comparison = run(synthetic, real, top=top, window=window, records=records, progress=report)

@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 from sklearn.ensemble import HistGradientBoostingRegressor
 from sklearn.model_selection import GroupKFold
 
-from features.lives.survival import BoolArray, FloatArray, kaplan_meier, weibull, weibull_median_left
 from gen.support.errors import CorpusError
+from raceway.lives.survival import BoolArray, FloatArray, kaplan_meier, weibull, weibull_median_left
 
 FIRST = 5
 """Snapshots of a bearing that its later ones are compared with."""
@@ -57,7 +57,7 @@ class Lives(NamedTuple):
 
     @property
     def ends(self) -> tuple[FloatArray, FloatArray, BoolArray]:
-        """Entry and end of each bearing, and whether it failed, as :func:`features.lives.survival.kaplan_meier` takes them."""
+        """Entry and end of each bearing, and whether it failed, as :func:`raceway.lives.survival.kaplan_meier` takes them."""
         _, first, count = np.unique(self.bearing, return_index=True, return_counts=True)
         last = first + count - 1
         failed = self.failed[last]

@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from features.realism.measures import NAMES, compute_measures, limit_band
 from features.signal.rows import FloatArray
 from features.table.indicators import Orders
 from gen.corpus import FAULTS, SIGNAL, UNKNOWN_CODE, open_corpus
 from gen.support.errors import CorpusError
+from raceway.comparing.measures import NAMES, compute_measures, limit_band
 
 BLOCK = 32  # windows read and measured together
 SHORTEST = 0.05  # s

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from features.lives.survival import kaplan_meier, weibull, weibull_median_left
+from raceway.lives.survival import kaplan_meier, weibull, weibull_median_left
 
 SLOPE, SCALE = 10 / 9, 1000.0
 MEDIAN = SCALE * np.log(2) ** (1 / SLOPE)

@@ -1,0 +1,36 @@
+"""The feature table of a corpus that a command names, with progress and warnings."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from raceway.console import show
+from raceway.console.options import USUAL, USUAL_ANALYSIS, Analysis, Team
+from raceway.console.progress import notice, progress
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from features.table.recording_speeds import Speed
+
+
+def notice_of_unknown(corpus: Path, unknown: int) -> None:
+    """Say how many records of a corpus are left out because their class is not known."""
+    if unknown:
+        notice(f"{corpus}: {show.count_text(unknown, 'record')} of class unknown left out.")
+
+
+def table_of(
+    corpus: Path, speed: "Speed" = "off", team: Team = USUAL, analysis: Analysis = USUAL_ANALYSIS
+) -> "xr.Dataset":
+    """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
+    from features import feature_table
+    from features.table.corpora import band_warnings
+    from features.table.recording_speeds import speed_warnings
+    from gen.corpus import read_manifest
+
+    options = team.options(read_manifest(corpus).records) | analysis.options()
+    with progress("computing features", "parts") as report:
+        table = feature_table(corpus, speed=speed, **options, progress=report)
+    for sentence in (*band_warnings(table), *speed_warnings(table)):
+        notice(f"warning: {sentence}")
+    return table

@@ -1,0 +1,11 @@
+"""Remaining life of bearings from a feature table of their lives: estimates with and without the signal, and their scores.
+
+============== ========================================================
+module         responsibility
+============== ========================================================
+survival       pure: survival curves of censored lives, after their age
+prognosis      estimates of remaining life, tested on other bearings
+pictures       pictures of a life
+lives_commands the commands life and prognose
+============== ========================================================
+"""
