@@ -8,7 +8,8 @@ import click
 from raceway.console import show
 from raceway.console.options import A_PATH, Analysis, band_option, file_option
 from raceway.console.progress import notice
-from raceway.importing.reading import Reading, read_recording, reading_options, rpm_option
+from raceway.importing.reading import Reading, read_recording
+from raceway.importing.reading_options import reading_options, rpm_option
 
 if TYPE_CHECKING:
     from raceway.reports.pictures import DrawnRecord

@@ -9,7 +9,7 @@ import click
 from raceway.console.corpus_table import table_of
 from raceway.console.options import A_PATH, Analysis, Decorator, Team
 from raceway.console.progress import notice
-from raceway.importing.reading import MARKS, mark_of
+from raceway.importing.reading_options import MARKS, mark_of
 
 if TYPE_CHECKING:
     import xarray as xr

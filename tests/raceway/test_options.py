@@ -12,7 +12,7 @@ from features.table.recording_speeds import SPEEDS
 from gen.support.errors import CorpusError
 from gen.support.executor import cores
 from raceway.console.options import names, speed_option
-from raceway.importing.reading import _speeds
+from raceway.importing.reading_options import _speeds
 from raceway.reports import plot_command as plotting
 from raceway.reports.views import VIEWS
 from tests.command_tree import COMMANDS

@@ -1,0 +1,91 @@
+"""Options of commands that say how recordings of the user are read."""
+
+import math
+
+import click
+
+from raceway.console.options import Decorator, gathered, names
+from raceway.importing.reading import Reading
+
+UNITS = ("g", "mg", "m/s2", "mm/s2", "V", "mV")
+MARKS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
+SLOWEST, FASTEST = 0.001, 1e7  # rpm
+
+
+def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
+    """Lowest and highest speed [rpm]; equal for one number."""
+    if text is None:
+        return None
+    low, dash, high = text.partition("-")
+    try:
+        first, last = float(low), float(high if dash else low)
+    except ValueError:
+        first, last = math.nan, math.nan
+    if not SLOWEST <= first <= last <= FASTEST:
+        raise click.BadParameter(
+            f"{text!r} is no speed and no range such as 1400-1900, of {SLOWEST:g} to {FASTEST:,.0f} rpm"
+        )
+    return first, last
+
+
+def _a_number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
+    if value is not None and math.isnan(value):  # it passes every range
+        raise click.BadParameter("nan is not a number")
+    return value
+
+
+def mark_of(_context: click.Context, _option: click.Parameter, name: str | None) -> str | None:
+    """Mark between columns by its name."""
+    return MARKS.get(name or "")
+
+
+rpm_option: Decorator = click.option(
+    "--rpm",
+    "speeds",
+    callback=_speeds,
+    metavar="RPM",
+    help="Speed of the shaft during the recording, or a range such as 1400-1900; without it, 300 to 6,000 rpm are searched.",
+)
+_rate: Decorator = click.option(
+    "--rate",
+    type=click.FloatRange(1, 1e8),
+    callback=_a_number,
+    metavar="HZ",
+    help="Sample rate, unless the file states it in one of the forms of docs/importing.md.",
+)
+_unit: Decorator = click.option(
+    "--unit",
+    type=click.Choice(UNITS),
+    help="Unit of the values; by default that in the header. If there is none, m/s2 is assumed, with a warning. V and mV need "
+    "--sensitivity.",
+)
+_sensitivity: Decorator = click.option(
+    "--sensitivity",
+    type=click.FloatRange(1e-6, 1e6),
+    callback=_a_number,
+    metavar="MV_PER_G",
+    help="Of the sensor [mV per g], if the values are voltages.",
+)
+_channels: Decorator = click.option(
+    "--channel",
+    "channels",
+    callback=lambda *given: names(*given) or (),
+    metavar="A,B,C",
+    help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
+    "of one housing. By default all axes of one sensor, as names or their absence tell: x, y, z, ch1, ch2, ch3, or three columns.",
+)
+_variable: Decorator = click.option(
+    "--variable",
+    metavar="NAME",
+    help="Variable of a MATLAB file whose columns --channel counts, or sheet of an Excel file, by default the visible one "
+    "that is active, or else the first.",
+)
+_delimiter: Decorator = click.option(
+    "--delimiter",
+    type=click.Choice([*MARKS]),
+    callback=mark_of,
+    help="Mark between the columns of a text, if it is not plain; commas are decimal ones unless it is comma.",
+)
+
+
+reading_options = gathered("reading", Reading, _rate, _unit, _sensitivity, _channels, _variable, _delimiter)
