@@ -8,8 +8,7 @@ import click
 from raceway.console import show
 from raceway.console.options import A_PATH, Analysis, band_option, file_option
 from raceway.console.progress import notice
-from raceway.importing.reading import Reading, read_recording
-from raceway.importing.reading_options import reading_options, rpm_option
+from raceway.importing.reading_options import Reading, reading_options, rpm_option
 
 if TYPE_CHECKING:
     from raceway.reports.pictures import DrawnRecord
@@ -134,6 +133,8 @@ def _shown(
         return shown_record(source, record, next(iter(reading.channels), 0), options["band"])
     if bearing is None or speeds is None:
         raise click.UsageError(f"{source} is a recording: give --bearing and --rpm, which tell where its lines lie")
+    from raceway.importing.reading import read_recording
+
     recorded, _, notes = read_recording(source, reading)
     for note in notes:
         notice(f"warning: {note}")

@@ -11,8 +11,7 @@ from raceway.console import show
 from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, model_option
 from raceway.console.progress import notice, notice_compilation
 from raceway.diagnosis.tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
-from raceway.importing.reading import Reading, read_as_stated, read_recording, readings_of, recordings_in, set_aside
-from raceway.importing.reading_options import reading_options, rpm_option
+from raceway.importing.reading_options import Reading, reading_options, rpm_option
 
 if TYPE_CHECKING:
     from gen.physics.bearing import Bearing
@@ -98,6 +97,8 @@ def diagnose(
     The first call trains the reference model, in some ten seconds.
     docs/diagnose.md tells how to record and how to read the page.
     """
+    from raceway.importing.reading import read_as_stated, read_recording, readings_of, recordings_in, set_aside
+
     known = _bearings(bearings, speeds)
     several = recording.is_dir()
     unusable: dict[Path, str] = {}

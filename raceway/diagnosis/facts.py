@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gen.support.units import from_si
-from raceway.importing.reading import Reading
+from raceway.importing.reading_options import Reading
 
 if TYPE_CHECKING:
     from gen.physics.bearing import Bearing

@@ -1,8 +1,8 @@
 """Importers: recordings of real machines, converted into the corpus format.
 
-=============== =========================================================
+=============== ===========================================================
 module          responsibility
-=============== =========================================================
+=============== ===========================================================
 cwru            Case Western Reserve University set, drive end, 12 kHz
 mfpt            MFPT fault data set of Bechhoefer
 femto           PRONOSTIA, run to failure, of the IEEE PHM 2012 challenge
@@ -14,6 +14,8 @@ assumptions     sentences on what labels and units rest on
 resampling      recordings brought to another sample rate
 signals         one recording of the user, in m/s^2
 recorded        a recording in memory
+reading         recordings of the user: files of a folder, channels of each
+reading_options options of commands that say how recordings are read
 conversion      from the unit of a file to m/s^2
 matlab          one variable of a MATLAB file
 text            tables in text: encoding, mark between columns, fields
@@ -26,9 +28,8 @@ columns         choice of a column, and the sample rate that times tell
 files           NumPy and WAV files; errors of libraries as sentences
 recordings      recordings, their checks, their division into records
 assemble        recordings written as a corpus
-reading         options and files of recordings of the user, for commands
 import_commands commands that convert recordings
-=============== =========================================================
+=============== ===========================================================
 
 An importer lists its files with a function that reads each (:class:`~raceway.importing.recordings.Candidate`); ``assemble`` reads them one
 after the other. A file that cannot be used is skipped as a whole, with a sentence.

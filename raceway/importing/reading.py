@@ -6,11 +6,14 @@ A recording of several is read as its file states, where an option contradicts i
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING
 
 from gen.support.errors import CorpusError
 from raceway.importing.recorded import ACCELERATION, Recorded
 from raceway.importing.signals import SUFFIXES, SeveralSignalsError, StatedOtherwiseError, read_signal
+
+if TYPE_CHECKING:
+    from raceway.importing.reading_options import Reading
 
 OPTIONS = {
     "column": "--channel",
@@ -19,17 +22,6 @@ OPTIONS = {
     "unit": "--unit",
     "delimiter": "--delimiter",
 }
-
-
-class Reading(NamedTuple):
-    """How the files are read: options of the same names."""
-
-    channels: tuple[str, ...]
-    variable: str | None
-    unit: Any
-    sensitivity: float | None
-    rate: float | None
-    delimiter: str | None
 
 
 def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
@@ -50,8 +42,8 @@ def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
 
 
 def readings_of(
-    paths: Sequence[Path], reading: Reading, unusable: dict[Path, str] | None
-) -> Iterator[tuple[Path, Recorded, Reading, tuple[str, ...]]]:
+    paths: Sequence[Path], reading: "Reading", unusable: dict[Path, str] | None
+) -> "Iterator[tuple[Path, Recorded, Reading, tuple[str, ...]]]":
     """Recordings that can be read, one after the other; those of a folder as they state."""
     read = read_recording if unusable is None else read_as_stated
     for path in paths:
@@ -73,7 +65,7 @@ def set_aside(path: Path, unusable: dict[Path, str] | None) -> Iterator[None]:
         unusable[path] = str(error)
 
 
-def read_as_stated(path: Path, reading: Reading) -> tuple[Recorded, Reading, tuple[str, ...]]:
+def read_as_stated(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, tuple[str, ...]]":
     """Read one of several recordings: as `read_recording`, without the options that the file contradicts."""
     try:
         return read_recording(path, reading)
@@ -86,7 +78,7 @@ def read_as_stated(path: Path, reading: Reading) -> tuple[Recorded, Reading, tup
     return recorded, used, (*notes, note)
 
 
-def read_recording(path: Path, reading: Reading) -> tuple[Recorded, Reading, tuple[str, ...]]:
+def read_recording(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, tuple[str, ...]]":
     """Channels of a file, how they were read, with the unit, and sentences on what was assumed.
 
     Without a choice the axes of one sensor are all read. The diagnosis itself warns of an implausible rms.
@@ -105,7 +97,7 @@ def read_recording(path: Path, reading: Reading) -> tuple[Recorded, Reading, tup
     return recorded._replace(signals={"": recorded.signals[name]}), used, (note, *notes)
 
 
-def _read(path: Path, reading: Reading) -> tuple[Recorded, Reading, tuple[str, ...]]:
+def _read(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, tuple[str, ...]]":
     signals = {}
     notes: list[str] = []
     for channel in reading.channels or (None,):

@@ -1,15 +1,26 @@
 """Options of commands that say how recordings of the user are read."""
 
 import math
+from typing import Any, NamedTuple
 
 import click
 
 from raceway.console.options import Decorator, gathered, names
-from raceway.importing.reading import Reading
 
 UNITS = ("g", "mg", "m/s2", "mm/s2", "V", "mV")
 MARKS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
 SLOWEST, FASTEST = 0.001, 1e7  # rpm
+
+
+class Reading(NamedTuple):
+    """How the files are read: options of the same names."""
+
+    channels: tuple[str, ...]
+    variable: str | None
+    unit: Any
+    sensitivity: float | None
+    rate: float | None
+    delimiter: str | None
 
 
 def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:

@@ -10,13 +10,10 @@ views           one view of a record, over orders at any speed
 summaries       drawings of the contents of a corpus, and of scores
 curves          drawing of a learning curve
 ranking         drawing of the best features of a ranking
-lives           drawing of a life, and of many lives
 sides           drawings of several sets side by side: examples, and distributions
 examples        an example of each class as a picture
 templates       templates of pages
 page            a corpus and its benchmark on one page
-comparison      a synthetic corpus and real ones on one page
-diagnosis       a diagnosis on one page
 explore         a corpus on one page to browse
 explore_command the command explore
 =============== ==================================================================

@@ -11,9 +11,9 @@ from features.table.band import DEFAULT_BAND
 from features.table.recording_speeds import SPEEDS
 from gen.support.errors import CorpusError
 from gen.support.executor import cores
+from raceway.commands import plotting as plotting
 from raceway.console.options import names, speed_option
 from raceway.importing.reading_options import _speeds
-from raceway.reports import plot_command as plotting
 from raceway.reports.views import VIEWS
 from tests.command_tree import COMMANDS
 

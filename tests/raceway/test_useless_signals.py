@@ -4,6 +4,7 @@ import numpy as np
 
 from gen.corpus import FAULT_NAMES, open_corpus, validate_corpus
 from raceway.console.ending import FOUND_WANTING
+from raceway.sharing.card.page import data_card
 
 SENTENCE = (
     "48 of 48 records cannot be used (48 clipped): raise recording.converter.full_scale_m_s2, or lower operation.load_n, level.gain or "
@@ -50,10 +51,10 @@ def test_info_and_card_count_the_records_of_each_class_with_a_clipped_sample(run
     assert (found["clipped"], found["signals"]) == (counts, NONE)
     words = ", ".join(f"{name} {number}" for name, number in counts.items())
     assert f"clipped at least once: {words} " in " ".join(run("info", tmp_path / "c").stdout.split())
-    assert f"Records with a clipped sample: {words}." in (tmp_path / "c" / "README.md").read_text()
+    assert f"Records with a clipped sample: {words}." in data_card(tmp_path / "c")
 
 
 def test_a_corpus_without_a_clipped_sample_says_so(run, told, tiny_corpus):
     assert told("info", tiny_corpus)["clipped"] == {}
     assert "clipped none" in " ".join(run("info", tiny_corpus).stdout.split())
-    assert "Records with a clipped sample: none." in (tiny_corpus / "README.md").read_text()
+    assert "Records with a clipped sample: none." in data_card(tiny_corpus)

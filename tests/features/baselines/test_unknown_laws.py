@@ -18,6 +18,7 @@ from raceway.comparing.windows import common_ground, measured_windows
 from raceway.console.summary import describe
 from raceway.reports.examples import draw_examples
 from raceway.reports.page import write_report
+from raceway.sharing.card.page import data_card
 from tests.labels import import_labelled
 
 pytestmark = pytest.mark.usefixtures("few_trees", "unpainted")
@@ -53,7 +54,7 @@ def test_unknown_is_a_value_of_the_format_and_no_class(corpus):
         assert np.isnan(opened.width.values[-4:]).all()
         assert [fault for fault, _, _ in draw_examples(opened)] == ["healthy", "inner", "unknown"]
     assert describe(corpus)["classes"] == {"healthy": 6, "inner": 6, "unknown": 4}
-    assert "| unknown | 4 | 2 |" in (corpus / "README.md").read_text()
+    assert "| unknown | 4 | 2 |" in data_card(corpus)
 
 
 def test_training_and_cross_validation_leave_unknown_records_out(corpus, table, tmp_path):

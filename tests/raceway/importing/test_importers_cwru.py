@@ -13,6 +13,7 @@ from gen.corpus import FAULTS, open_corpus, validate_corpus
 from gen.support.errors import CorpusError
 from raceway.importing import import_cwru
 from raceway.importing.cwru import SPECIMENS
+from raceway.sharing.card.page import data_card
 
 G = 9.80665
 
@@ -224,7 +225,7 @@ def test_the_corpus_tells_what_was_skipped_and_done(source, output):
     (source / "106.mat").write_bytes(b"")
     done, _ = imported(source, output)
     manifest = json.loads((output / "manifest.json").read_text())
-    card = (output / "README.md").read_text()
+    card = data_card(output)
     assert manifest["skipped"] == list(done.skipped)
     assert all(sentence in card for sentence in (*done.skipped, *done.warnings))
     assert "no licence text is stated" in card

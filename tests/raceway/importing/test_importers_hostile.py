@@ -18,6 +18,7 @@ from raceway.importing import import_cwru
 from raceway.importing.files import UnusableError, read_numpy
 from raceway.importing.matlab import read_matlab
 from raceway.importing.text import read_text
+from raceway.sharing.card.page import data_card
 from tests.labels import import_labelled
 
 SIGNAL = np.random.default_rng(1).normal(size=(1, 3000))
@@ -131,7 +132,7 @@ def test_names_that_are_no_utf_8_are_imported_with_their_bytes_written_out(tmp_p
     done = import_cwru(tmp_path, tmp_path / "cwru", window=0.1)
     assert done.records == 2
     assert validate_corpus(done.path) == []
-    (done.path / "README.md").read_text(encoding="utf-8")
+    data_card(done.path)
 
 
 def test_a_folder_of_too_many_files_is_refused(tmp_path, monkeypatch):
@@ -163,7 +164,7 @@ def card_of(folder, title, channel, bearing, name):
     geometry = {"designation": bearing, "n_balls": 9, "pitch_diameter_mm": 39, "ball_diameter_mm": 8}
     done = import_labelled(folder, rows, **facts, bearing=geometry, fault="inner", specimen="A")
     assert validate_corpus(done.path) == []
-    return (done.path / "README.md").read_text()
+    return data_card(done.path)
 
 
 def test_text_of_labels_stays_text_in_the_data_card(tmp_path):

@@ -17,6 +17,7 @@ from gen.support.units import unit_suffix
 from raceway.importing import import_generic
 from raceway.importing.labels import Labels
 from raceway.importing.resampling import resample
+from raceway.sharing.card.page import data_card
 from tests.labels import import_labelled, write_labels
 from tests.raceway.importing.file_writers import excel
 
@@ -146,7 +147,7 @@ def test_the_card_says_where_labels_and_units_come_from(tmp_path):
     for name in "ab":
         np.save(tmp_path / f"{name}.npy", noise(0))
     done, _ = imported(tmp_path, {"path": "a.npy", "load_n": 5}, {"path": "b.npy", "specimen": "B", "unit": "g"})
-    card = (done.path / "README.md").read_text()
+    card = data_card(done.path)
     for sentence in (
         "Load (N): given for each file.", "Class: given as inner.", "Shaft speed (rpm): given as 1500.",
         "Unit: m/s^2 (a.npy).", "Unit: g, 1 g = 9.80665 m/s^2 (b.npy).",
@@ -201,7 +202,7 @@ def test_several_channels_have_names_columns_and_units_of_their_own(tmp_path):
     assert corpus.channel.values.tolist() == ["drive end", "fan end"]
     expected = np.stack([noise(0)[:1000], noise(1)[:1000] * 20 * G])
     np.testing.assert_allclose(corpus.acceleration.values[0], expected, rtol=1e-6)
-    card = (done.path / "README.md").read_text()
+    card = data_card(done.path)
     assert "- Unit of channel fan end: V, 5.09858 mV per m/s^2." in card
     assert "channels drive end, fan end, in m/s^2." in card
 
