@@ -1,4 +1,4 @@
-"""Changes to the small recipe of ``tests/gen/conftest.py`` that use every feature of the model."""
+"""Changes to the small recipe of ``tests/conftest.py`` that use every feature of the model."""
 
 EVERY_FAULT = [
     {"kind": "healthy"},
