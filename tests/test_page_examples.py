@@ -3,7 +3,9 @@
 import re
 
 import numpy as np
+import pandas as pd
 import scipy.io
+import xarray as xr
 from scipy.io import wavfile
 
 import gen
@@ -22,14 +24,19 @@ def test_every_page_with_examples_has_a_test():
     assert {page for page in RUN if f'run_blocks("{page}"' not in tests} == set()
 
 
-def test_the_examples_of_sharing_read_a_record_from_a_file_and_from_a_table(tmp_path, monkeypatch):
+def test_the_examples_of_sharing_read_a_file_and_a_table_and_write_csv_and_zarr(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     signals = write_corpus(tmp_path / "corpus")
     for form in ("corpus.nc", "corpus.parquet"):
         raceway.copy(["corpus"], form)
     names = run_blocks("sharing.md", tmp_path)
-    np.testing.assert_array_equal(names["signal"], signals[17])
+    np.testing.assert_array_equal(names["record"], signals[17])
     np.testing.assert_array_equal(names["signals"], signals)
+    labels = pd.read_csv("labels.csv")
+    assert labels["fault_name"].tolist() == names["corpus"]["fault_name"].values.tolist()
+    np.testing.assert_allclose(pd.read_csv("record-17.csv")["housing"], signals[17], rtol=1e-6)
+    with xr.open_zarr("corpus.zarr") as store:
+        xr.testing.assert_identical(store.load(), names["corpus"].load())
 
 
 def test_the_examples_of_importing_read_a_set_and_a_recording(tmp_path, monkeypatch, capsys):

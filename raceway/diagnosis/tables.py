@@ -15,6 +15,7 @@ INDEX, LIST = "index.html", "diagnoses.csv"
 LIST_KIND = "list of diagnoses"
 NOT_USED = "not used"
 SHOWN_LINES = 2
+_FORMULA = ("=", "+", "-", "@")
 
 
 class DiagnosisRow(NamedTuple):
@@ -107,9 +108,17 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
         write_text_durably(text, pages / file)
 
 
-def _csv_text(rows: Sequence[DiagnosisRow]) -> str:
-    from raceway.sharing.tables import cell_text
+def cell_text(text: str) -> str:
+    """Text for one cell of a CSV file: no control characters, and no formula, which a spreadsheet would run.
 
+    >>> cell_text("6205"), cell_text("=1+1"), cell_text("a" + chr(10) + "b")
+    ('6205', "'=1+1", 'a?b')
+    """
+    shown = "".join(letter if letter.isprintable() else "?" for letter in text)
+    return f"'{shown}" if shown.lstrip().startswith(_FORMULA) else shown
+
+
+def _csv_text(rows: Sequence[DiagnosisRow]) -> str:
     stream = io.StringIO()
     table = csv.writer(stream, lineterminator="\n")
     table.writerow(DiagnosisRow._fields)

@@ -5,11 +5,8 @@ module        responsibility
 ============= ========================================================
 columns       columns with safe names, and the page about a copy
 copying       chosen records of one or several corpora, block by block
-tables        labels and units as CSV; one file per record
-csv_files     CSV
 parquet_files Parquet
 huggingface   Parquet by split with the card of the Hugging Face hub
-zarr_store    Zarr
 forms         all forms; ``copy``
 card          the data card: a page, its facts and additions
 croissant     files, fields and licence for catalogues of data sets

@@ -47,13 +47,10 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
       NAME            folder of a corpus
       NAME.nc         corpus in one netCDF-4 file, for MATLAB, R, Julia and Octave too
       NAME.parquet    one table: a row per record, for pandas, polars, DuckDB, Spark
-      NAME.zarr       one store, for xarray
 
     With --to it is a folder of files for another program, with a README.md that says how to read them:
 
       parquet      tables of up to 500 MB
-      zarr         a store
-      csv          a table of labels, and one file per record
       huggingface  Parquet by split with a card, for datasets.load_dataset
 
     Records keep samples, labels and splits, and simulated records can still be replayed. Several sources are joined, simulated and
@@ -68,7 +65,7 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
       raceway copy corpus.nc -o fast_inner --where "fault in ('inner', 'outer') and shaft_rate > 1200 rpm"
       raceway copy corpus -o test_set --split test --channels housing
       raceway copy simulated measured -o both --rename-channel fe=accelerometer --float32
-      raceway copy corpus -o tables --to csv --where "not (bearing == '6205' or load <= 500)"
+      raceway copy corpus -o tables --to parquet --where "not (bearing == '6205' or load <= 500)"
 
     Next: raceway info TARGET, raceway validate TARGET
     """

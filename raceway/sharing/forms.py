@@ -14,25 +14,24 @@ from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
 from raceway.sharing.columns import Export
 from raceway.sharing.copying import choose
-from raceway.sharing.csv_files import write_csv
 from raceway.sharing.huggingface import write_huggingface
 from raceway.sharing.parquet_files import write_parquet, write_parquet_file
 from raceway.sharing.publishing import describe
-from raceway.sharing.zarr_store import write_store, write_zarr
 
+_NOT_WRITTEN = (".mat", ".wav", ".csv", ".zarr")
 _PART_BYTES = 16_000_000  # of single precision
 
 FORMS: Mapping[str, Callable[[Export, Path], str]] = {
     "parquet": write_parquet,
-    "zarr": write_zarr,
-    "csv": write_csv,
     "huggingface": write_huggingface,
 }
 """Forms that are folders of files: functions that write into a folder and return its README.md."""
-SUFFIXES = (".nc", ".parquet", ".zarr")
-"""Suffixes of targets of one file, or of one store; a target without is a folder."""
-_READ_BY_OTHERS = "NAME.nc is netCDF, which MATLAB, R, Julia and Octave read"
-_NEEDS = {"parquet": "pyarrow", "huggingface": "pyarrow", "zarr": "zarr"}
+SUFFIXES = (".nc", ".parquet")
+"""Suffixes of targets of one file; a target without is a folder."""
+_READ_BY_OTHERS = (
+    "NAME.nc is netCDF, which MATLAB, R, Julia and Octave read; docs/sharing.md has lines of xarray for CSV and Zarr"
+)
+_NEEDS = {"parquet": "pyarrow", "huggingface": "pyarrow"}
 """Package that a form needs and Raceway does not bring."""
 
 
@@ -67,8 +66,8 @@ def copy(
 ) -> Copied:
     """Copy a corpus, some of its records or channels, or several corpora joined, as a corpus or in the form of another program.
 
-    The form follows from the suffix of the target: ``NAME.nc`` is a corpus in one file, ``NAME.parquet`` one table, ``NAME.zarr`` one
-    store, and a name without suffix the folder of a corpus. Records keep samples, labels and splits. Machines of joined corpora are
+    The form follows from the suffix of the target: ``NAME.nc`` is a corpus in one file, ``NAME.parquet`` one table, and a name without
+    suffix the folder of a corpus. Records keep samples, labels and splits. Machines of joined corpora are
     numbered anew, unless all records come from one corpus. Corpora are read and written in blocks, so that the memory does not grow with
     the number of records. The same corpora give the same bytes.
 
@@ -90,7 +89,7 @@ def copy(
         Compression of the signals of a corpus, ``zlib`` without. Every netCDF-4 reader knows it.
     float32 : bool
         Store accelerations [m s-2] in single precision in place of counts.
-    to : {"parquet", "zarr", "csv", "huggingface"}, optional
+    to : {"parquet", "huggingface"}, optional
         Form of a folder for another program.
     progress : callable, optional
         Called with the number of records written and of all that are chosen.
@@ -123,7 +122,7 @@ def _place(form: str, target: Path, recipe: str | None, codec: Codec) -> Abstrac
     """Place to write to: a corpus under way, or a temporary path."""
     if form in ("folder", "nc"):
         return new_corpus(target, codec=codec, recipe_text=recipe)
-    return whole_or_not_at_all(target) if target.suffix == ".parquet" else whole_folder_or_none(target)
+    return whole_or_not_at_all(target) if target.suffix in SUFFIXES else whole_folder_or_none(target)
 
 
 def _writer(form: str, *, single: bool) -> Callable[[Export, Any], None]:
@@ -131,7 +130,7 @@ def _writer(form: str, *, single: bool) -> Callable[[Export, Any], None]:
     if form in ("folder", "nc"):
         return _write_parts
     if single:
-        return write_parquet_file if form == "parquet" else write_store
+        return write_parquet_file
 
     def write(export: Export, folder: Path) -> None:
         (folder / "README.md").write_text(FORMS[form](export, folder), encoding="utf-8")
@@ -152,7 +151,7 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
     suffix = target.suffix if target.suffix in SUFFIXES else ""
     if to is None and target.suffix[1:] in FORMS and not suffix:
         raise CorpusError(f"{target}: {target.suffix[1:]} is a folder of files; give it by --to {target.suffix[1:]}.")
-    if target.suffix in (".mat", ".wav"):
+    if target.suffix in _NOT_WRITTEN:
         raise CorpusError(f"{target}: copies are not written as {target.suffix}; {_READ_BY_OTHERS}.")
     if suffix and to is not None:
         raise CorpusError(f"{target}: {suffix} is one file, and --to {to} makes a folder; leave one of the two out.")

@@ -15,7 +15,7 @@ def test_the_machine_of_the_tests_has_all_that_is_needed(told, run):
 
 def test_a_library_that_is_missing_or_too_old_is_a_problem_with_its_remedy(run, monkeypatch):
     def found(name):
-        if name in ("dask", "zarr"):
+        if name in ("dask", "pyarrow"):
             raise PackageNotFoundError
         return {"xarray": "2020.1"}.get(name, "9999")
 
@@ -26,7 +26,7 @@ def test_a_library_that_is_missing_or_too_old_is_a_problem_with_its_remedy(run, 
     starts = (
         "problem  xarray: 2020.1; pip install 'xarray>=",
         "problem  dask: missing; pip install 'dask[distributed]>=",
-        "note     zarr: missing; pip install 'zarr>=",
+        "note     pyarrow: missing; pip install 'pyarrow>=",
         "2 problems.",
     )
     assert [line.startswith(start) for line, start in zip(lines, starts, strict=True)] == [True] * len(starts)

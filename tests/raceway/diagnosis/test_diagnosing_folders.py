@@ -9,7 +9,10 @@ from urllib.parse import unquote, urljoin
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from raceway.diagnosis.tables import cell_text
 from tests.diagnoses import FS, call, told, write_csv, write_wav
 
 pytestmark = pytest.mark.usefixtures("unpainted")
@@ -132,3 +135,9 @@ def test_a_folder_that_cannot_be_used_is_one_sentence(files, options, sentence, 
     assert (result.exit_code, result.stdout) == (2, "")
     assert sentence in result.stderr
     assert len(result.stderr.strip().splitlines()) == 1
+
+
+@given(st.text())
+def test_no_cell_begins_a_formula_or_a_line(text):
+    assert not cell_text(text).lstrip().startswith(("=", "+", "-", "@"))
+    assert cell_text(text).isprintable()
