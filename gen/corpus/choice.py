@@ -5,13 +5,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.facts import extent
-from gen.corpus.schema import SPLITS, class_names
-from gen.corpus.where import nearest, records_where
+from gen.corpus.schema import SPLITS
+from gen.corpus.where import label_columns, nearest, records_where
 from gen.support.errors import CorpusError
 from gen.support.units import range_text
 
@@ -26,18 +25,25 @@ def chosen_records(
     corpora : sequence of Dataset
         Opened corpora with the same variables.
     where : str, optional
-        A condition, such as ``fault == 'inner' and shaft_rate > 1200 rpm`` (:mod:`gen.corpus.where`).
+        A condition, such as ``fault == 'inner' and width_mm > 0.5`` (:mod:`gen.corpus.where`).
     split : {"train", "validation", "test"}, optional
         Name of a split.
 
     Raises
     ------
     CorpusError
-        If the condition cannot be read, names an unknown variable or value, or no record meets it; if the split is unknown.
+        If the condition cannot be read, names an unknown column or value, or no record meets it; if the split is unknown.
     """
     if split is not None and split not in SPLITS:
         raise CorpusError(f"split: there is no split {split!r}; allowed are {', '.join(SPLITS)}.")
-    places = [np.flatnonzero(_is_chosen(corpus, where, split)) for corpus in corpora]
+    places: list[NDArray[np.intp]] = []
+    for corpus in corpora:
+        chosen = np.arange(corpus.sizes["record"])
+        if split is not None:
+            chosen = np.flatnonzero(corpus["split"].values == SPLITS.index(split))
+        if where is not None:
+            chosen = np.intersect1d(chosen, records_where(where, _variables(corpus)))
+        places.append(chosen)
     if not any(map(len, places)):
         words = [f"where {where!r}"] * (where is not None) + [f"split {split!r}"] * (split is not None)
         count = sum(corpus.sizes["record"] for corpus in corpora)
@@ -82,29 +88,16 @@ def operating_variables(corpus: xr.Dataset) -> dict[str, NDArray[Any]]:
     return {name: corpus[name].values for name in known}
 
 
-def _is_chosen(corpus: xr.Dataset, where: str | None, split: str | None) -> NDArray[np.bool_]:
-    chosen = np.ones(corpus.sizes["record"], bool)
-    if split is not None:
-        chosen &= corpus["split"].values == SPLITS.index(split)
-    if where is not None:
-        units = {name: str(corpus[name].attrs.get("units", "1")) for name in per_record(corpus)}
-        chosen &= records_where(where, units, lambda name: _column(corpus[name]))
-    return chosen
-
-
-def _column(variable: xr.DataArray) -> pd.Series:
-    """Values of a per-record variable; those of a class variable by their names."""
-    classes = class_names(variable.attrs)
-    if not classes:
-        return pd.Series(variable.values)
-    return pd.Series(pd.Categorical(pd.Series(variable.values).map(classes), categories=[*classes.values()]))
+def _variables(corpus: xr.Dataset) -> dict[str, xr.DataArray]:
+    return {name: corpus[name] for name in per_record(corpus)}
 
 
 def _extents(corpora: Sequence[xr.Dataset], where: str | None) -> str:
     """Least and largest value of the measured quantities in a condition, in brackets: a unit is easily mistaken."""
-    extents: list[str] = []
-    for name in dict.fromkeys(re.findall(r"[A-Za-z_]\w*", where or "")):
-        unit = str(corpora[0][name].attrs.get("units", "1")) if name in corpora[0] else "1"
+    columns, extents = label_columns(_variables(corpora[0])), list[str]()
+    named = re.findall(r"[A-Za-z_]\w*", where or "")
+    for name in dict.fromkeys(columns[word][0] for word in named if word in columns):
+        unit = str(corpora[0][name].attrs.get("units", "1"))
         ends = extent(np.concatenate([corpus[name].values for corpus in corpora])) if unit != "1" else None
         if ends is not None:
             extents.append(f"{name} is {range_text(name, ends[0], ends[-1], unit)}")

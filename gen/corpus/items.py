@@ -136,7 +136,7 @@ def torch_dataset(
     split : {"train", "validation", "test"}, optional
         Name of a split.
     where : str, optional
-        A condition, such as ``fault != 'unknown' and shaft_rate > 1200 rpm``; :mod:`gen.corpus.where` has the rules.
+        A condition, such as ``fault != 'unknown' and shaft_rpm > 1200``; :mod:`gen.corpus.where` has the rules.
     channels : sequence of str, optional
         Names of channels; all without.
     label : str

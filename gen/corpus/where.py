@@ -1,33 +1,34 @@
-"""Conditions on records, such as ``fault == 'inner' and shaft_rate > 1200 rpm``: evaluated by pandas, after a check of each word.
+"""Conditions on records, such as ``fault == 'inner' and width_mm > 0.5``: a query of pandas on the table of labels.
 
-Allowed are comparisons of per-record variables with numbers, with texts or with each other, ``in`` with a list of values, ``and``, ``or``,
-``not`` and parentheses: no call, no attribute, no name but those of the variables, so that a condition cannot run code. A class variable
-(``fault``, ``split``) is compared with the names of its values. A text that is one word needs no quotes, ``fault == inner``. A number may
-have a unit, ``width > 0.5 mm``; without one it is in the stored unit.
+A column of that table is a per-record variable in its stored unit, ``width`` in metres, or in a unit that people read, ``width_mm``. A
+class variable (``fault``, ``split``) has the names of its values. Before pandas sees a condition, each of its nodes must be in
+``_ALLOWED``, which has no call and no attribute, and each of its names must be a column: it cannot run code.
 """
 
 import ast
 import difflib
 import re
-import warnings
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from numpy.typing import NDArray
 
+from gen.corpus.schema import class_names
 from gen.support.errors import CorpusError
-from gen.support.units import READABLE
+from gen.support.units import READABLE, key_in
 
 MOST_CHARACTERS = 4000
-_EXAMPLE = "an example is fault == 'inner' and shaft_rate > 1200 rpm."
-# a text in quotes, or a number with a unit
-_WITH_UNIT = re.compile(
-    r"""('[^']*'|"[^"]*")|((?>(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))\s*(?!(?:and|or|not|in|is)\b)([^\W\d_]\w*)"""
-)
-_MICRO = re.compile("[µμ]")
-_SIGNS = (ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.In, ast.NotIn)
+_EXAMPLE = "an example is fault == 'inner' and width_mm > 0.5."
+_ALLOWED = (
+    ast.BoolOp, ast.boolop, ast.UnaryOp, ast.unaryop, ast.BinOp, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Compare, ast.Eq, ast.NotEq,
+    ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.In, ast.NotIn, ast.Name, ast.Constant, ast.List, ast.Tuple, ast.Load,
+)  # fmt: skip
+_SIGN = re.compile(r"""'(?:\\.|[^'\\])*'|"(?:\\.|[^"\\])*"|[&|]""")  # or a text in quotes, which may hold signs
+
+Variables = Mapping[str, xr.DataArray]
+"""Per-record variables by name."""
 
 
 def nearest(name: str, allowed: Sequence[str]) -> str:
@@ -40,25 +41,33 @@ def nearest(name: str, allowed: Sequence[str]) -> str:
     return f"; the nearest is {near[0]}." if near else f"; allowed are {', '.join(allowed)}."
 
 
-def records_where(text: str, variables: Mapping[str, str], column: Callable[[str], pd.Series]) -> NDArray[np.bool_]:
-    """Whether a condition is true, for each record, shape (record,).
+def label_columns(variables: Variables) -> dict[str, tuple[str, float]]:
+    """Columns of the table of labels: the variable of each, and the factor that turns its unit into the stored one.
 
-    ``variables`` are the stored units of all per-record variables by name; ``column`` is called with those that the condition names, and
-    gives numbers, texts or a categorical.
+    >>> label_columns({"load": xr.DataArray([1.0], attrs={"units": "N"})})
+    {'load': ('load', 1.0), 'load_n': ('load', 1.0), 'load_kn': ('load', 1000.0)}
+    """
+    columns = {name: (name, 1.0) for name in variables}
+    for name, variable in variables.items():
+        for unit, factor in READABLE.get(variable.attrs.get("units", ""), {}).items():
+            columns.setdefault(key_in(name, unit), (name, factor))
+    return columns
 
-    >>> records_where("width >= 1 mm", {"width": "m"}, lambda name: pd.Series([0, 0.001, 0.002]))
-    array([False,  True,  True])
+
+def records_where(text: str, variables: Variables) -> NDArray[np.intp]:
+    """Places of the records for which a condition is true, ascending.
 
     Raises
     ------
     CorpusError
-        If the text is not a condition, or names another variable or a value that a variable cannot have.
+        If the text is not a condition, or names another column or a value that a class does not have.
     """
     if len(text) > MOST_CHARACTERS:
         raise CorpusError(f"where: has {len(text)} characters, at most {MOST_CHARACTERS} are allowed; shorten it.")
-    line = re.sub(r"\s", " ", text).strip()
+    # & and | bind as "and" and "or", as in every query of pandas
+    line = _SIGN.sub(lambda sign: {"&": " and ", "|": " or "}.get(sign[0], sign[0]), re.sub(r"\s", " ", text)).strip()
     try:
-        return _evaluated(line, variables, column)
+        return np.flatnonzero(_evaluated(line, variables))
     except CorpusError:
         raise
     except SyntaxError as error:
@@ -68,108 +77,66 @@ def records_where(text: str, variables: Mapping[str, str], column: Callable[[str
         raise CorpusError(f"where: cannot be evaluated ({' '.join(str(error).split())}); {_EXAMPLE}") from None
 
 
-def _evaluated(line: str, variables: Mapping[str, str], column: Callable[[str], pd.Series]) -> NDArray[np.bool_]:
-    marked = _WITH_UNIT.sub(lambda found: found[1] or f"{found[2]} @ '{_MICRO.sub('u', found[3])}'", line)
-    with warnings.catch_warnings(action="error"):  # Python warns of an unknown escape in a text
-        tree = ast.parse(marked, mode="eval").body
-    names = dict.fromkeys(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
-    table = pd.DataFrame({name: column(name) for name in names if name in variables})
-    tree = _Stored(variables, table).visit(tree)
-    unknown = next((one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and one.id not in variables), None)
+def _evaluated(line: str, variables: Variables) -> pd.Series:
+    """Whether a condition is true for each record, after a check of all that it names."""
+    tree, columns = ast.parse(line, mode="eval").body, label_columns(variables)
+    wrong = next((node for node in ast.walk(tree) if not _is_allowed(node)), None)
+    if wrong is not None:
+        part = ast.unparse(wrong)[:60] or type(wrong).__name__  # an operator has no text of its own
+        raise CorpusError(f"where: {part!r} cannot be part of a condition; {_EXAMPLE}")
+    named = dict.fromkeys(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
+    unknown = next((name for name in named if name not in columns), None)
     if unknown is not None:
-        near = difflib.get_close_matches(unknown, variables, 1)
-        told = f"the nearest is {near[0]}." if near else f"docs/format.md lists them; {_EXAMPLE}"
-        raise CorpusError(f"where: there is no variable {unknown}; {told}")
-    _check(tree, table)
-    chosen: Any = table.eval(ast.unparse(tree), engine="python", local_dict={}, global_dict={})
-    return chosen.to_numpy(bool)
+        near = difflib.get_close_matches(unknown, columns, 3)
+        told = f"the nearest are {', '.join(near)}" if near else "docs/format.md lists them"
+        raise CorpusError(f"where: there is no column {unknown}; {told}; a text stands in quotes.")
+    table = pd.DataFrame({name: _column(variables[columns[name][0]], columns[name][1]) for name in named})
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Compare):
+            _check_values(node, table, variables)
+    chosen = table.eval(ast.unparse(tree), engine="python", local_dict={}, global_dict={})  # what query does first
+    if not isinstance(chosen, pd.Series) or chosen.dtype.kind != "b":
+        raise CorpusError(f"where: {line[:60]!r} compares no column; {_EXAMPLE}")
+    return chosen
 
 
-class _Stored(ast.NodeTransformer):
-    """Replaces values by stored ones, as the variables that they are compared with need them.
-
-    A number with a unit becomes one in the stored unit; a word beside a variable of text, and no variable itself, becomes a text.
-    """
-
-    def __init__(self, units: Mapping[str, str], table: pd.DataFrame) -> None:
-        self._units, self._named = units, list[str]()
-        self._texts = {str(name) for name in table if not pd.api.types.is_numeric_dtype(table[name])}
-
-    def visit_Compare(self, node: ast.Compare) -> ast.AST:
-        names = [one.id for one in ast.walk(node) if isinstance(one, ast.Name)]
-        self._named = [name for name in names if name in self._units]
-        return self.generic_visit(node)
-
-    def visit_Name(self, node: ast.Name) -> ast.AST:
-        word = node.id not in self._units and self._texts & {*self._named}
-        return ast.Constant(node.id) if word else node
-
-    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
-        match node:
-            case ast.BinOp(left=number, op=ast.MatMult(), right=ast.Constant(value=str() as unit)):
-                return ast.Constant(ast.literal_eval(number) * self._factor(unit))
-        return node
-
-    def _factor(self, unit: str) -> float:
-        factor = 1.0
-        for name in self._named:
-            stored = self._units[name]
-            if stored == "1":
-                raise CorpusError(f"where: {name} has no unit; write its value without {unit!r}.")
-            allowed = READABLE.get(stored, {stored: 1.0})
-            if unit not in allowed:
-                raise CorpusError(f"where: {name} is not in {unit!r}; allowed are {', '.join(allowed)}.")
-            factor = allowed[unit]
-        return factor
-
-
-def _check(node: ast.expr, table: pd.DataFrame) -> None:
-    """Refuse whatever is not a comparison, or several of them with and, or, not."""
+def _is_allowed(node: ast.AST) -> bool:
     match node:
-        case ast.BoolOp(values=parts):
-            for part in parts:
-                _check(part, table)
-        case ast.UnaryOp(op=ast.Not(), operand=part):
-            _check(part, table)
-        case ast.Compare(left=left, ops=signs, comparators=others) if all(isinstance(sign, _SIGNS) for sign in signs):
-            sides = [item for side in (left, *others) for item in _items(side)]
-            _check_sides(sides, table, ast.unparse(node))
-        case _:
-            raise CorpusError(
-                f"where: {ast.unparse(node)[:60]!r} is no comparison (==, !=, <, <=, >, >=, in); {_EXAMPLE}"
+        case ast.Constant(value=value):
+            return isinstance(value, str | int | float) and not isinstance(value, bool)
+        case ast.BinOp(left=left, right=right):  # a text or a list times a number could fill the memory
+            sides = (left, right)
+            return not any(
+                isinstance(side, ast.List | ast.Tuple) or isinstance(getattr(side, "value", 0), str) for side in sides
             )
+        case ast.BoolOp(values=parts):
+            return all(isinstance(part, ast.Compare | ast.BoolOp | ast.UnaryOp) for part in parts)
+    return isinstance(node, _ALLOWED)
 
 
-def _items(side: ast.expr) -> list[str | float | ast.Name]:
-    """Variables and values on a side of a comparison."""
-    match side:
-        case ast.List(elts=items) | ast.Tuple(elts=items):
-            return [value for item in items for value in _items(item)]
-        case ast.Name():
-            return [side]
-        case ast.Constant(value=str() | int() | float() as value) if not isinstance(value, bool):
-            return [value]
-        case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=ast.Constant(value=int() | float() as value)):
-            return [value]
-        case _:
-            wanted = "the name of a variable, a number or a text in quotes"
-            raise CorpusError(f"where: found {ast.unparse(side)[:60]!r} where {wanted} should be; {_EXAMPLE}")
+def _column(variable: xr.DataArray, factor: float) -> pd.Series:
+    """Values of all records; those of a class by their names, and texts as categories, which have no arithmetic."""
+    classes, stored = class_names(variable.attrs), pd.Series(variable.values)
+    if classes:
+        return pd.Series(pd.Categorical(stored.map(classes), categories=[*classes.values()]))
+    if variable.dtype.kind not in "iuf":
+        return stored.astype("category")
+    # rounded, so that 0.3 mm equals 0.3: a product with a factor misses it by a bit
+    return stored if factor == 1 else (stored * (1 / factor)).round(9)
 
 
-def _check_sides(sides: list[str | float | ast.Name], table: pd.DataFrame, source: str) -> None:
-    """Refuse a comparison without a variable, of texts with numbers, or with a value that a class variable does not have."""
-    columns = [table[side.id] for side in sides if isinstance(side, ast.Name)]
-    values = [side for side in sides if not isinstance(side, ast.Name)]
-    if not columns:
-        raise CorpusError(f"where: {source[:60]!r} names no variable; {_EXAMPLE}")
-    for one in columns:
-        classes = list(one.cat.categories) if isinstance(one.dtype, pd.CategoricalDtype) else []
-        allowed = f"; allowed are {', '.join(classes)}." if classes else "."
-        numeric = pd.api.types.is_numeric_dtype(one)
-        others = [other for other in columns if pd.api.types.is_numeric_dtype(other) != numeric]
-        if others or any(isinstance(value, str) == numeric for value in values):
-            kind = "numbers; write numbers without quotes." if numeric else f"text; put its value in quotes{allowed}"
-            raise CorpusError(f"where: in {source[:60]!r}, {one.name} has {kind}")
-        for value in values:
-            if classes and value not in classes:
-                raise CorpusError(f"where: {one.name} has no value {value!r}{allowed}")
+def _check_values(comparison: ast.Compare, table: pd.DataFrame, variables: Variables) -> None:
+    """Refuse texts beside numbers, and a text that names no class: pandas would find them unequal."""
+    parts = [*ast.walk(comparison)]
+    values = [part.value for part in parts if isinstance(part, ast.Constant)]
+    names = [part.id for part in parts if isinstance(part, ast.Name)]
+    texts = [name for name in names if isinstance(table[name].dtype, pd.CategoricalDtype)]
+    kinds = {isinstance(value, str) for value in values} | {name in texts for name in names}
+    for name in texts:
+        classes = class_names(variables[name].attrs).values()
+        wrong = next((value for value in values if classes and value not in classes), None)
+        if wrong is not None:
+            raise CorpusError(f"where: {name} has no value {wrong!r}; allowed are {', '.join(map(repr, classes))}.")
+    if len(kinds) > 1:
+        told = f"{ast.unparse(comparison)[:60]!r} compares texts with numbers"
+        raise CorpusError(f"where: {told}; texts stand in quotes, and numbers do not.")

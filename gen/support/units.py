@@ -93,6 +93,15 @@ def split_unit(key: str) -> tuple[str, float]:
     )
 
 
+def key_in(name: str, unit: str) -> str:
+    """Key of a quantity in a unit of ``READABLE``, the inverse of `split_unit`.
+
+    >>> key_in("width", "mm"), key_in("first_shaft_rate", "rpm"), key_in("load", "kN")
+    ('width_mm', 'first_shaft_rpm', 'load_kn')
+    """
+    return f"{name.removesuffix('_rate') if unit == 'rpm' else name}_{unit.lower()}"
+
+
 def shown_unit(name: str, stored: str) -> tuple[str, float]:
     """Unit in which a quantity of a corpus is shown, and its factor: speeds in rpm, widths in mm, other lengths in um, angles in deg.
 

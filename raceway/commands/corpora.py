@@ -317,7 +317,7 @@ def info(corpus: Path, where: str | None, as_json: bool) -> None:
     imported, finished or not; its index.nc stands for the folder.
 
       raceway info corpus
-      raceway info corpus --where "fault == 'inner' and width > 0.5 mm"
+      raceway info corpus --where "fault == 'inner' and width_mm > 0.5"
       raceway info corpus --json
     """
     from raceway.console.summary import describe, show_facts

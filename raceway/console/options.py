@@ -176,7 +176,7 @@ analysis_options = gathered("analysis", Analysis, channel_option, band_option)
 where_option: Decorator = click.option(
     "--where",
     metavar="TEXT",
-    help="Only records that meet this condition, such as \"fault == 'inner' and shaft_rate > 1200 rpm\"; else SI units.",
+    help="Only records that meet this condition, such as \"fault == 'inner' and width_mm > 0.5\".",
 )
 _split: Decorator = click.option(
     "--split", metavar="NAME", help="Only records of this split: train, validation or test."

@@ -58,11 +58,11 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
     numbered anew, unless all records come from one corpus. Corpora that hold the same samples are refused, because a record in training
     and test set makes every score too good.
 
-    A condition compares variables (docs/format.md) with numbers, words, or texts in quotes. A comparison with an unknown value (NaN) is
-    false.
+    A condition compares variables (docs/format.md) with numbers, or with texts in quotes. A quantity stands in SI units (width), and in
+    those that people read (width_mm, width_um). A comparison with an unknown value (NaN) is false.
 
       raceway copy corpus -o corpus.nc
-      raceway copy corpus.nc -o fast_inner --where "fault in ('inner', 'outer') and shaft_rate > 1200 rpm"
+      raceway copy corpus.nc -o fast_inner --where "fault in ('inner', 'outer') and shaft_rpm > 1200"
       raceway copy corpus -o test_set --split test --channels housing
       raceway copy simulated measured -o both --rename-channel fe=accelerometer --float32
       raceway copy corpus -o tables --to parquet --where "not (bearing == '6205' or load <= 500)"

@@ -78,7 +78,7 @@ def copy(
     target : path
         The copy; it must not exist, or be an empty folder.
     where : str, optional
-        Condition on the records, such as ``fault == 'inner' and shaft_rate > 1200 rpm`` (:mod:`gen.corpus.where`).
+        Condition on the records, such as ``fault == 'inner' and width_mm > 0.5`` (:mod:`gen.corpus.where`).
     split : {"train", "validation", "test"}, optional
         Split of the records.
     channels : sequence of str, optional

@@ -228,11 +228,11 @@ def test_info_shows_the_range_of_the_severities_of_each_class(run, told, tiny_co
 def test_info_tells_the_contents_of_chosen_records(run, told, tiny_corpus):
     with open_corpus(tiny_corpus) as corpus:
         wide = corpus["width"].values > 0.5e-3
-    found = told("info", tiny_corpus, "--where", "width > 0.5 mm")
+    found = told("info", tiny_corpus, "--where", "width_mm > 0.5")
     assert (found["chosen"], found["records"]) == (wide.sum(), 48)
     assert sum(found["classes"].values()) == sum(found["bearings"].values()) == wide.sum()
-    assert f"records     {wide.sum()} of 48, each of 0.1 s" in run("info", tiny_corpus, "--where", "width>500um").stdout
-    assert "none of 48 records is chosen" in run("info", tiny_corpus, "--where", "width > 1 m").stderr
+    assert f"records     {wide.sum()} of 48, each of 0.1 s" in run("info", tiny_corpus, "--where", "width_um>500").stdout
+    assert "none of 48 records is chosen" in run("info", tiny_corpus, "--where", "width > 1").stderr
 
 
 @pytest.mark.parametrize("command", ["info", "validate"])

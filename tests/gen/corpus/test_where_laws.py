@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -15,26 +16,28 @@ from tests import corpora
 RATE = np.array([10.0, 20.0, 30.0, np.nan, -5.0])
 FAULTS = ["healthy", "inner", "outer"]
 FAULT = ["healthy", "inner", "inner", "outer", "healthy"]
-COLUMNS = {
-    "rate": pd.Series(RATE),
-    "load": pd.Series([10.0, 5.0, np.nan, np.nan, -5.0]),
-    "rig": pd.Series([0, 1, 2, 3, 4], dtype="int32"),
-    "fault": pd.Series(pd.Categorical(FAULT, FAULTS)),
-    "bearing": pd.Series(["6205", "6205", "N 205 E", "it's", ""]),
+CLASSES = {"flag_values": [0, 1, 2], "flag_meanings": " ".join(FAULTS)}
+VARIABLES = {
+    "rate": (RATE, {"units": "Hz"}),
+    "load": (np.array([10.0, 5.0, np.nan, np.nan, -5.0]), {"units": "N"}),
+    "width": (np.array([0.0, 0.3e-3, 0.7e-3, 1e-3, np.nan]), {"units": "m"}),
+    "rig": (np.arange(5, dtype=np.int32), {"units": "1"}),
+    "fault": (np.array([FAULTS.index(name) for name in FAULT], np.int8), CLASSES),
+    "bearing": (np.array(["6205", "6205", "N 205 E", "it's", ""], object), {}),
 }
-UNITS = dict.fromkeys(COLUMNS, "1") | {"rate": "Hz", "load": "N"}
+DATA = {name: xr.DataArray(values, attrs=attrs) for name, (values, attrs) in VARIABLES.items()}
 NUMBERS = {"==": np.equal, "<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal}
 
 
 def holds(text):
-    return records_where(text, UNITS, COLUMNS.__getitem__)
+    return np.isin(np.arange(len(RATE)), records_where(text, DATA))
 
 
 def comparisons():
     """Pairs of a text and the records that it holds for, made without the parser."""
 
     def numeric(name, sign, number):
-        return f"{name} {sign} {number!r}", NUMBERS[sign](COLUMNS[name].to_numpy(), number)
+        return f"{name} {sign} {number!r}", NUMBERS[sign](VARIABLES[name][0], number)
 
     def classes(names):
         return f"fault in [{', '.join(map(repr, names))}]", np.isin(FAULT, names)
@@ -79,18 +82,19 @@ def test_a_condition_holds_for_the_records_that_its_words_ask_for(pair):
         ("rate == load", [0, 4]),
         ("fault != 'inner'", [0, 3, 4]),
         ("fault not in ('inner', 'outer')", [0, 4]),
-        ("fault == inner or rig == 4", [1, 2, 4]),
-        ("fault not in [inner, 'outer'] and bearing != x", [0, 4]),
         ("bearing == \"it's\" or bearing in ('N 205 E', '')", [2, 3, 4]),
         ("rate>=+1.5e1 and\n rig<2", [1]),
         ("rate < -.5", [4]),
         ("10 < rate <= 30", [1, 2]),
         (" 1 <= rig<3 ", [1, 2]),
         ("rate not in [20, 30]", [0, 3, 4]),
-        ("rate > 900 rpm", [1, 2]),
-        ("-300rpm>=rate or 0.02 kHz == rate", [1, 4]),
-        ("bearing in ['N 205 E', '3 mm'] and load != 0.01kN", [2]),
-        ("bearing == '@rate' or bearing == '`rig`' or rig == 2", [2]),
+        ("rate_rpm > 900", [1, 2]),
+        ("width_mm >= 0.3 and width_um <= 700 and width > 0", [1, 2]),
+        ("width_mm == 0.7 or load_kn == 0.01", [0, 2]),
+        ("rate - 2 * load == 10 or rig / 3 == 1", [1, 3]),
+        ("rig == 0 & rate < 15 | rig == 3", [0, 3]),
+        ("~(rig == 0) & not (rig > 2)", [1, 2]),
+        ("bearing == '@rate' or bearing == '`rig`' or bearing == '|' or rig == 2", [2]),
     ],
 )
 def test_conditions_read_as_they_are_written(text, records):
@@ -100,40 +104,37 @@ def test_conditions_read_as_they_are_written(text, records):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("", "invalid syntax at character 1; an example is fault == 'inner' and shaft_rate > 1200 rpm."),
-        ("fualt == 'inner'", "there is no variable fualt; the nearest is fault."),
-        ("rig > 1 and fault == 'iner'", "fault has no value 'iner'; allowed are healthy, inner, outer."),
+        ("", "invalid syntax at character 1; an example is fault == 'inner' and width_mm > 0.5."),
+        ("fualt == 'inner'", "there is no column fualt; the nearest are fault; a text stands in quotes."),
+        ("rig > 1 and fault == 'iner'", "fault has no value 'iner'; allowed are 'healthy', 'inner', 'outer'."),
         ("fault not in ('iner', 'outer')", "fault has no value 'iner'"),
-        ("fault == 1", "fault has text; put its value in quotes; allowed are healthy, inner, outer."),
-        ("fault == iner", "fault has no value 'iner'; allowed are healthy, inner, outer."),
-        ("rate == inner", "there is no variable inner; docs/format.md lists them; an example is fault == 'inner' and"),
-        ("fualt == inner", "there is no variable fualt; the nearest is fault."),
+        ("fault == 1", "fault has no value 1; allowed are 'healthy', 'inner', 'outer'."),
+        ("fault == inner", "there is no column inner; docs/format.md lists them; a text stands in quotes."),
+        ("widthmm > 1", "there is no column widthmm; the nearest are width_mm, width_m, width; a text"),
+        ("width > 0.5 mm", "invalid syntax at character 13; an example is fault == 'inner' and width_mm > 0.5."),
         (
-            "fault == inner and rpm > 1500",
-            "there is no variable rpm; docs/format.md lists them; an example is fault ==",
+            "bearing == 6205",
+            "'bearing == 6205' compares texts with numbers; texts stand in quotes, and numbers do not.",
         ),
+        ("rate == 'fast'", "compares texts with numbers"),
+        ("rate == fault", "compares texts with numbers"),
+        ("bearing + bearing == bearing", "cannot be evaluated"),
+        ("bearing == 'a' * 999999999", "cannot be part of a condition"),
+        ("rate in [1] * 999999999", "cannot be part of a condition"),
         ("fault < 'inner'", "Unordered Categoricals can only compare equality or not"),
-        ("bearing == 6205", "bearing has text; put its value in quotes."),
-        ("rate == 'fast'", "rate has numbers; write numbers without quotes"),
-        ("rate == fault", "rate has numbers"),
         ("rate = 3", "at character 6; equality is written =="),
-        ("1 == 1", "'1 == 1' names no variable"),
-        ("rate > 1.5e1and rig < 2", "invalid decimal literal"),
-        ("rate > nan", "there is no variable nan"),
-        ("rate > [1][0]", "found '[1][0]' where the name of a variable, a number or a text in quotes should be"),
-        ("rate > 1j", "rate is not in 'j'; allowed are Hz, kHz, rpm."),
-        ("rig == 1 or load > 3 mm", "load is not in 'mm'; allowed are N, kN."),
-        ("rate > load > 3 N", "rate is not in 'N'"),
-        ("rig > 1 mm", "rig has no unit; write its value without 'mm'."),
-        ("1 mm > 0", "names no variable"),
-        ("rate == True", "found 'True' where"),
+        ("1 == 1", "'1 == 1' compares no column"),
+        ("rate > nan", "there is no column nan"),
+        ("rate > [1][0]", "'[1][0]' cannot be part of a condition"),
+        ("rate > 1j", "'1j' cannot be part of a condition"),
+        ("rate == True", "'True' cannot be part of a condition"),
         ("(rate > 1", "was never closed"),
         ("rate > 1)", "unmatched ')' at character 9"),
         ("bearing == '6205", "unterminated string literal"),
-        ("bearing == '\\d'", "invalid escape sequence"),
-        ("rate", "'rate' is no comparison"),
-        ("rate is 3", "'rate is 3' is no comparison"),
-        ("(rate > 1) == (rig > 1)", "found 'rate > 1' where"),
+        ("rate", "'rate' compares no column"),
+        ("rate + 1", "'rate + 1' compares no column"),
+        ("rate is 3", "'Is' cannot be part of a condition"),
+        ("rate > 1 and rig", "'rate > 1 and rig' cannot be part of a condition"),
         (f"rig == {'9' * 5000}", f"at most {MOST_CHARACTERS}"),
         ("rig == 1 or " * 1000, f"at most {MOST_CHARACTERS}"),
         ("(" * 900 + "rig == 1" + ")" * 900, "too many nested parentheses"),
@@ -174,7 +175,7 @@ def test_a_wrong_condition_is_refused_with_its_place(text, sentence):
         "rig ** 9 ** 9 ** 9 > 1",
         "rig in range(9)",
         "rig & 1",
-        "(rig > 1) & (rate > 2)",
+        "rig << 1 > 2",
         "rig == 1 if rate > 2 else 3",
         "rig > 1; import os",
         "x = rig > 1",
@@ -187,7 +188,7 @@ def test_a_wrong_condition_is_refused_with_its_place(text, sentence):
         "await rig == 1",
     ],
 )
-def test_nothing_but_comparisons_of_variables_reaches_pandas(text, monkeypatch):
+def test_nothing_but_comparisons_of_columns_reaches_pandas(text, monkeypatch):
     monkeypatch.setattr(pd.DataFrame, "eval", lambda *_args, **_named: pytest.fail("it was evaluated"))
     with pytest.raises(CorpusError, match=r"^where: "):
         holds(text)

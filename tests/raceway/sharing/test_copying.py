@@ -61,7 +61,7 @@ def test_a_form_for_another_program_says_where_to_read_on(run, tones, tmp_path):
     [
         (
             "{one} --where fualt=='inner' -o {out}",
-            "there is no variable fualt; the nearest is fault.",
+            "there is no column fualt; the nearest are fault",
         ),
         ("{one} --split tets -o {out}", "there is no split 'tets'"),
         ("{one} --channels a,b -o {out}", "there is no channel 'a'"),

@@ -122,13 +122,13 @@ def test_far_apart_records_are_read_and_written_like_near_ones(tmp_path, monkeyp
     [
         ({"where": "rig > 100"}, "none of 9 records is chosen; choose others."),
         ({"where": "shaft_rate > 1e6"}, r"choose others \(shaft_rate is [0-9,.]+ to [0-9,.]+ rpm \(.* Hz\)\)"),
-        ({"where": "falt == 1"}, "there is no variable falt; the nearest is fault"),
+        ({"where": "falt == 1"}, "there is no column falt; the nearest are fault"),
         ({"split": "tets"}, "there is no split 'tets'"),
         ({"channels": ["c"]}, "source: channels: there is no channel 'c'"),
         ({"rename": {"c": "d"}}, "rename: there is no channel 'c'; allowed are a, b."),
         ({"rename": {"a": "b"}}, "rename: two channels would be named b; give each its own name."),
         ({"codec": "lz4"}, "codec: there is no codec 'lz4'; allowed are zlib, zstd, none."),
-        ({"to": "csv", "codec": "zlib"}, "codec: --codec is for corpora; leave it out for csv."),
+        ({"to": "parquet", "codec": "zlib"}, "codec: --codec is for corpora; leave it out for parquet."),
     ],
     ids=str,
 )
