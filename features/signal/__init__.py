@@ -5,7 +5,7 @@ The names that an analyst calls are at the top: ``from features import signal; s
 ============ ======================================================================
 module       responsibility
 ============ ======================================================================
-door         arguments of the public functions: records, numbers and bands, or a sentence
+arguments    arguments of the public functions: records, numbers and bands, or a sentence
 rows         compilation of loops over records, sums in a fixed order, windows
 spectra      power spectra, Fourier coefficients, whitening
 demodulation analytic signals of bands, envelope spectra and their floor

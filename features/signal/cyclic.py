@@ -30,11 +30,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.fft import fft, ifft, next_fast_len, rfft
 from scipy.special import gammainccinv
 
+from features.signal.arguments import as_records, ascending, check_positive, check_probability, like
 from features.signal.demodulation import ZERO_PADDING
-from features.signal.door import Band, Positive, Rows, Share, checked
 from features.signal.rows import ComplexArray, FloatArray, brief, by_row, squared_modulus
 from features.signal.spectra import prediction_filters, sine_windowed
 
@@ -60,34 +61,33 @@ class Coherence(NamedTuple):
 
     cyclic: FloatArray
     spectral: FloatArray
-    squared: Rows
+    squared: FloatArray
     independent: float
 
     def __repr__(self) -> str:
         return brief(self)
 
-    @checked
-    def threshold(self, probability: Share) -> float:
+    def threshold(self, probability: float) -> float:
         """Squared modulus that one value of stationary noise exceeds with a probability."""
+        check_probability(probability)
         return 1 - probability ** (1 / (self.independent - 1))
 
-    @checked
-    def envelope_threshold(self, probability: Share, band: Band | None = None) -> float:
+    def envelope_threshold(self, probability: float, band: tuple[float, float] | None = None) -> float:
         """Height that one bin of `enhanced_envelope_spectrum` exceeds in stationary noise with a probability."""
+        check_probability(probability)
         bands = np.count_nonzero(self.inside(band))
         return float(gammainccinv(bands, probability) / (bands * self.independent))
 
-    def inside(self, band: Band | None) -> np.ndarray:
+    def inside(self, band: tuple[float, float] | None) -> np.ndarray:
         """Whether each spectral frequency lies in a band [Hz]; None for all, shape (spectral,)."""
-        low, high = (0.0, np.inf) if band is None else band
+        low, high = (0.0, np.inf) if band is None else ascending(band, "band")
         chosen = (self.spectral >= low) & (self.spectral <= high)
         if not chosen.any():
             raise ValueError(f"no spectral frequency lies in {low:g}-{high:g} Hz: choose a wider band.")
         return chosen
 
 
-@checked
-def spectral_coherence(x: Rows, fs: Positive, highest: Positive, *, resolution: Positive = 200.0) -> Coherence:
+def spectral_coherence(x: ArrayLike, fs: float, highest: float, *, resolution: float = 200.0) -> Coherence:
     """Squared spectral coherence at all cyclic frequencies up to ``highest`` [Hz].
 
     Halfway between two cyclic frequencies of the grid, a line is 2 % lower. Tones of the machine are coherent, too:
@@ -105,7 +105,9 @@ def spectral_coherence(x: Rows, fs: Positive, highest: Positive, *, resolution: 
         Width of the bands of the spectral frequency [Hz]. Each has ``resolution / 1.5`` independent coefficients per
         second of the record. Impacts without slip that follow each other faster than this are predicted, and lower.
     """
-    n = x.shape[-1]
+    check_positive(fs=fs, highest=highest, resolution=resolution)
+    records = as_records(x)
+    n = records.shape[-1]
     length = next_fast_len(ZERO_PADDING * n, real=True)
     bin_width = fs / length
     width, lags = round(resolution / bin_width), int(highest / bin_width) + 1
@@ -116,10 +118,11 @@ def spectral_coherence(x: Rows, fs: Positive, highest: Positive, *, resolution: 
             f"bands of {resolution:g} Hz and cyclic frequencies up to {highest:g} Hz do not fit a record of {n / fs:.3g} s "
             f"at {fs:g} Hz: a band has at least {FEWEST * WINDOW_LOSS:g} cycles in the record, and ends below fs / 2."
         )
-    coefficients = sine_windowed(x, length)
+    coefficients = sine_windowed(records, length)
     coefficients *= rfft(prediction_filters(coefficients, length, round(fs / resolution)), n=length, axis=-1)
     squared = np.stack([_coherence(coefficients[:, b * width :], width, lags) for b in range(count)], axis=1)
-    return Coherence(np.arange(lags) * bin_width, (np.arange(count) + 0.5) * width * bin_width, squared, independent)
+    bands = (np.arange(count) + 0.5) * width * bin_width
+    return Coherence(np.arange(lags) * bin_width, bands, like(x, squared), independent)
 
 
 def _coherence(coefficients: ComplexArray, width: int, lags: int) -> FloatArray:
@@ -136,7 +139,8 @@ def _coherence(coefficients: ComplexArray, width: int, lags: int) -> FloatArray:
     return product / np.maximum(within * within[:, :1], least).astype(product.dtype)
 
 
-@checked
-def enhanced_envelope_spectrum(coherence: Coherence, band: Band | None = None) -> FloatArray:
+def enhanced_envelope_spectrum(coherence: Coherence, band: tuple[float, float] | None = None) -> FloatArray:
     """Mean squared coherence over all spectral frequencies, or over those in a band [Hz], shape (record, cyclic)."""
+    if not isinstance(coherence, Coherence):
+        raise TypeError("coherence: give the Coherence that spectral_coherence returns.")
     return coherence.squared[..., coherence.inside(band), :].mean(axis=-2)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from numpy.typing import ArrayLike
+
+from features.signal.arguments import as_records, ascending, check_positive, like
 from features.signal.demodulation import analytic_band, envelope_spectrum, squared_envelope_spectrum
-from features.signal.door import Band, Positive, Rows, checked
 from features.signal.rows import FloatArray
 from features.signal.spectra import fourier_coefficients
 
 
-@checked
-def band_envelope_spectrum(x: Rows, fs: Positive, band: Band, *, squared: bool = False) -> tuple[FloatArray, Rows]:
+def band_envelope_spectrum(
+    x: ArrayLike, fs: float, band: tuple[float, float], *, squared: bool = False
+) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz], shape (frequency,), and amplitude spectrum of the envelope of a band, shape (record, frequency).
 
     Parameters
@@ -28,10 +31,13 @@ def band_envelope_spectrum(x: Rows, fs: Positive, band: Band, *, squared: bool =
     ValueError
         If no frequency lies in the band.
     """
-    duration, (low, high) = x.shape[1] / fs, band
-    if not 0 <= low < min(high, fs / 2) or round(low * duration) >= round(min(high, fs / 2) * duration):
+    check_positive(fs=fs)
+    records, (low, high) = as_records(x), ascending(band, "band")
+    duration = records.shape[1] / fs
+    if low >= min(high, fs / 2) or round(low * duration) >= round(min(high, fs / 2) * duration):
         raise ValueError(
             f"band: {low:g}-{high:g} Hz holds no frequency of these records; give one below {fs / 2:g} Hz."
         )
-    z = analytic_band(fourier_coefficients(x, fs, high), round(low * duration), round(high * duration))
-    return (squared_envelope_spectrum if squared else envelope_spectrum)(z, z.shape[1] / duration)
+    z = analytic_band(fourier_coefficients(records, fs, high), round(low * duration), round(high * duration))
+    frequencies, spectrum = (squared_envelope_spectrum if squared else envelope_spectrum)(z, z.shape[1] / duration)
+    return frequencies, like(x, spectrum)

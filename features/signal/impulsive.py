@@ -27,8 +27,8 @@ from numpy.typing import ArrayLike
 from scipy.fft import rfft
 from scipy.special import gammainccinv
 
+from features.signal.arguments import as_records, check_finite, check_positive, check_probability, like, of_each
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
-from features.signal.door import NotNegative, OfEach, Positive, Rows, Share, checked
 from features.signal.lines import COMB_HARMONICS, combs
 from features.signal.rows import ComplexArray, FloatArray, IntArray, brief, squared_modulus
 from features.signal.spectra import fourier_coefficients, hann_segments
@@ -56,7 +56,7 @@ class BandTree(NamedTuple):
 
     levels: IntArray
     edges: FloatArray
-    score: Rows
+    score: FloatArray
     quantity: str
 
     def __repr__(self) -> str:
@@ -69,8 +69,7 @@ class BandTree(NamedTuple):
         return self.edges[np.argmax(self.score, axis=-1)]
 
 
-@checked
-def kurtogram(x: Rows, fs: Positive, *, narrowest: NotNegative = 0.0) -> BandTree:
+def kurtogram(x: ArrayLike, fs: float, *, narrowest: float = 0.0) -> BandTree:
     """Kurtosis ``E|z|^4 / (E|z|^2)^2 - 2`` of the analytic signal z of each band: 0 for noise, -1 for a tone, above for impulses.
 
     Parameters
@@ -83,13 +82,15 @@ def kurtogram(x: Rows, fs: Positive, *, narrowest: NotNegative = 0.0) -> BandTre
     narrowest
         Least width of a band [Hz]. A band has at least 200 independent samples in any case.
     """
-    coefficients = fourier_coefficients(x, fs, fs / 2)
-    levels, bands, edges = _tree(coefficients, fs / x.shape[-1], narrowest)
-    return BandTree(levels, edges, band_kurtosis(coefficients, bands, OVERLAP), "kurtosis")
+    check_positive(fs=fs)
+    check_finite(narrowest=narrowest)
+    records = as_records(x)
+    coefficients = fourier_coefficients(records, fs, fs / 2)
+    levels, bands, edges = _tree(coefficients, fs / records.shape[-1], narrowest)
+    return BandTree(levels, edges, like(x, band_kurtosis(coefficients, bands, OVERLAP)), "kurtosis")
 
 
-@checked
-def comb_bands(x: Rows, fs: Positive, rate: OfEach) -> BandTree:
+def comb_bands(x: ArrayLike, fs: float, rate: ArrayLike) -> BandTree:
     """Level of a fault line and two harmonics over the floor of the squared envelope spectrum of each band [nepers].
 
     The bands are those of `kurtogram` with a width of at least four fault rates; narrower ones have the score ``-inf``.
@@ -103,13 +104,14 @@ def comb_bands(x: Rows, fs: Positive, rate: OfEach) -> BandTree:
     rate
         Rate of the fault [Hz], shape (record,), right within 2 %.
     """
-    coefficients = fourier_coefficients(x, fs, fs / 2)
-    levels, bands, edges = _tree(coefficients, fs / x.shape[-1], COMB_WIDTH * float(rate.min()))
-    score = np.stack(
-        [_comb_level(analytic_band(coefficients, *band), x.shape[-1] / fs, rate) for band in bands], axis=-1
-    )
-    too_narrow = COMB_WIDTH * rate[:, None] > np.diff(edges).T
-    return BandTree(levels, edges, np.where(too_narrow, -np.inf, score), "level of the fault line [nepers]")
+    check_positive(fs=fs)
+    records = as_records(x)
+    rates, duration = of_each(rate, "rate", records), records.shape[-1] / fs
+    coefficients = fourier_coefficients(records, fs, fs / 2)
+    levels, bands, edges = _tree(coefficients, 1 / duration, COMB_WIDTH * float(rates.min()))
+    score = np.stack([_comb_level(analytic_band(coefficients, *band), duration, rates) for band in bands], axis=-1)
+    too_narrow = COMB_WIDTH * rates[:, None] > np.diff(edges).T
+    return BandTree(levels, edges, like(x, np.where(too_narrow, -np.inf, score)), "level of the fault line [nepers]")
 
 
 class SpectralKurtosis(NamedTuple):
@@ -126,28 +128,27 @@ class SpectralKurtosis(NamedTuple):
     """
 
     frequencies: FloatArray
-    kurtosis: Rows
+    kurtosis: FloatArray
     segments: int
 
     def __repr__(self) -> str:
         return brief(self)
 
-    @checked
-    def threshold(self, probability: Share) -> float:
+    def threshold(self, probability: float) -> float:
         """Kurtosis that a bin of stationary Gaussian noise exceeds with a probability.
 
         The gamma distribution with the exact variance and skewness [4]_; for many segments, the normal one with variance
         4 / K. Segments under a Hann window that overlap by half count as independent: the correlation of their fourth
         powers is 0.0008.
         """
+        check_probability(probability)
         k = self.segments
         variance = 4 * k**2 / ((k - 1) * (k + 2) * (k + 3))
         shape = (k - 1) * (k + 4) ** 2 * (k + 5) ** 2 / ((k + 2) * (k + 3) * (5 * k - 7) ** 2)
         return float(np.sqrt(variance / shape) * (gammainccinv(shape, probability) - shape))
 
 
-@checked
-def spectral_kurtosis(x: Rows, fs: Positive, *, segment: Positive = 0.005) -> SpectralKurtosis:
+def spectral_kurtosis(x: ArrayLike, fs: float, *, segment: float = 0.005) -> SpectralKurtosis:
     """Kurtosis of the coefficients of Hann-windowed segments that overlap by half, without bias in stationary noise.
 
     The two lowest and the two highest frequencies are left out, where a coefficient overlaps with its mirror image.
@@ -161,17 +162,19 @@ def spectral_kurtosis(x: Rows, fs: Positive, *, segment: Positive = 0.005) -> Sp
     segment
         Length of a segment [s]: longer than an impact rings, shorter than the time between impacts.
     """
-    length = round(segment * fs)
-    if length < 8 or x.shape[-1] < 2 * length:
+    check_positive(fs=fs, segment=segment)
+    records, length = as_records(x), round(segment * fs)
+    if length < 8 or records.shape[-1] < 2 * length:
         raise ValueError(
-            f"a segment of {segment:.6g} s has {length} samples: take 8 samples to half of the {x.shape[-1]}."
+            f"a segment of {segment:.6g} s has {length} samples: take 8 samples to half of the {records.shape[-1]}."
         )
-    transforms = np.asarray(rfft(hann_segments(x, length), axis=-1))[..., 2:-2]
+    transforms = np.asarray(rfft(hann_segments(records, length), axis=-1))[..., 2:-2]
     power = (transforms.real**2 + transforms.imag**2).astype(float)
     count = power.shape[1]
     ratio = count * np.sum(power**2, axis=1) / np.maximum(np.sum(power, axis=1), np.finfo(float).tiny) ** 2
     frequencies = np.arange(2, 2 + power.shape[-1]) * (fs / length)
-    return SpectralKurtosis(frequencies, (count + 1) / (count - 1) * (ratio - 1) - 1, count)
+    kurtosis = (count + 1) / (count - 1) * (ratio - 1) - 1
+    return SpectralKurtosis(frequencies, like(x, kurtosis), count)
 
 
 def _comb_level(z: ComplexArray, duration: float, rate: FloatArray) -> FloatArray:

@@ -18,10 +18,10 @@ from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-from features.signal.door import OfEach, Positive, Rows, Values, checked
+from features.signal.arguments import as_numbers, as_records, check_positive, like, of_each
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 
@@ -40,8 +40,7 @@ ZONE_LIMITS: Mapping[tuple[int, str], tuple[float, float, float]] = {
 """Highest rms velocity of zones A, B and C [mm/s] by group of machines and support [2]_."""
 
 
-@checked
-def velocity(x: Rows, fs: Positive, high_pass: Positive = HIGH_PASS) -> Rows:
+def velocity(x: ArrayLike, fs: float, high_pass: float = HIGH_PASS) -> FloatArray:
     """Velocity, from accelerations of shape (record, time), in their unit times seconds and of the same shape.
 
     The gain of the high-pass is 1 from ``high_pass`` on, 0 up to half of it, and rises as half a cosine in between. The
@@ -62,13 +61,14 @@ def velocity(x: Rows, fs: Positive, high_pass: Positive = HIGH_PASS) -> Rows:
     ValueError
         If the high-pass is not between 0 and half the sample rate.
     """
-    return _integrate(x, fs, high_pass, 1)
+    check_positive(fs=fs, high_pass=high_pass)
+    return like(x, _integrate(as_records(x), fs, high_pass, 1))
 
 
-@checked
-def displacement(x: Rows, fs: Positive, high_pass: Positive = HIGH_PASS) -> Rows:
+def displacement(x: ArrayLike, fs: float, high_pass: float = HIGH_PASS) -> FloatArray:
     """Displacement, from accelerations of shape (record, time), in their unit times s²; as `velocity`."""
-    return _integrate(x, fs, high_pass, 2)
+    check_positive(fs=fs, high_pass=high_pass)
+    return like(x, _integrate(as_records(x), fs, high_pass, 2))
 
 
 def _integrate(x: FloatArray, fs: float, high_pass: float, times: int) -> FloatArray:
@@ -88,8 +88,7 @@ def velocity_band(shaft_rate: float) -> tuple[float, float]:
     return SLOW_VELOCITY_BAND if shaft_rate < SLOW else VELOCITY_BAND
 
 
-@checked
-def velocity_rms(x: Rows, fs: Positive, shaft_rate: OfEach) -> Rows:
+def velocity_rms(x: ArrayLike, fs: float, shaft_rate: ArrayLike) -> FloatArray:
     """Root mean square of the velocity [m/s] in the band of ISO 20816-3, shape (record,).
 
     The band is 10-1000 Hz, and 2-1000 Hz below 600 r/min. A sine at one of its ends reads 0.71 of its value, one an
@@ -109,12 +108,15 @@ def velocity_rms(x: Rows, fs: Positive, shaft_rate: OfEach) -> Rows:
     NaN for signals shorter than 1 s, or 5 s below 600 r/min, for a sample rate of 2000 Hz or less, and for a shaft outside 120
     to 30,000 r/min, which the standard does not cover.
     """
-    covered, slow = (shaft_rate >= SLOWEST) & (shaft_rate <= FASTEST), shaft_rate < SLOW
-    out = np.full(len(x), np.nan)
+    check_positive(fs=fs)
+    records = as_records(x)
+    rate = of_each(shaft_rate, "shaft_rate", records)
+    covered, slow = (rate >= SLOWEST) & (rate <= FASTEST), rate < SLOW
+    out = np.full(len(records), np.nan)
     for rows, (low, high) in ((covered & slow, SLOW_VELOCITY_BAND), (covered & ~slow, VELOCITY_BAND)):
-        if rows.any() and fs > 2 * high and x.shape[1] * low >= VELOCITY_PERIODS * fs:
-            out[rows] = _velocity_rms(x[rows], fs, low, high)
-    return out
+        if rows.any() and fs > 2 * high and records.shape[1] * low >= VELOCITY_PERIODS * fs:
+            out[rows] = _velocity_rms(records[rows], fs, low, high)
+    return like(x, out)
 
 
 def _velocity_rms(x: FloatArray, fs: float, low: float, high: float) -> FloatArray:
@@ -124,9 +126,8 @@ def _velocity_rms(x: FloatArray, fs: float, low: float, high: float) -> FloatArr
     return np.sqrt(np.sum(density[:, 1:] * gain, axis=1) * frequencies[1])
 
 
-@checked
 def iso_zone(
-    velocity_rms_mm_s: Values, group: Literal[1, 2], support: Literal["rigid", "flexible"] = "rigid"
+    velocity_rms_mm_s: ArrayLike, group: Literal[1, 2], support: Literal["rigid", "flexible"] = "rigid"
 ) -> NDArray[np.str_]:
     """Zone of ISO 20816-3, ``A`` (as new) to ``D`` (may cause damage), of the shape of the argument.
 
@@ -154,6 +155,7 @@ def iso_zone(
     """
     if (group, support) not in ZONE_LIMITS:
         raise ValueError(f"group {group!r}, support {support!r}: give group 1 or 2, and support rigid or flexible.")
-    if (velocity_rms_mm_s < 0).any():
-        raise ValueError(f"velocity_rms_mm_s: {velocity_rms_mm_s.min():g} is negative; give the rms of a velocity.")
-    return np.array(list(ZONES))[np.searchsorted(ZONE_LIMITS[group, support], velocity_rms_mm_s, side="left")]
+    velocities = as_numbers(velocity_rms_mm_s, "velocity_rms_mm_s")
+    if (velocities < 0).any():
+        raise ValueError(f"velocity_rms_mm_s: {velocities.min():g} is negative; give the rms of a velocity.")
+    return np.array(list(ZONES))[np.searchsorted(ZONE_LIMITS[group, support], velocities, side="left")]

@@ -19,10 +19,11 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+from features.signal.arguments import as_records, check_finite, check_positive, check_whole, like
 from features.signal.demodulation import amplitude_spectrum
-from features.signal.door import Count, Number, Positive, Rows, checked
 from features.signal.rows import FloatArray, brief, row_kernel
 
 CROSSINGS = 32  # zero crossings of the sinc function to each side
@@ -35,9 +36,9 @@ REARMED = 0.1  # of the range of a tacho, by which it must fall below the thresh
 class SynchronousAverage(NamedTuple):
     """Part of resampled signals that repeats with the shaft, and the rest, in the unit of the signals."""
 
-    average: Rows
+    average: FloatArray
     """Mean over all whole periods, shape (record, angle), one period long."""
-    residual: Rows
+    residual: FloatArray
     """Signals without the periodic repetition of their average, shape (record, angle)."""
 
     def __repr__(self) -> str:
@@ -51,7 +52,7 @@ class OrderMap(NamedTuple):
     """Middle of each window [turns after the first sample], shape (window,)."""
     orders: FloatArray
     """Shape (order,)."""
-    amplitude: Rows
+    amplitude: FloatArray
     """Amplitudes in the unit of the signals, shape (record, window, order)."""
 
     def __repr__(self) -> str:
@@ -84,8 +85,7 @@ def resample_to_orders(
     return _interpolate(x, np.arange(count) * intervals, intervals, _kernel_table())
 
 
-@checked
-def resample_to_angle(x: Rows, angle: Rows, per_turn: Count) -> Rows:
+def resample_to_angle(x: ArrayLike, angle: ArrayLike, per_turn: int) -> FloatArray:
     """Samples at equal angles of a shaft of any speed, shape (record, time) to (record, turns * ``per_turn``).
 
     The first sample is at the first angle of the record that is a whole number of turns. All records have as many whole
@@ -106,7 +106,11 @@ def resample_to_angle(x: Rows, angle: Rows, per_turn: Count) -> Rows:
     ValueError
         If an angle does not ascend or is not finite, or a record has no whole turn.
     """
-    turns = np.broadcast_to(angle.astype(float) / (2 * np.pi), x.shape)
+    check_whole(per_turn=per_turn)
+    records, angles = as_records(x), as_records(angle, "angle")
+    if angles.shape not in (records.shape, (1, records.shape[1])):
+        raise ValueError(f"angle: an array of shape {angles.shape} does not suit records of shape {records.shape}.")
+    turns = np.broadcast_to(angles.astype(float) / (2 * np.pi), records.shape)
     wrong = np.flatnonzero(~(np.diff(turns, axis=1) > 0).all(axis=1))
     if len(wrong):
         raise ValueError(
@@ -116,22 +120,21 @@ def resample_to_angle(x: Rows, angle: Rows, per_turn: Count) -> Rows:
     whole = int(np.min(turns[:, -1] - first) + 1e-9)
     if per_turn < 2 or whole < 1:
         raise ValueError(f"{whole} turns of {per_turn} samples are no signal; give a whole turn, and per_turn above 1.")
-    at, time = np.arange(whole * per_turn) / per_turn, np.arange(x.shape[1], dtype=float)
+    at, time = np.arange(whole * per_turn) / per_turn, np.arange(records.shape[1], dtype=float)
     place = np.stack([np.interp(start + at, of_record, time) for start, of_record in zip(first, turns, strict=True)])
-    return _interpolate(x, place, np.gradient(place, axis=1), _kernel_table())
+    return like(x, _interpolate(records, place, np.gradient(place, axis=1), _kernel_table()))
 
 
-@checked
-def angles_from_speed(shaft_rate: Rows, fs: Positive) -> Rows:
+def angles_from_speed(shaft_rate: ArrayLike, fs: float) -> FloatArray:
     """Angle of the shaft at each sample [rad], 0 at the first, from its rate at each sample [Hz]; both (record, time)."""
-    rate = shaft_rate.astype(float, copy=False)
+    check_positive(fs=fs)
+    rate = as_records(shaft_rate, "shaft_rate").astype(float, copy=False)
     angle = np.zeros(rate.shape)
     np.cumsum((rate[:, 1:] + rate[:, :-1]) * (np.pi / fs), axis=1, out=angle[:, 1:])
-    return angle
+    return like(shaft_rate, angle)
 
 
-@checked
-def angles_from_tacho(tacho: Rows, pulses_per_turn: Count = 1, threshold: Number | None = None) -> Rows:
+def angles_from_tacho(tacho: ArrayLike, pulses_per_turn: int = 1, threshold: float | None = None) -> FloatArray:
     """Angle of the shaft at each sample [rad], 0 at the first pulse, shape (record, time).
 
     A pulse is where the tacho rises through the threshold, interpolated linearly between two samples. A cubic spline
@@ -152,11 +155,15 @@ def angles_from_tacho(tacho: Rows, pulses_per_turn: Count = 1, threshold: Number
     ValueError
         If a record has fewer than two pulses.
     """
-    tacho = tacho.astype(float, copy=False)
-    low, high = tacho.min(axis=1), tacho.max(axis=1)
-    level = 0.5 * (low + high) if threshold is None else np.full(len(tacho), float(threshold))
-    time, angle = np.arange(tacho.shape[1], dtype=float), np.empty(tacho.shape)
-    for row, signal in enumerate(tacho):
+    check_whole(pulses_per_turn=pulses_per_turn)
+    signals = as_records(tacho, "tacho").astype(float, copy=False)
+    low, high = signals.min(axis=1), signals.max(axis=1)
+    level = 0.5 * (low + high)
+    if threshold is not None:
+        check_finite(threshold=threshold)
+        level[:] = threshold
+    time, angle = np.arange(signals.shape[1], dtype=float), np.empty(signals.shape)
+    for row, signal in enumerate(signals):
         pulses = _pulses(signal, level[row], level[row] - REARMED * (high[row] - low[row]))
         if len(pulses) < 2:
             raise ValueError(
@@ -167,7 +174,7 @@ def angles_from_tacho(tacho: Rows, pulses_per_turn: Count = 1, threshold: Number
         angle[row, first:last] = course(time[first:last])
         for beyond, end in ((slice(0, first), pulses[0]), (slice(last, None), pulses[-1])):
             angle[row, beyond] = course(end) + course(end, 1) * (time[beyond] - end)
-    return angle
+    return like(tacho, angle)
 
 
 @row_kernel
@@ -185,8 +192,7 @@ def _pulses(signal: FloatArray, threshold: float, rearmed: float) -> FloatArray:
     return places[:count]
 
 
-@checked
-def order_spectrum(y: Rows, per_turn: Count) -> tuple[FloatArray, Rows]:
+def order_spectrum(y: ArrayLike, per_turn: int) -> tuple[FloatArray, FloatArray]:
     """Orders, shape (order,), and amplitude spectrum of resampled signals, shape (record, order).
 
     As `features.signal.demodulation.envelope_spectrum`: a sine of amplitude a gives a line of height a, and the grid is
@@ -199,11 +205,12 @@ def order_spectrum(y: Rows, per_turn: Count) -> tuple[FloatArray, Rows]:
     per_turn
         Samples per turn.
     """
-    return amplitude_spectrum(y, per_turn)
+    check_whole(per_turn=per_turn)
+    orders, amplitude = amplitude_spectrum(as_records(y, "y"), per_turn)
+    return orders, like(y, amplitude)
 
 
-@checked
-def synchronous_average(y: Rows, per_turn: Count, turns: Count = 1) -> SynchronousAverage:
+def synchronous_average(y: ArrayLike, per_turn: int, turns: int = 1) -> SynchronousAverage:
     """Mean of resampled signals over periods of ``turns`` turns, and the signals without it.
 
     Noise is weaker in the average by the root of the number of periods. A part that does not repeat with the period is
@@ -223,19 +230,18 @@ def synchronous_average(y: Rows, per_turn: Count, turns: Count = 1) -> Synchrono
     ValueError
         If the signals are shorter than a period.
     """
-    length = per_turn * turns
-    periods = y.shape[1] // length
+    check_whole(per_turn=per_turn, turns=turns)
+    signals, length = as_records(y, "y"), per_turn * turns
+    samples = signals.shape[1]
+    periods = samples // length
     if periods < 1:
-        raise ValueError(
-            f"y: {y.shape[1] / per_turn:.3g} turns are less than a period of {turns}; give a longer signal."
-        )
-    average = y[:, : periods * length].reshape(len(y), periods, length).mean(axis=1)
-    repeated = np.tile(average, periods + 1)[:, : y.shape[1]]
-    return SynchronousAverage(average, y - repeated)
+        raise ValueError(f"y: {samples / per_turn:.3g} turns are less than a period of {turns}; give a longer signal.")
+    average = signals[:, : periods * length].reshape(-1, periods, length).mean(axis=1)
+    repeated = np.tile(average, periods + 1)[:, :samples]
+    return SynchronousAverage(like(y, average), like(y, signals - repeated))
 
 
-@checked
-def order_map(y: Rows, per_turn: Count, turns: Count = 16) -> OrderMap:
+def order_map(y: ArrayLike, per_turn: int, turns: int = 16) -> OrderMap:
     """Order spectra of windows of some turns, which overlap by half: a waterfall in which lines of the shaft stand still.
 
     Parameters
@@ -252,13 +258,15 @@ def order_map(y: Rows, per_turn: Count, turns: Count = 16) -> OrderMap:
     ValueError
         If the signals are shorter than a window.
     """
-    length = per_turn * turns
-    if y.shape[1] < length:
-        raise ValueError(f"y: {y.shape[1] / per_turn:.3g} turns are less than a window of {turns}; give fewer turns.")
-    windows = np.lib.stride_tricks.sliding_window_view(y, length, axis=1)[:, :: length // 2]
+    check_whole(per_turn=per_turn, turns=turns)
+    signals, length = as_records(y, "y"), per_turn * turns
+    if signals.shape[1] < length:
+        told = f"{signals.shape[1] / per_turn:.3g} turns are less than a window of {turns}"
+        raise ValueError(f"y: {told}; give fewer turns.")
+    windows = np.lib.stride_tricks.sliding_window_view(signals, length, axis=1)[:, :: length // 2]
     orders, amplitude = amplitude_spectrum(windows.reshape(-1, length), per_turn)
     middle = 0.5 * turns + np.arange(windows.shape[1]) * (length // 2) / per_turn
-    return OrderMap(middle, orders, amplitude.reshape(*windows.shape[:2], -1))
+    return OrderMap(middle, orders, like(y, amplitude.reshape(*windows.shape[:2], -1)))
 
 
 @lru_cache(1)

@@ -22,13 +22,15 @@ Cepstral pre-whitening, which sets the whole cepstrum to zero, is `features.sign
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.linalg import cho_factor, cho_solve
 
-from features.signal.door import Bands, Count, OfEach, Positive, Rows, checked
+from features.signal.arguments import as_records, ascending, check_positive, check_whole, like, of_each
 from features.signal.rows import ComplexArray, FloatArray, brief, hann_window, squared_modulus
 from features.signal.spectra import LOADING, hann_segments, prediction_filters, sine_windowed
 
@@ -39,21 +41,20 @@ CHANCE = 0.01  # that a coherence of noise counts as that of a tone
 class Separation(NamedTuple):
     """Two parts of records that add up to them without their mean, shapes (record, time)."""
 
-    deterministic: Rows
-    random: Rows
+    deterministic: FloatArray
+    random: FloatArray
 
     def __repr__(self) -> str:
         return brief(self)
 
 
-@checked
-def cepstrum(x: Rows) -> Rows:
+def cepstrum(x: ArrayLike) -> FloatArray:
     """Real cepstrum, shape (record, time): value k belongs to the quefrency of k samples, and to the same from the end."""
-    return np.asarray(irfft(_log_modulus(np.asarray(rfft(x, axis=-1))), n=x.shape[-1], axis=-1))
+    records = as_records(x)
+    return like(x, np.asarray(irfft(_log_modulus(np.asarray(rfft(records, axis=-1))), n=records.shape[-1], axis=-1)))
 
 
-@checked
-def lifter(x: Rows, fs: Positive, removed: Bands) -> Rows:
+def lifter(x: ArrayLike, fs: float, removed: Sequence[tuple[float, float]]) -> FloatArray:
     """Records with ranges of their cepstrum set to zero and with their phases unchanged, shape (record, time).
 
     Parameters
@@ -67,12 +68,17 @@ def lifter(x: Rows, fs: Positive, removed: Bands) -> Rows:
         ``[(0, 0.002)]`` removes it together with the gain, and ranges around the multiples of ``1 / rate`` remove a
         family of harmonics or sidebands.
     """
-    n = x.shape[-1]
-    coefficients = np.asarray(rfft(x, axis=-1))
+    check_positive(fs=fs)
+    if not np.ndim(removed) or not len(removed):
+        raise ValueError("removed: give ranges, such as [(0, 0.002)].")
+    ranges = [ascending(ends, f"removed[{place}]") for place, ends in enumerate(removed)]
+    records = as_records(x)
+    n = records.shape[-1]
+    coefficients = np.asarray(rfft(records, axis=-1))
     quefrency = np.minimum(np.arange(n), n - np.arange(n)) / fs
-    gone = np.logical_or.reduce([(quefrency >= low) & (quefrency <= high) for low, high in removed])
+    gone = np.logical_or.reduce([(quefrency >= low) & (quefrency <= high) for low, high in ranges])
     change = np.asarray(rfft(np.where(gone, irfft(_log_modulus(coefficients), n=n, axis=-1), 0.0), axis=-1)).real
-    return np.asarray(irfft(coefficients * np.exp(-change), n=n, axis=-1))
+    return like(x, np.asarray(irfft(coefficients * np.exp(-change), n=n, axis=-1)))
 
 
 def _log_modulus(coefficients: ComplexArray) -> FloatArray:
@@ -80,8 +86,7 @@ def _log_modulus(coefficients: ComplexArray) -> FloatArray:
     return np.log(np.maximum(modulus, np.finfo(modulus.dtype).tiny))
 
 
-@checked
-def separate_random(x: Rows, fs: Positive, *, segment: Positive = 0.1, delay: Positive = 0.1) -> Separation:
+def separate_random(x: ArrayLike, fs: float, *, segment: float = 0.1, delay: float = 0.1) -> Separation:
     """Tones, and the rest of each record, by the correlation of segments with later ones.
 
     The modulus of the coherence of segments with those ``delay`` later is near 1 at a tone and, in noise, as low as the
@@ -108,7 +113,9 @@ def separate_random(x: Rows, fs: Positive, *, segment: Positive = 0.1, delay: Po
         If the records or the segments are too short, or the delay is shorter than a segment, with which noise that both
         segments share would count as a tone.
     """
-    n, length, shift = x.shape[-1], round(segment * fs), round(delay * fs)
+    check_positive(fs=fs, segment=segment, delay=delay)
+    records = as_records(x)
+    n, length, shift = records.shape[-1], round(segment * fs), round(delay * fs)
     if not 4 <= length <= shift:
         raise ValueError(
             f"segment {segment:g} s and delay {delay:g} s at {fs:g} Hz: a segment has at least 4 samples, and the delay is at "
@@ -118,7 +125,7 @@ def separate_random(x: Rows, fs: Positive, *, segment: Positive = 0.1, delay: Po
         raise ValueError(
             f"records of {n / fs:.3g} s are too short: twice the segment of {segment:g} s and the delay of {delay:g} s must fit."
         )
-    centred = x - x.mean(axis=-1, keepdims=True)
+    centred = records - records.mean(axis=-1, keepdims=True)
     early = np.asarray(rfft(hann_segments(centred[:, : n - shift], length), axis=-1))
     late = np.asarray(rfft(hann_segments(centred[:, shift:], length), axis=-1))
     # a temporary on the left: NumPy multiplies into a large one on the right in swapped order, and rounds differently
@@ -131,7 +138,7 @@ def separate_random(x: Rows, fs: Positive, *, segment: Positive = 0.1, delay: Po
     gain = np.where(significant, np.sqrt(np.clip((count * ratio - 1) / (count - 1), 0, 1)), 0.0)
     advance = gain * (cross / np.maximum(modulus, tiny))
     deterministic = _predict(centred, advance, length, shift)
-    return Separation(deterministic, centred - deterministic)
+    return Separation(like(x, deterministic), like(x, centred - deterministic))
 
 
 def _predict(x: FloatArray, advance: ComplexArray, length: int, distance: int) -> FloatArray:
@@ -153,27 +160,27 @@ def _predict(x: FloatArray, advance: ComplexArray, length: int, distance: int) -
     return np.concatenate([later, earlier], axis=-1)
 
 
-@checked
-def prediction_residual(x: Rows, order: Count) -> Rows:
+def prediction_residual(x: ArrayLike, order: int) -> FloatArray:
     """Records less their linear prediction from ``order`` samples before, shape (record, time).
 
     The residual of an autoregressive process is its innovation. The first ``order`` samples, which have too few before
     them, are predicted from those after them: backwards, the same filter leaves as much of a stationary record.
     """
-    n = x.shape[-1]
+    check_whole(order=order)
+    records = as_records(x)
+    n = records.shape[-1]
     if order > n // 2:
         raise ValueError(f"order {order} is not in 1 to {n // 2}, half the length of the records.")
-    centred = x - x.mean(axis=-1, keepdims=True)
+    centred = records - records.mean(axis=-1, keepdims=True)
     length = next_fast_len(n + order, real=True)
-    filters = prediction_filters(sine_windowed(x, length), length, order)
+    filters = prediction_filters(sine_windowed(records, length), length, order)
     residual = np.asarray(irfft(rfft(centred, n=length) * rfft(filters, n=length), n=length, axis=-1))[:, :n]
     ahead = np.lib.stride_tricks.sliding_window_view(centred[:, : 2 * order], order + 1, axis=-1)
     residual[:, :order] = np.einsum("rkj,rj->rk", ahead, filters)
-    return residual
+    return like(x, residual)
 
 
-@checked
-def sharpen(x: Rows, fs: Positive, rate: OfEach, length: Count) -> Rows:
+def sharpen(x: ArrayLike, fs: float, rate: ArrayLike, length: int) -> FloatArray:
     """Records through the filter whose output is closest to a train of unit impulses, shape (record, time - length + 1).
 
     The filter is the solution of one least-squares system for the phase of the train that fits best. It uses only complete
@@ -191,11 +198,17 @@ def sharpen(x: Rows, fs: Positive, rate: OfEach, length: Count) -> Rows:
     length
         Number of coefficients of the filter.
     """
-    count = x.shape[-1] - length + 1
-    if length < 1 or count < 2 * length:
-        raise ValueError(f"{length} coefficients are too many for {x.shape[-1]} samples: take at most a third of them.")
-    rows = zip(np.asarray(x - x.mean(axis=-1, keepdims=True), dtype=float), fs / rate, strict=True)
-    return np.stack([_sharpen(row, period, length, count) for row, period in rows]).astype(x.dtype)
+    check_positive(fs=fs)
+    check_whole(length=length)
+    records = as_records(x)
+    samples = records.shape[-1]
+    count = samples - length + 1
+    if count < 2 * length:
+        raise ValueError(f"{length} coefficients are too many for {samples} samples: take at most a third of them.")
+    centred = np.asarray(records - records.mean(axis=-1, keepdims=True), dtype=float)
+    periods = fs / of_each(rate, "rate", records)
+    sharpened = [_sharpen(row, period, length, count) for row, period in zip(centred, periods, strict=True)]
+    return like(x, np.stack(sharpened).astype(records.dtype))
 
 
 def _sharpen(x: FloatArray, period: float, length: int, count: int) -> FloatArray:

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, DTypeLike
 from scipy.fft import irfft, rfft
 from scipy.linalg import solve_toeplitz
 
-from features.signal.door import Positive, Rows, Spectra, checked
+from features.signal.arguments import as_records, check_positive, like
 from features.signal.rows import ComplexArray, FloatArray, hann_window, row_kernel, squared_modulus, total
 
 TAPERED = 0.02  # fraction of a record that is tapered, half of it at each end
@@ -25,8 +25,7 @@ FAINTEST = 1e-6  # of the rms coefficient: a smaller coefficient is rounding err
 LOADING = 1e-9  # of the power, added as white noise: it keeps the equations of pure tones solvable
 
 
-@checked
-def psd(x: Rows, fs: Positive, segment: Positive = 0.25) -> tuple[FloatArray, Rows]:
+def psd(x: ArrayLike, fs: float, segment: float = 0.25) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz] and one-sided power spectral density [unit of x squared per Hz] by Welch's method.
 
     Segments of ``segment`` seconds overlap by half; each has its mean subtracted and a Hann window applied.
@@ -44,7 +43,9 @@ def psd(x: Rows, fs: Positive, segment: Positive = 0.25) -> tuple[FloatArray, Ro
     -------
     Shapes (frequency,) and (record, frequency).
     """
-    return power_density(x, fs, segment)
+    check_positive(fs=fs, segment=segment)
+    frequencies, density = power_density(as_records(x), fs, segment)
+    return frequencies, like(x, density)
 
 
 def power_density(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, FloatArray]:
@@ -199,10 +200,12 @@ def prediction_filters(coefficients: ComplexArray, length: int, order: int) -> F
     return np.concatenate([np.ones((len(weights), 1)), -weights], axis=-1).astype(coefficients.real.dtype)
 
 
-@checked
-def whiten_cepstrally(coefficients: Spectra) -> Spectra:
+def whiten_cepstrally(coefficients: ComplexArray) -> ComplexArray:
     """Coefficients of modulus one with unchanged phases, shape (record, frequency)."""
-    return _divide(coefficients, squared_modulus(coefficients))
+    if np.asarray(coefficients).dtype.kind != "c" or not np.isfinite(coefficients).all():
+        raise ValueError("coefficients: give finite complex numbers, as of a Fourier transform.")
+    rows = np.atleast_2d(coefficients)
+    return like(coefficients, _divide(rows, squared_modulus(rows)))
 
 
 def whiten_by_psd(coefficients: ComplexArray, width: int) -> ComplexArray:

@@ -30,12 +30,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import median_filter, uniform_filter1d
 from scipy.signal import resample, savgol_filter
 
+from features.signal.arguments import as_records, check_positive, like
 from features.signal.demodulation import running_median
-from features.signal.door import Positive, Rows, checked
 from features.signal.rows import FloatArray, IntArray, brief
 
 HARMONICS = np.c_[1:6]
@@ -56,17 +57,16 @@ SHARED = 10.0  # share of the noise that a local parabola keeps, times its width
 class SpeedCourse(NamedTuple):
     """Shaft rate over a recording, NaN where the signal does not tell it."""
 
-    rate: Rows
+    rate: FloatArray
     """Shaft rate at each sample [Hz], shape (record, time)."""
-    uncertainty: Rows
+    uncertainty: FloatArray
     """Standard deviation of the rate [Hz], one for each record, shape (record, time)."""
 
     def __repr__(self) -> str:
         return brief(self)
 
 
-@checked
-def track_speed(x: Rows, fs: Positive, slowest: Positive, fastest: Positive) -> SpeedCourse:
+def track_speed(x: ArrayLike, fs: float, slowest: float, fastest: float) -> SpeedCourse:
     """Shaft rate at each sample [Hz] and its uncertainty, estimated from the harmonics of the shaft.
 
     A record in which no course stands out from noise is NaN throughout; a longer part without shaft harmonics, such as a
@@ -87,16 +87,20 @@ def track_speed(x: Rows, fs: Positive, slowest: Positive, fastest: Positive) -> 
     ValueError
         For a range that is not ascending or reaches beyond the sample rate, or a signal that is too short.
     """
+    check_positive(fs=fs, slowest=slowest, fastest=fastest)
+    records = as_records(x)
+    duration = records.shape[1] / fs
     if not slowest < fastest or TOP * fastest > fs / 2:
         raise ValueError(
             f"slowest, fastest: {slowest:g} and {fastest:g} Hz are no range below {fs / 2 / TOP:.4g} Hz, so that "
             f"{len(HARMONICS)} harmonics lie below half the sample rate; give two ascending rates."
         )
-    if x.shape[1] < 16 / slowest * fs:
+    if duration < 16 / slowest:
         raise ValueError(
-            f"x: {x.shape[1] / fs:.3g} s are too short for a course of {slowest:g} Hz; give {16 / slowest:.3g} s or more."
+            f"x: {duration:.3g} s are too short for a course of {slowest:g} Hz; give {16 / slowest:.3g} s or more."
         )
-    return SpeedCourse(*np.stack([_course(row, fs, slowest, fastest) for row in x], axis=1))
+    rate, uncertainty = np.stack([_course(row, fs, slowest, fastest) for row in records], axis=1)
+    return SpeedCourse(like(x, rate), like(x, uncertainty))
 
 
 def _course(x: FloatArray, fs: float, slowest: float, fastest: float) -> FloatArray:

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from features.signal.arguments import fault_orders
 from features.signal.demodulation import ZERO_PADDING, running_median
-from features.signal.door import fault_orders
 from features.signal.lines import LINE_TOLERANCE, Orders
 from features.signal.rows import FloatArray
 from features.table.indicators import FLOOR_WIDTH
@@ -78,7 +78,7 @@ def fault_bands(
             f"shaft_rate {shaft_rate}, harmonics {harmonics}, sidebands {sidebands}, tolerance {tolerance}: give a positive "
             f"rate, one harmonic or more, no negative number of sidebands and a tolerance between 0 and 1."
         )
-    nominal = dict(zip(Orders._fields, fault_orders("orders", orders).tolist(), strict=True)) | {SHAFT.base: 1.0}
+    nominal = dict(zip(Orders._fields, fault_orders(orders, "orders").tolist(), strict=True)) | {SHAFT.base: 1.0}
     rows = [
         (row.name, _label(row, harmonic, side), harmonic, side, _order(row, nominal, harmonic, side))
         for row in CLASSES.values()

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from features.baselines.models import Model
-from features.signal.door import fault_orders, rows
+from features.signal.arguments import as_records, fault_orders
 from features.table.indicators import Orders
 from gen.support.units import from_si, rpm_to_hertz
 from raceway.diagnosis.answer import diagnose_recording
@@ -53,7 +53,7 @@ def diagnose(
     if not (0 < fs < np.inf and 0 < low <= high < np.inf):
         raise ValueError(f"fs and rpm: {fs} and {rpm} are not positive numbers; give Hz, and revolutions per minute.")
     bearings = orders if isinstance(orders, Mapping) else {"the bearing": orders}
-    nominal = {name: Orders(*map(np.asarray, fault_orders(f"orders of {name}", one))) for name, one in bearings.items()}
+    nominal = {name: Orders(*map(np.asarray, fault_orders(one, f"orders of {name}"))) for name, one in bearings.items()}
     given = Given(nominal, (rpm_to_hertz(low), rpm_to_hertz(high)))
     known = model if isinstance(model, Model) else Model.load(model)
     references = [_recorded(one, fs, f"healthy recording {number}") for number, one in enumerate(healthy, start=1)]
@@ -61,7 +61,7 @@ def diagnose(
 
 
 def _recorded(x: ArrayLike, fs: float, name: str) -> Recorded:
-    signals = rows(name, x, "channel").astype(float)
+    signals = as_records(x, name, "channel").astype(float)
     if np.ndim(x) == 1:
         return Recorded({"": signals[0]}, fs, name)
     return Recorded({str(number): signal for number, signal in enumerate(signals)}, fs, name)

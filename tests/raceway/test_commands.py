@@ -231,7 +231,9 @@ def test_info_tells_the_contents_of_chosen_records(run, told, tiny_corpus):
     found = told("info", tiny_corpus, "--where", "width_mm > 0.5")
     assert (found["chosen"], found["records"]) == (wide.sum(), 48)
     assert sum(found["classes"].values()) == sum(found["bearings"].values()) == wide.sum()
-    assert f"records     {wide.sum()} of 48, each of 0.1 s" in run("info", tiny_corpus, "--where", "width_um>500").stdout
+    assert (
+        f"records     {wide.sum()} of 48, each of 0.1 s" in run("info", tiny_corpus, "--where", "width_um>500").stdout
+    )
     assert "none of 48 records is chosen" in run("info", tiny_corpus, "--where", "width > 1").stderr
 
 

@@ -2,14 +2,14 @@
 
 import inspect
 import re
-from typing import Any, cast, get_type_hints
+from typing import Any, cast
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from features import signal
-from features.signal import door
+from features.signal.arguments import as_numbers, as_records
 
 FS, PER_TURN = 12_000.0, 32
 SAMPLES = 12_000
@@ -97,18 +97,17 @@ def _assert_equal(result: Any, expected: Any, *, single: bool = False) -> None:
 def test_every_public_function_is_tried_here():
     functions = {name for name in dir(signal) if inspect.isfunction(getattr(signal, name))}
     assert functions == {*CALLS, *NO_SIGNALS}
-    assert all(hasattr(getattr(signal, name), "__wrapped__") for name in functions)
 
 
 @pytest.mark.parametrize("form", FORMS)
 def test_records_of_all_types_and_layouts_are_taken_as_the_same_array(form):
     given = FORMS[form](X)
-    taken = door.rows("x", given)
+    taken = as_records(given)
     assert taken.dtype == (np.float32 if form in SINGLE else np.float64)
     assert taken.flags.c_contiguous
     assert taken.flags.writeable
     np.testing.assert_array_equal(taken, X)
-    np.testing.assert_array_equal(door.values("x", given), X)
+    np.testing.assert_array_equal(as_numbers(given, "x"), X)
 
 
 @pytest.mark.parametrize("name", CALLS)
@@ -168,47 +167,42 @@ def test_arrays_without_meaning_are_refused_in_one_sentence(name):
         assert "\n" not in str(refusal.value)
 
 
-WRONG = {
-    door.positive: (0, -1.0, np.nan, np.inf, "12000", None, [1.0, 2.0], 1 + 0j),
-    door.not_negative: (-1.0, np.nan, np.inf, "0", None),
-    door.number: (np.nan, "1", [1.0, 2.0]),
-    door.count: (0, -3, 1.5, np.nan, "3", None, [3, 4]),
-    door.band: (None, 300, (300,), (5000, 300), (-1, 300), (np.nan, 300), ("a", "b"), (300, 300)),
-    door.bands: (None, [], (0.0, 0.002), [(0.002, 0.0)], [(0.0, np.nan)], 0.002),
-    door.of_each: (0.0, [87.0, -1.0], [87.0, 88.0, 89.0], np.nan, None, "87", [[87.0, 88.0]]),
-    door.share: (0, 1, -0.1, np.nan, "0.1"),
+POSITIVE = (0, -1.0, np.nan, np.inf, "12000", None, [1.0, 2.0], 1 + 0j)
+WHOLE = (0, -3, 1.5, np.nan, "3", None, [3, 4])
+RATES_REFUSED = (0.0, [87.0, -1.0], [87.0, 88.0, 89.0], np.nan, None, "87", [[87.0, 88.0]])
+PROBABILITIES_REFUSED = (0, 1, -0.1, np.nan, "0.1")
+BANDS_REFUSED = (300, (300,), (5000, 300), (-1, 300), (np.nan, 300), ("a", "b"), (300, 300))
+PARAMETERS = {
+    **dict.fromkeys(("fs", "segment", "high_pass", "highest", "resolution", "slowest", "fastest", "delay"), POSITIVE),
+    **dict.fromkeys(("order", "length", "per_turn", "turns", "pulses_per_turn"), WHOLE),
+    **dict.fromkeys(("rate", "shaft_rate"), RATES_REFUSED),
+    "narrowest": (np.nan, np.inf, "0", None),
+    "threshold": (np.nan, "1", [1.0, 2.0]),
+    "band": (None, *BANDS_REFUSED),
+    "removed": (None, [], (0.0, 0.002), [(0.002, 0.0)], [(0.0, np.nan)], 0.002),
 }
-GIVEN = {
+"""Values without meaning of each parameter that is no array and no switch."""
+ARRAYS = {"x": X, "y": X, "tacho": X, "angle": 2 * np.pi * 20 * TIME}
+GIVEN = ARRAYS | {
     "segment": 0.1, "fs": FS, "order": 30, "length": 20, "rate": 90.0, "removed": [(0.0, 0.002)], "high_pass": 10.0,
     "highest": 200.0, "resolution": 200.0, "per_turn": PER_TURN, "turns": 2, "pulses_per_turn": 1, "threshold": 2.0,
-    "slowest": 16.0, "fastest": 25.0, "steepest": 9.0, "narrowest": 0.0, "band": (300.0, 5000.0), "delay": 0.1,
-    "x": X, "y": X, "tacho": X, "angle": 2 * np.pi * 20 * TIME, "shaft_rate": 20 + 0 * X,
+    "slowest": 16.0, "fastest": 25.0, "narrowest": 0.0, "band": (300.0, 5000.0), "delay": 0.1, "shaft_rate": 20 + 0 * X,
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", [name for name in CALLS if name != "iso_zone"])
 def test_parameters_without_meaning_are_refused_by_name(name):
     function = getattr(signal, name)
-    rules = door._rules(function)
-    needed = {
-        parameter.name: GIVEN[parameter.name]
-        for parameter in inspect.signature(function).parameters.values()
-        if parameter.name in rules
-    }
-    for parameter, (rule, optional) in rules.items():
-        for wrong in WRONG.get(rule, ()):
-            if wrong is None and optional:
-                continue
-            with pytest.raises(ValueError, match=rf"^{parameter}\b"):
-                function(**{**needed, parameter: wrong})
-
-
-def test_every_number_has_a_rule():
-    for name in CALLS:
-        function = getattr(signal, name)
-        unruled = set(inspect.signature(function).parameters) - set(door._rules(function))
-        hints = get_type_hints(function)
-        assert all(hints[parameter] is bool or name == "iso_zone" for parameter in unruled)
+    parameters = [parameter for parameter in inspect.signature(function).parameters if parameter != "squared"]
+    needed = {parameter: GIVEN[parameter] for parameter in parameters}
+    if name == "velocity_rms":
+        needed["shaft_rate"] = 30.0
+    for parameter in parameters:
+        if parameter not in ARRAYS:
+            for wrong in PARAMETERS[parameter]:
+                with pytest.raises(ValueError, match=rf"^{parameter}\b") as refusal:
+                    function(**{**needed, parameter: wrong})
+                assert "\n" not in str(refusal.value)
 
 
 def test_results_of_one_record_serve_the_functions_that_take_them():
@@ -217,17 +211,20 @@ def test_results_of_one_record_serve_the_functions_that_take_them():
     one = signal.enhanced_envelope_spectrum(coherence, (300, 5000))
     np.testing.assert_array_equal(one, signal.enhanced_envelope_spectrum(both, (300, 5000))[0])
     assert signal.kurtogram(X[0], FS).best().shape == (2,)
-    with pytest.raises(TypeError, match="in place of a Coherence"):
+    with pytest.raises(TypeError, match="give the Coherence"):
         signal.enhanced_envelope_spectrum(cast("Any", X))
-    for wrong in WRONG[door.share]:
+    for wrong in PROBABILITIES_REFUSED:
         with pytest.raises(ValueError, match=r"^probability"):
             coherence.threshold(wrong)
+    for wrong in BANDS_REFUSED:
+        with pytest.raises(ValueError, match=r"^band"):
+            coherence.envelope_threshold(0.1, wrong)
 
 
 def test_coefficients_are_complex():
     coefficients = np.fft.rfft(X, axis=-1)
     np.testing.assert_array_equal(signal.whiten_cepstrally(coefficients[0]), signal.whiten_cepstrally(coefficients)[0])
-    with pytest.raises(ValueError, match=r"^coefficients: .* in place of complex numbers"):
+    with pytest.raises(ValueError, match=r"^coefficients: give finite complex numbers"):
         signal.whiten_cepstrally(X)
 
 
