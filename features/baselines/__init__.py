@@ -20,8 +20,7 @@ severities        fault widths that a test contains and its training does not
 tracks            splits by specimen, rig, bearing type, speed, severity and fault shape, and their checks
 fitting           fits of one classifier to several selections of records
 splits            cross-validation on a track, with its two controls
-importance        permutation importance of features
-curves            score against the number of training specimens
+inspection        permutation importance and learning curves of scikit-learn on our splits
 cross_calibration calibration on rigs or specimens outside the training
 model_file        the only module that reads and writes archives of skops
 classifying       predictions of a fitted model for feature tables and waveforms

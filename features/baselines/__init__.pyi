@@ -6,7 +6,7 @@ from .results import (
 )
 from .results_file import read_results as read_results
 from .calibration import Calibration as Calibration
-from .curves import CurvePoint as CurvePoint, learning_curve as learning_curve
+from .inspection import CurvePoint as CurvePoint, learning_curve as learning_curve
 from .estimators import ESTIMATORS as ESTIMATORS
 from .names import BASELINES as BASELINES, DEFAULT_ESTIMATOR as DEFAULT_ESTIMATOR, TRACKS as TRACKS
 from .classifying import predict as predict

@@ -14,8 +14,7 @@ from typing import Any, Literal, NamedTuple
 
 import xarray as xr
 
-from features.baselines.curves import CurvePoint, curve_points, curve_sizes
-from features.baselines.importance import permutation_importance
+from features.baselines.inspection import CurvePoint, curve_points, permutation_losses
 from features.baselines.models import Model, record_digests, seen_records
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS, UNTRAINED, Track
 from features.baselines.own import Maker
@@ -254,7 +253,7 @@ def benchmark(
         for case in _CASES
         if _is_scored(case, track, first, tests)
     ]
-    done = counter(progress, len(jobs) + (len(curve_sizes(records, splits)) if curve else 0))
+    done = counter(progress, len(jobs) + curve)
     scores = dict[_Job, Any]()
     for is_own, given, tables in ((False, records, (table, *tests)), (True, own, waveforms or (table, *tests))):
         makers = {name: one for name, one in new.items() if isinstance(one, str) != is_own}
@@ -269,6 +268,8 @@ def benchmark(
             grouped, null = (scores[_Job(name, track, case)] for case in ("grouped", "null"))
             scored[track][name] = Baseline(grouped, leaky, null, tested if track == first else ())
     led = records if isinstance(chosen[leading], str) else own
+    points = curve_points(led, chosen[leading], splits, seed) if curve else ()
+    done(int(curve))
     importance = _importance(records, names, chosen[leading], splits, seed) if led is records else {}
     return replace(
         found,
@@ -276,7 +277,7 @@ def benchmark(
         further={
             track: replace(one, baselines=_untrained_first(scored[track])) for track, one in found.further.items()
         },
-        curve=curve_points(led, chosen[leading], splits, seed, done) if curve else (),
+        curve=points,
         importance=importance,
     )
 
@@ -319,7 +320,7 @@ def _importance(
     columns: dict[str, list[int]] = {}
     for column in range(records.features.shape[1]):
         columns.setdefault(measured_quantity(names[column % len(names)]), []).append(column)
-    losses = permutation_importance(records, list(columns.values()), estimator, splits, seed)
+    losses = permutation_losses(records, list(columns.values()), estimator, splits, seed).mean(axis=0)
     return dict(sorted(zip(columns, losses.tolist(), strict=True), key=lambda item: -item[1]))
 
 

@@ -308,11 +308,11 @@ def _show_curve(results: "Results") -> None:
     from features.baselines import interval_text
 
     show.text("", f"Learning curve of {results.leading}, by {results.track}:", "")
-    rows = [(p.specimens, f"{p.records:.0f}", p.scores) for p in results.curve]
-    show.table(
-        ("training specimens", "records", "score", "95 %"),
-        ((str(n), of, f"{s.balanced_accuracy:.3f}", interval_text(s.interval, 2)) for n, of, s in rows),
+    rows = (
+        (f"{p.specimens}", f"{p.records}", f"{p.balanced_accuracy:.3f}", interval_text((min(p.folds), max(p.folds)), 2))
+        for p in results.curve
     )
+    show.table(("training specimens", "records", "score", "folds"), rows)
 
 
 def _show_baselines(baselines: "Mapping[str, Baseline]", tests: list[str]) -> None:

@@ -96,11 +96,11 @@ def features(
     if ranked is not None:
         best = ranked.head(PRINTED).itertuples()
         show.table(
-            ("feature", "ANOVA F", "Kruskal H", "mutual information", "importance"),
-            ((name, f"{f:.4g}", f"{h:.4g}", f"{nats:.2f}", f"{loss:.3f}") for name, _, f, h, nats, loss, _ in best),
+            ("feature", "importance", "deviation"),
+            ((name, f"{loss:.3f}", f"{deviation:.3f}") for name, _, loss, deviation in best),
         )
         show.text(
-            f"{rank}: the best of {columns} features, by their mean rank in the first three measures; --json prints all."
+            f"{rank}: the best of {columns} features, by the balanced accuracy lost without them; --json prints all."
         )
 
 

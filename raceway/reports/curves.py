@@ -81,11 +81,9 @@ def draw_curve(points: Sequence[CurvePoint], chance: float, rule: Scores) -> Fig
     figure = Figure(figsize=(WIDTH, 3.2), layout="constrained")
     axes = figure.subplots()
     size = [point.specimens for point in points]
-    known = [(point.specimens, *point.scores.interval) for point in points if point.scores.interval is not None]
-    if known:
-        sizes, low, high = np.transpose(known)
-        axes.fill_between(sizes, low, high, color=BLUE, alpha=0.2, linewidth=0)
-    axes.plot(size, [point.scores.balanced_accuracy for point in points], "o-", color=BLUE, markersize=5, linewidth=1.4)
+    folds = [point.folds for point in points]
+    axes.fill_between(size, [*map(min, folds)], [*map(max, folds)], color=BLUE, alpha=0.2, linewidth=0)
+    axes.plot(size, [point.balanced_accuracy for point in points], "o-", color=BLUE, markersize=5, linewidth=1.4)
     for level, name, colour in (
         (chance, "chance", FAINT),
         (rule.balanced_accuracy, "envelope rule, untrained", VERMILION),

@@ -1,13 +1,13 @@
 """Laws of the tracks: no specimen on both sides, tested groups that were not trained, and controls that say so."""
 
 import numpy as np
+import pandas as pd
 import pytest
-import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
 from features.baselines import TRACKS, benchmark, controls, cross_validate, learning_curve
-from features.baselines.curves import curve_sizes, nested_specimens
+from features.baselines.inspection import _by_specimen
 from features.baselines.records import SHAPES, records_of
 from features.baselines.splits import control_cases, grouped_case, permuted_labels
 from features.baselines.tracks import held_out_groups, ranges, track_splits
@@ -209,13 +209,15 @@ def test_all_tracks_are_scored_by_three_baselines_and_single_ones_by_all():
     assert results.further["speed"].tested < 144
 
 
-def test_smaller_training_sets_are_parts_of_larger_ones_and_have_all_classes():
+def test_the_first_specimens_of_a_training_set_have_all_classes():
     found = records()
-    order = nested_specimens(found, 0)
-    assert sorted(order) == list(range(48))
-    classes = np.arange(48) % 4
+    order = _by_specimen(found, np.arange(len(found.fault)), 0)
+    assert sorted(order) == list(range(len(found.fault)))
+    specimens = found.specimen[order]
+    assert np.count_nonzero(np.diff(specimens)) == 47  # the records of a specimen follow one another
     for size in range(4, 49, 4):
-        assert np.ptp(np.bincount(classes[order[:size]])) == 0
+        classes = found.fault[np.isin(found.specimen, pd.unique(specimens)[:size])]
+        assert np.ptp(np.unique_counts(classes).counts) == 0
 
 
 def test_the_learning_curve_ends_at_the_score_of_the_cross_validation():
@@ -224,18 +226,7 @@ def test_the_learning_curve_ends_at_the_score_of_the_cross_validation():
     assert [point.specimens for point in points] == [8, 17, 36]
     assert [point.records for point in points] == [24, 51, 108]
     whole = cross_validate(table, "logistic_regression", folds=4)
-    assert points[-1].scores.balanced_accuracy == whole.balanced_accuracy
-    assert points[0].scores.records == 144
-
-
-def test_the_sizes_of_a_learning_curve_about_double():
-    found = records_of(
-        xr.concat([varied_table(seed=n).assign(specimen=varied_table().specimen + 48 * n) for n in range(8)], "record"),
-        GROUPS,
-    )
-    sizes = np.array(curve_sizes(found, grouped_case(found, "specimen", 4, 0)[1]))
-    assert (sizes[0], sizes[-1]) == (8, 288)
-    assert np.all(np.abs(np.log2(sizes[1:] / sizes[:-1]) - 1) < 0.3)
+    assert sorted(points[-1].folds) == pytest.approx(sorted(whole.folds))
 
 
 def test_a_specimen_with_two_bearing_types_is_tested_in_the_first():
@@ -251,7 +242,7 @@ def test_a_specimen_with_two_bearing_types_is_tested_in_the_first():
 def test_any_first_part_of_the_nested_specimens_has_the_classes_as_often_as_all():
     found = records(specimens=60, records=1)
     found = found._replace(fault=np.repeat([0, 1, 2], [6, 18, 36]))
-    fault = found.fault[np.argsort(found.specimen)][nested_specimens(found, 0)]
+    fault = found.fault[_by_specimen(found, np.arange(60), 0)]
     for size in range(3, 61):
         share = np.bincount(fault[:size], minlength=3)
         np.testing.assert_allclose(share, size * np.array([0.1, 0.3, 0.6]), atol=2)

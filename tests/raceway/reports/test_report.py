@@ -347,7 +347,7 @@ def test_the_learning_curve_has_the_points_of_the_results(corpus, results):
     points = learning_curve(feature_table(corpus), "logistic_regression", folds=2)
     figure = draw_curve(points, 0.25, results.baselines["envelope_rule"].grouped)
     drawn = figure.axes[0].lines[0].get_xydata()
-    np.testing.assert_allclose(drawn, [(point.specimens, point.scores.balanced_accuracy) for point in points])
+    np.testing.assert_allclose(drawn, [(point.specimens, point.balanced_accuracy) for point in points])
     assert picture(figure, "svg").startswith(b"<?xml")
 
 
