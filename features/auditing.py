@@ -1,14 +1,13 @@
-"""Splits of real recordings that can leak: signs in labels and signals that one bearing is on both sides.
+"""Splits of real recordings that can leak: signs in labels, and samples that two specimens have in common.
 
 A split by specimen keeps the records of a specimen together, so it is only as good as the names of the specimens. A recording that a set
-holds twice, shifted, amplified or filtered, is found by phase correlation [1]_: the cross spectrum of two recordings with all magnitudes
-set to one. Its peak is near 1 for copies and near 0 for different recordings, even of one machine, since shaft harmonics are few of many
-bins.
+holds twice, also cut at other places, is found by hashes of short blocks of samples [1]_. Of each record only the smallest hashes are kept:
+which blocks these are depends on the samples alone, so two records that overlap keep some of the same blocks.
 
-.. [1] C. H. Knapp, G. C. Carter, "The generalized correlation method for estimation of time delay", IEEE Trans. Acoust. Speech Signal
-   Process. 24 (1976) 320-327.
+.. [1] S. Schleimer, D. S. Wilkerson, A. Aiken, "Winnowing: local algorithms for document fingerprinting", Proc. SIGMOD (2003) 76-85.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -16,33 +15,32 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy import fft
 
-from features.signal.rows import FloatArray
 from gen.corpus import FAULT_NAMES, SIGNAL, UNKNOWN_CODE, corpus_name, open_corpus
 
-COPY = 0.25  # phase correlation; no two recordings of different bearings in CWRU, MFPT or UESTC reach 0.11
-_LONGEST = 32_768  # samples of a recording that are compared
-_MOST_PAIRS = 20_000  # of recordings, those with the most similar spectra; a pair takes about 1 ms
-_BANDS = 24
+BLOCK = (
+    64  # samples of a block: those of two recordings are not equal by chance, even of noise of few steps of a converter
+)
+_KEPT = 32  # blocks of a record
+_FEWEST = 2  # blocks that two recordings have in common
+_FACTOR = 0x9E3779B97F4A7C15  # of the polynomial of a hash; odd
+_READ_BYTES = 16_000_000  # at a time
 _SHOWN = 3
 
 
 class _Recording(NamedTuple):
-    """A recording: its source, fault, specimen with rig, and its phases, shape (frequency,), and levels in bands, shape (band,)."""
+    """A recording: its source, fault, and specimen with rig."""
 
     source: str
     fault: int
     specimen: tuple[int, int]
-    phases: NDArray[np.complexfloating]
-    levels: FloatArray
 
 
 def audit_splits(corpus: Path | str | xr.Dataset) -> list[str]:
     """Signs that a split of a corpus of real recordings by specimen can leak, or cannot test a class; a sentence for each kind.
 
-    Only the first channel is compared, and of each recording the first 32,768 samples; of more than 20,000 pairs of recordings those with
-    the most similar spectra.
+    Only the first channel is compared. A copy with another gain or sample rate, filtered or with added noise, has other samples and is
+    not found.
 
     Raises
     ------
@@ -50,40 +48,33 @@ def audit_splits(corpus: Path | str | xr.Dataset) -> list[str]:
         If the corpus cannot be read.
     """
     with open_corpus(corpus) as opened:
-        recordings = list(_recordings(opened))
-        counts = np.bincount(opened["fault"].values, minlength=UNKNOWN_CODE + 1)
-    signs = [
-        *_named_alike(recordings),
-        *_copies(recordings),
-        *_lonely_classes(recordings, counts),
-        *_one_per_file(recordings),
-    ]
+        keys = [opened[name].values for name in ("rig", "specimen", "fault", "recording")]
+        _, first, number = np.unique(np.stack(keys), axis=1, return_index=True, return_inverse=True)
+        sources = [str(opened["source"].values[row]).rpartition("#")[0] for row in first]
+        recordings = [
+            _Recording(source, int(fault), (int(rig), int(specimen)))
+            for source, rig, specimen, fault in zip(sources, *(key[first] for key in keys[:3]), strict=True)
+        ]
+        order = np.argsort(first).tolist()
+        signs = [
+            *_named_alike([recordings[place] for place in order]),
+            *_copies(opened, recordings, number.reshape(-1).tolist()),
+            *_lonely_classes(recordings, np.bincount(opened["fault"].values, minlength=UNKNOWN_CODE + 1)),
+            *_one_per_file(recordings),
+        ]
     return [f"{corpus_name(corpus)}: {sentence}" for sentence in signs]
 
 
-def _recordings(corpus: xr.Dataset) -> Iterator[_Recording]:
-    keys = [corpus[name].values for name in ("rig", "specimen", "fault", "recording")]
-    _, first, number = np.unique(np.stack(keys), axis=1, return_index=True, return_inverse=True)
-    samples = corpus.sizes["elapsed_time"]
-    length = min(_LONGEST, samples * max(1, int(np.bincount(number.reshape(-1)).min())))
-    for place in np.argsort(first):
-        rows = np.flatnonzero(number.reshape(-1) == place)[: -(-length // samples)]
-        signal = corpus[SIGNAL].isel(record=rows, channel=0).values.astype(float).reshape(-1)[:length]
-        rig, specimen, fault, _ = (int(key[rows[0]]) for key in keys)
-        source = str(corpus["source"].values[rows[0]]).rpartition("#")[0]
-        yield _Recording(source, fault, (rig, specimen), *_signature(signal))
-
-
-def _signature(signal: FloatArray) -> tuple[NDArray[np.complexfloating], FloatArray]:
-    """Phases of the spectrum, padded so that shifts do not wrap around, and levels [dB] in bands relative to their mean."""
-    signal = np.nan_to_num(signal, posinf=0.0, neginf=0.0)
-    tapered = (signal - signal.mean()) * np.hanning(signal.size)
-    spectrum = fft.rfft(tapered, fft.next_fast_len(2 * signal.size, real=True))
-    magnitude = np.abs(spectrum)
-    phases = np.divide(spectrum, magnitude, out=np.zeros_like(spectrum), where=magnitude > 0)
-    power = [np.mean(band**2) for band in np.array_split(magnitude, _BANDS)]
-    levels = 10 * np.log10(np.maximum(np.array(power), 1e-30))
-    return phases.astype(np.complex64), levels - levels.mean()
+def block_hashes(signal: NDArray[np.floating]) -> set[int]:
+    """The smallest hashes of the blocks of a record, of shape (time,); blocks that hardly change are left out."""
+    bits = np.ascontiguousarray(signal, np.float32).view(np.uint32)
+    changes = np.cumsum(np.diff(bits, prepend=bits[:1]) != 0, dtype=np.int32)
+    hashes, width = bits.astype(np.uint64), 1
+    while width < BLOCK:  # of blocks twice as wide, from those of their halves
+        hashes = hashes[:-width] * np.uint64(pow(_FACTOR, width, 2**64)) + hashes[width:]
+        width *= 2
+    hashes = hashes[changes[BLOCK - 1 :] - changes[: 1 - BLOCK] >= BLOCK // 2]
+    return set((np.partition(hashes, _KEPT)[:_KEPT] if len(hashes) > _KEPT else hashes).tolist())
 
 
 def _named_alike(recordings: Sequence[_Recording]) -> Iterator[str]:
@@ -99,29 +90,27 @@ def _named_alike(recordings: Sequence[_Recording]) -> Iterator[str]:
         )
 
 
-def _copies(recordings: Sequence[_Recording]) -> Iterator[str]:
-    """Pairs of recordings of different specimens that hold the same signal."""
-    pairs = [
-        (float(np.sum((one.levels - other.levels) ** 2)), first, second)
-        for first, one in enumerate(recordings)
-        for second, other in enumerate(recordings[:first])
-        if one.specimen != other.specimen
+def _copies(corpus: xr.Dataset, recordings: Sequence[_Recording], number: Sequence[int]) -> Iterator[str]:
+    """Pairs of recordings of different specimens with the same blocks; ``number`` is the recording of each record."""
+    samples = corpus.sizes["elapsed_time"]
+    step = max(1, _READ_BYTES // (4 * samples))
+    first, shared = dict[int, int](), Counter[tuple[int, int]]()
+    for start in range(0, len(number) if samples > BLOCK else 0, step):
+        signal = corpus[SIGNAL].isel(record=slice(start, start + step), channel=0).values
+        for own, record in zip(number[start : start + step], signal, strict=True):
+            for other in (first.setdefault(block, own) for block in block_hashes(record)):
+                if recordings[other].specimen != recordings[own].specimen:
+                    shared[other, own] += 1
+    copies = [
+        f"{recordings[one].source} and {recordings[other].source}"
+        for (one, other), count in shared.items()
+        if count >= _FEWEST
     ]
-    copies = []
-    for _, first, second in sorted(pairs)[:_MOST_PAIRS]:
-        one, other = recordings[first], recordings[second]
-        if phase_correlation(one.phases, other.phases) > COPY:
-            copies.append(f"{other.source} and {one.source}")
     if copies:
         yield (
-            f"{_listed(copies)} agree in phase sample by sample, as copies of one recording do, and are of different specimens; "
-            f"remove one of the two, or give both the same specimen."
+            f"{_listed(copies)} have the same samples, and are of different specimens; remove one of the two, or give both the same "
+            f"specimen."
         )
-
-
-def phase_correlation(one: NDArray[np.complexfloating], other: NDArray[np.complexfloating]) -> float:
-    """Largest magnitude of the phase correlation of two spectra over all shifts [1], from their phases, shape (frequency,)."""
-    return float(np.abs(fft.irfft(one * other.conj())).max())
 
 
 def _lonely_classes(recordings: Sequence[_Recording], counts: NDArray[np.integer]) -> Iterator[str]:
