@@ -12,13 +12,8 @@ table     records -> feature table: bands, definitions, indicators, files
 accessor  the functions of `signal` on xarray
 auditing  splits of real recordings that can leak
 baselines classifiers on a feature table, scored by specimen or rig beside their controls
-=======
 ranking   features by what a classifier loses without them
-lives     remaining life of bearings run to failure, with and without the signal
-realism   synthetic records against real ones: AUC of measures, class by class
-diagnosis class of one recording, and the lines that speak for it
-report    figures of records, corpora and scores, and one page with all of them
-========= ==============================================================================
+========= ===================================================================================
 """
 
 import lazy_loader

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from gen.corpus.schema import class_names
 from gen.support.errors import CorpusError
-from gen.support.units import READABLE, key_in
+from gen.support.units import keys_of
 
 MOST_CHARACTERS = 4000
 _EXAMPLE = "an example is fault == 'inner' and width_mm > 0.5."
@@ -49,8 +49,8 @@ def label_columns(variables: Variables) -> dict[str, tuple[str, float]]:
     """
     columns = {name: (name, 1.0) for name in variables}
     for name, variable in variables.items():
-        for unit, factor in READABLE.get(variable.attrs.get("units", ""), {}).items():
-            columns.setdefault(key_in(name, unit), (name, factor))
+        for key, factor in keys_of(name, variable.attrs.get("units", "")).items():
+            columns.setdefault(key, (name, factor))
     return columns
 
 

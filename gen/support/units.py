@@ -93,13 +93,16 @@ def split_unit(key: str) -> tuple[str, float]:
     )
 
 
-def key_in(name: str, unit: str) -> str:
-    """Key of a quantity in a unit of ``READABLE``, the inverse of `split_unit`.
+def keys_of(name: str, stored: str) -> dict[str, float]:
+    """Keys of a quantity in each unit of ``READABLE``, with the stored value of 1 in that unit; the inverse of `split_unit`.
 
-    >>> key_in("width", "mm"), key_in("first_shaft_rate", "rpm"), key_in("load", "kN")
-    ('width_mm', 'first_shaft_rpm', 'load_kn')
+    >>> keys_of("load", "N"), keys_of("first_shaft_rate", "Hz")["first_shaft_rpm"]
+    ({'load_n': 1.0, 'load_kn': 1000.0}, 0.016666666666666666)
     """
-    return f"{name.removesuffix('_rate') if unit == 'rpm' else name}_{unit.lower()}"
+    return {
+        f"{name.removesuffix('_rate') if unit == 'rpm' else name}_{unit.lower()}": factor
+        for unit, factor in READABLE.get(stored, {}).items()
+    }
 
 
 def shown_unit(name: str, stored: str) -> tuple[str, float]:

@@ -15,6 +15,7 @@ const KEYS = { ArrowLeft: () => step(-1), ArrowRight: () => step(1), "/": () => 
 
 let about;
 let numbers; // of the quantities among the parts, by name
+let columns; // quantity and unit of the columns of conditions, by name
 let shown = []; // rows that the filter leaves, in the chosen order
 let current = 0; // row of the shown record
 let scatter;
@@ -120,43 +121,36 @@ function nearestName(wrong) {
     }
     return row.at(-1);
   };
-  const names = Object.keys(numbers);
+  const names = Object.keys(columns);
   return names.reduce((best, name) => (distance(wrong, name) < distance(wrong, best) ? name : best));
 }
 
-// Stored value of a number with or without a unit.
-function storedNumber(name, text) {
-  const [, number, given] = /^([-+.\deE]+)\s*(\D\S*)?$/.exec(text) ?? [];
-  const { unit } = quantity(name);
-  const units = about.readable[unit] ?? { [unit]: 1 };
-  const factor = given ? units[given.replace(/[µμ]/, "u")] : 1;
-  const allowed = unit ? `a number, with a unit (${Object.keys(units).join(", ")}) or in ${unit}` : "a number";
-  if (number === undefined || Number.isNaN(+number) || factor === undefined) {
-    throw new Error(`${name}: ${text} is not ${allowed}.`);
-  }
-  return number * factor;
-}
-
-// Tests of a condition such as "width > 0.5 mm and split == train".
+// Tests of a condition such as "width_mm > 0.5 and split == 'train'", a part of the language of the command line.
 async function conditions(text) {
   const tests = [];
   for (const part of text.split(/\band\b/).map((one) => one.trim()).filter(Boolean)) {
-    const found = /^(\w+)\s*(==|!=|<=|>=|<|>|=)\s*(?:'([^']*)'|"([^"]*)"|(\S.*))$/.exec(part);
-    if (!found) throw new Error(`${part}: write a quantity, a sign and a value, such as width > 0.5 mm.`);
-    const [, name, sign, ...given] = found;
-    const wanted = given.find((one) => one !== undefined);
-    if (!(name in numbers)) throw new Error(`${name}: no such quantity; the nearest is ${nearestName(name)}.`);
-    const against = quantity(name).numeric ? storedNumber(name, wanted) : wanted;
+    const found = /^(\w+)\s*(==|!=|<=|>=|<|>)\s*(?:'([^']*)'|"([^"]*)"|([-+.\deE]+))$/.exec(part);
+    if (!found) throw new Error(`${part}: write a column, a sign and a number or a text in quotes, such as width_mm > 0.5.`);
+    const [, column, sign, single, double, number] = found;
+    const [name, factor] = columns[column] ?? [];
+    if (!name) throw new Error(`${column}: no such column; the nearest is ${nearestName(column)}.`);
+    const { numeric } = quantity(name);
+    if (numeric !== (number !== undefined) || Number.isNaN(Number(number ?? 0))) {
+      throw new Error(`${part}: ${column} has ${numeric ? "numbers" : "text; put it in quotes"}.`);
+    }
     const values = await valuesOf(name);
-    const compare = COMPARE[sign === "=" ? "==" : sign];
-    tests.push((row) => !Number.isNaN(values[row]) && compare(values[row], against));
+    // rounded as on the command line, so that 0.3 mm equals 0.3
+    const read = numeric && factor !== 1 ? (row) => +(values[row] / factor).toFixed(9) : (row) => values[row];
+    const against = numeric ? +number : (single ?? double);
+    tests.push((row) => !Number.isNaN(values[row]) && COMPARE[sign](read(row), against));
   }
   return tests;
 }
 
 // Sentence of the command line on a condition that no record meets: a unit is easily mistaken.
 function noneMeets(condition) {
-  const named = [...new Set(condition.match(/[A-Za-z_]\w*/g))].filter((name) => quantity(name)?.range);
+  const words = (condition.match(/[A-Za-z_]\w*/g) ?? []).filter((word) => word in columns);
+  const named = [...new Set(words.map((word) => columns[word][0]))].filter((name) => quantity(name).range);
   const ranges = named.map((name) => `${name} is ${quantity(name).range}`).join(", ");
   return `where '${condition}': none of ${about.records} records is chosen; choose others${ranges && ` (${ranges})`}.`;
 }
@@ -274,6 +268,9 @@ function onKey(event) {
 async function start() {
   about = await (await inflate("about")).json();
   numbers = Object.fromEntries(about.quantities.map(({ name }, place) => [name, place]));
+  columns = Object.fromEntries(
+    about.quantities.flatMap((one) => Object.entries(one.columns).map(([key, factor]) => [key, [one.name, factor]])),
+  );
   const faults = await valuesOf("fault");
   about.records = faults.length;
   makeClasses(faults);

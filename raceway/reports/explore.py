@@ -45,7 +45,7 @@ from gen.support.errors import CorpusError
 from gen.support.executor import run
 from gen.support.progress import Progress, counter
 from gen.support.shown import visible
-from gen.support.units import READABLE, range_text, shown_unit
+from gen.support.units import keys_of, range_text, shown_unit
 from raceway.reports.maps import BRIGHTEST_DB
 from raceway.reports.pictures import (
     SEGMENT,
@@ -329,7 +329,6 @@ def _parts(
             for name, look in LOOKS.items()
         },
         "quantities": [_told(one) for one in known],
-        "readable": READABLE,
     }
     parts = {"about": about} | {f"quantity{n}": one.values for n, one in enumerate(known)}
     parts = {name: _packed(json.dumps(part, allow_nan=False).encode()) for name, part in parts.items()}
@@ -344,7 +343,8 @@ def _told(column: ExplorerColumn) -> dict[str, Any]:
     about = {name: getattr(column, name) for name in ("name", "unit", "meaning", "role")}
     ends = extent(np.array(column.values, float)) if numeric and column.unit else None
     about["range"] = ends and range_text(column.name, ends[0], ends[-1], column.unit)
-    return about | {"numeric": numeric, "shown_unit": unit, "factor": factor}
+    columns = {column.name: 1.0} | keys_of(column.name, column.unit)
+    return about | {"numeric": numeric, "shown_unit": unit, "factor": factor, "columns": columns}
 
 
 def _packed(content: bytes) -> str:

@@ -159,7 +159,7 @@ def test_the_page_works_in_a_browser_by_keys_at_any_width(page, corpus, tmp_path
         opened.press("ArrowRight")
         opened.until(f"{name}.startsWith('Record 1: ')")
         opened.press("/")
-        opened.type("fault == inner and shaft_rate > 1620 rpm")
+        opened.type("fault == 'inner' and shaft_rpm > 1620")
         opened.until(f"!{count}.startsWith('80')")
         assert 0 < int(opened.value(count).split()[0]) <= 20
         opened.until(f"{name}.includes(': inner')")
@@ -167,11 +167,11 @@ def test_the_page_works_in_a_browser_by_keys_at_any_width(page, corpus, tmp_path
         opened.press("p")
         opened.value("byId('condition').value = 'nothing > 1'; choose()")
         told = opened.value("byId('complaint').textContent")
-        assert told.startswith("nothing: no such quantity; the nearest is ")
-        for condition in ("widht > 1", "width > 1 rpm"):
+        assert told.startswith("nothing: no such column; the nearest is ")
+        for condition in ("widht > 1", "fault > 1"):
             opened.value(f"byId('condition').value = '{condition}'; choose()")
             told = opened.value("byId('complaint').textContent")
-            assert told.endswith(("the nearest is width.", "with a unit (m, mm, um) or in m."))
+            assert told.endswith(("the nearest is width.", "fault has text; put it in quotes."))
         opened.value("byId('condition').value = 'width > 5'; choose()")
         opened.until("byId('complaint').textContent.startsWith('where')")
         told = opened.value("byId('complaint').textContent")
