@@ -8,11 +8,14 @@ from gen.simulation.motion import draw_motion
 from gen.simulation.simulate import Run
 from gen.simulation.timeline import timeline
 from gen.simulation.truth import LABELS
+from gen.support.errors import SimulationError
 
 
 def input_of(scenario):
-    """Kernel input of a scenario."""
+    """Kernel input of a scenario; the error of a machine that is not possible is raised."""
     (given,) = kernel_inputs([draw_motion(scenario)])
+    if isinstance(given, SimulationError):
+        raise given
     return given
 
 
