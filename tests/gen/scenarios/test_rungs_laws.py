@@ -12,6 +12,7 @@ from gen.generation.corpus import generate
 from gen.generation.plan import plan
 from gen.generation.replaying import replay
 from gen.scenarios import draw_scenarios, read_scenarios
+from raceway.sharing.card.page import data_card
 from tests.recipes import EVERY_FAULT
 from tests.responses import input_of
 
@@ -166,7 +167,7 @@ def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_p
     healthy = found["fault"].values == 0
     assert (healthy == (~in_pair | (found["rung"].values == 0))).all()
     assert planned.classes == {"healthy": healthy.sum(), "inner": (~healthy).sum()}
-    card = (made.path / "README.md").read_text(encoding="utf-8")
+    card = data_card(made.path)
     assert f"\n{in_pair.sum() // 3} groups of records (`pair`) differ in the severity" in card
     assert f"\n| healthy | {healthy.sum()} | " in card
     for record in (int(np.flatnonzero(in_pair)[0]), int(np.flatnonzero(in_pair)[-1])):
