@@ -20,6 +20,7 @@ from gen.support.limits import check_limit
 from gen.support.progress import Progress, counter
 from raceway.importing.files import UnusableError
 from raceway.importing.recordings import Candidate, Record, cut, read_recording
+from raceway.sharing import describe
 
 _PART_RECORDS = 256
 _PART_BYTES = 64_000_000
@@ -104,6 +105,7 @@ def import_recordings(
     log = _Log(Counter(), Counter(), list(skipped), list(warnings))
     with new_corpus(
         output,
+        describe=describe,
         title=collection.title,
         publication=Publication().dated(),
         importer=collection.importer,

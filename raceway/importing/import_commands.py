@@ -131,12 +131,8 @@ def generic(
 
 
 def _run(bring: "Callable[[Any], Import]", as_json: bool) -> None:
-    from raceway.sharing import describe
-
     with progress("importing", "files") as report:
         done = bring(report)
-    if done.path.is_dir():
-        describe(done.path)
     for sentence in done.warnings:
         notice(f"warning: {sentence}")
     for sentence in done.skipped:
