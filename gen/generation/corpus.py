@@ -27,7 +27,6 @@ from gen.corpus import (
     finish_file,
     is_single_file,
     lock,
-    part_number,
     read_manifest,
     remove_left_behind_of,
     remove_parts,
@@ -39,7 +38,7 @@ from gen.corpus import (
 )
 from gen.generation.facts import failures_of, made_by, part_file
 from gen.generation.sources import sources_sha256
-from gen.generation.target import check_parts, check_same, claim, prepare, remove_other_parts
+from gen.generation.target import check_parts, check_same, claim, part_numbers, prepare, records_of, remove_other_parts
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.executor import Workers, connected, run, too_many
@@ -128,23 +127,24 @@ def generate(
         raise RecipeError(f"workers: {workers!r} is not allowed; use 1 or more.")
     target = Path(target)
     check_place(target)
-    folder = target.with_name(f"{target.name}.parts") if is_single_file(target) else target
+    is_file = is_single_file(target)
+    folder = target.with_name(f"{target.name}.parts") if is_file else target
     facts = facts_of(checked, {"seed": seed, "records": records})
     if parts is not None:
         check_parts(checked, parts, target)
-    elif is_single_file(target) and target.exists():
+    elif is_file and target.exists():
         return _finished_before(target, folder, checked, facts)
     with nullcontext(workers) if scheduler is None else connected(scheduler, _SIMULATOR) as place, claim(folder):
-        if folder is not target:
+        if is_file:
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
         text = find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode()
-        prepare(folder, text, facts, checked)
+        facts = prepare(folder, text, facts, checked)
         every = range(checked.n_parts)
-        wanted = every if parts is None else sorted({*parts, *_there(folder)})
+        wanted = every if parts is None else sorted({*parts, *part_numbers(folder)})
         outcomes = _all_parts(checked, wanted, folder, place, progress, notice)
         corpus = _finish(target, folder, text, outcomes, facts)
-        if folder is not target:
+        if is_file:
             remove_parts(folder, [part_file(checked, part) for part in every])
         else:
             remove_other_parts(folder, checked)
@@ -159,12 +159,6 @@ class Outcome(NamedTuple):
     failures: tuple[str, ...]
     kept: bool = False
     """Whether an earlier call made it."""
-
-
-def _there(folder: Path) -> set[int]:
-    """Numbers of the parts that have a file, whole or not, full or not."""
-    numbers = {part_number(path.name) for path in (folder / "parts").glob("part-*.nc")}
-    return {number for number in numbers if number is not None}
 
 
 def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
@@ -182,11 +176,7 @@ def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, 
     corpus_files(file)
     manifest = read_manifest(file)
     check_same(file, manifest, facts)
-    held = manifest.records + len(manifest.failures)
-    if recipe.life is not None:  # every bearing has a first snapshot
-        last = int(stored_columns(file)["recording"].max())
-        held = recipe.records_of(recipe.specimen_of(last)).stop if last < recipe.n_records else last
-    if held != recipe.n_records:
+    if records_of(file, manifest) != recipe.n_records:
         raise CorpusError(
             f"{file}: holds {manifest.records} records and not {recipe.n_records}; a corpus grows in a folder: choose another name."
         )
@@ -207,36 +197,33 @@ def _all_parts(
     notice: Callable[[str], None],
 ) -> list[Outcome]:
     """Make those of the parts that are missing; outcomes of all of them in their order."""
-    report = counter(progress, sum(len(recipe.records_of_part(part)) for part in parts))
+    counts = {part: len(recipe.records_of_part(part)) for part in parts}
+    report = counter(progress, sum(counts.values()))
     outcomes = dict[int, Outcome]()
-
-    def done(part: int, outcome: Outcome) -> None:
-        outcomes[part] = outcome
-        report(len(recipe.records_of_part(part)))
-
+    # what an earlier call made comes first
     for part in parts:
         if (kept := _kept(recipe, folder, part)) is not None:
-            done(part, kept)
-    missing = [part for part in parts if part not in outcomes]
-    if not missing:
-        return [outcomes[part] for part in parts]
-    here = isinstance(workers, int)
-    if here and (sentence := too_many(workers)) is not None:
-        notice(sentence)
-    with connected(min(workers, len(missing)) if here else workers, _SIMULATOR) as place:
-        if here:
-            from gen.generation.compilation import compile_kernels  # loaded while the processes start
-
-            compile_kernels(recipe, notice)
+            outcomes[part] = kept
+            report(counts[part])
+    if missing := [part for part in parts if part not in outcomes]:
+        here = isinstance(workers, int)
+        if here and (sentence := too_many(workers)) is not None:
+            notice(sentence)
         task = partial(_write, recipe, folder.resolve(), sources_sha256())
-        with closing(run(task, missing, place)) as made:
-            for part, outcome in zip(missing, made, strict=True):
-                done(part, outcome)
+        with connected(min(workers, len(missing)) if here else workers, _SIMULATOR) as place:
+            if here:
+                from gen.generation.compilation import compile_kernels  # loaded while the processes start
+
+                compile_kernels(recipe, notice)
+            with closing(run(task, missing, place)) as made:
+                for part, outcome in zip(missing, made, strict=True):
+                    outcomes[part] = outcome
+                    report(counts[part])
     return [outcomes[part] for part in parts]
 
 
 def _write(recipe: Recipe, folder: Path, sources: str, part: int) -> Outcome:
-    """Make and write one part, unless it is there: dask may repeat a task.
+    """Make and write one part; dask may repeat the task, which then writes the same bytes.
 
     Raises
     ------
@@ -248,8 +235,6 @@ def _write(recipe: Recipe, folder: Path, sources: str, part: int) -> Outcome:
             f"worker {platform.node()}: has other sources of raceway ({sources_sha256()[:12]}) than this process ({sources[:12]}); install "
             f"the same version on every worker."
         )
-    if (kept := _kept(recipe, folder, part)) is not None:
-        return kept
     from gen.generation.parts import make_part  # the simulator, which takes a second and a half to load
 
     made = make_part(recipe, recipe.records_of_part(part))

@@ -51,9 +51,13 @@ def labelled(recipe: Recipe, made: Sequence[Made], step_error: NDArray[Any] | No
 
 def decoded(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Records of parts in m s-2, with their classes in words."""
-    joined = parts[0]
-    if len(parts) > 1:
-        joined = xr.concat(parts, "record", data_vars="minimal", coords="minimal", combine_attrs="override")
-    records = xr.decode_cf(joined, decode_times=False).load()
+    records = xr.decode_cf(joined(parts), decode_times=False).load()
     add_class_names(records)
     return records
+
+
+def joined(parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Records of parts of one recipe, one after the other."""
+    if len(parts) == 1:
+        return parts[0]
+    return xr.concat(parts, "record", data_vars="minimal", coords="minimal", combine_attrs="override")

@@ -16,7 +16,7 @@ import xarray as xr
 from gen.drawing import Grid, quantities, sections_with_places
 from gen.generation.compilation import compile_kernels
 from gen.generation.facts import failures_of
-from gen.generation.parts import decoded, make_part
+from gen.generation.parts import decoded, joined, make_part
 from gen.recipe import Recipe, corpus_identity, read_recipe
 from gen.support.errors import RecipeError, SimulationError
 from gen.support.executor import run, too_many
@@ -132,8 +132,7 @@ class Stream(Iterator[xr.Dataset]):
     def __init__(self, recipe: Recipe, batch: int, workers: int, start: int, notice: Callable[[str], None]) -> None:
         self.recipe, self.batch, self.workers, self.notice = recipe, batch, workers, notice
         self._next = start
-        self._made: Generator[xr.Dataset] | None = None
-        self._ready: list[xr.Dataset] = []
+        self._batches: Generator[xr.Dataset] | None = None
 
     def __repr__(self) -> str:
         """Name of the recipe, and the next record."""
@@ -141,18 +140,14 @@ class Stream(Iterator[xr.Dataset]):
 
     def __next__(self) -> xr.Dataset:
         """Return the next batch."""
-        if self._made is None:
+        if self._batches is None:
             compile_kernels(self.recipe, self.notice)
-            self._made = records_from(self.recipe, self._next, workers=self.workers)
+            self._batches = _batches(self.recipe, self._next, self.batch, self.workers)
         try:
-            while sum(some.sizes["record"] for some in self._ready) < self.batch:
-                self._ready.append(next(self._made))
+            batch = next(self._batches)
         except BaseException:
             self.close()  # the next batch, if one is asked for, begins with the same record
             raise
-        whole = xr.concat(self._ready, "record", data_vars="minimal", coords="minimal", combine_attrs="override")
-        self._ready = [whole.isel(record=slice(self.batch, None))]
-        batch = whole.isel(record=slice(self.batch))
         self._next = int(batch["recording"].values[-1]) + 1
         return batch
 
@@ -178,9 +173,9 @@ class Stream(Iterator[xr.Dataset]):
 
     def close(self) -> None:
         """End the workers; the next batch would start others."""
-        if self._made is not None:
-            self._made.close()
-        self._made, self._ready = None, []
+        if self._batches is not None:
+            self._batches.close()
+        self._batches = None
 
     def __enter__(self) -> Self:
         """Return the stream."""
@@ -189,6 +184,20 @@ class Stream(Iterator[xr.Dataset]):
     def __exit__(self, *_: object) -> None:
         """End the workers."""
         self.close()
+
+
+def _batches(recipe: Recipe, first: int, size: int, workers: int) -> Generator[xr.Dataset]:
+    """Records from the number ``first`` on, ``size`` at a time."""
+    with closing(records_from(recipe, first, workers=workers)) as made:
+        ready: list[xr.Dataset] = []
+        for records in made:
+            ready.append(records)
+            if (count := sum(some.sizes["record"] for some in ready)) < size:
+                continue
+            whole = joined(ready)
+            for start in range(0, count - size + 1, size):
+                yield whole.isel(record=slice(start, start + size))
+            ready = [whole.isel(record=slice(count - count % size, None))]
 
 
 def _check_number(name: str, value: object, least: int, most: int) -> None:

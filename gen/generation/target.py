@@ -16,7 +16,9 @@ from gen.corpus import (
     file_facts,
     is_single_file,
     lock,
+    part_number,
     read_manifest,
+    recipe_text,
     remove_temporary_files,
     row_of,
     write_durably,
@@ -26,6 +28,7 @@ from gen.corpus import (
 from gen.generation.facts import part_file
 from gen.recipe import Recipe, read_recipe
 from gen.support.errors import CorpusError, RecipeError
+from gen.support.yaml_files import parse_yaml
 
 
 @contextmanager
@@ -39,42 +42,51 @@ def claim(folder: Path) -> Iterator[None]:
         yield
 
 
-def prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe) -> None:
+def prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe) -> dict[str, Any]:
     """Check what the folder holds, and write the manifest of an unfinished corpus, unless it holds a finished one, which may grow.
 
-    The manifest is written first: it tells a corpus without any part from a folder that holds something else.
+    Returns ``facts``, with the publication that a corpus was given after it was made. The manifest is written first: it tells a corpus
+    without any part from a folder that holds something else.
     """
     finished = False
     with writing(folder):
         remove_temporary_files(folder)
         if (folder / MANIFEST_NAME).exists():
             manifest = read_manifest(folder)
-            check_same(folder, manifest, facts)
-            _check_generated(folder, manifest)
-            _check_growth(folder, manifest, recipe)
+            _check_kept(folder, manifest, facts, recipe)
             if not facts["publication"].stored:
-                facts["publication"] = manifest.publication  # given after the corpus was made
+                facts = facts | {"publication": manifest.publication}
             finished = manifest.complete
         elif any(folder.iterdir()):
             raise CorpusError(f"{folder}: is not empty and holds no corpus; choose another folder.")
         if not finished:
             write_manifest(folder, facts_of_parts([], facts, complete=False))
             write_durably(text, folder / RECIPE_NAME)
-        (folder / "parts").mkdir(exist_ok=True)
-        if not finished:
             remove_other_parts(folder, recipe)
+        (folder / "parts").mkdir(exist_ok=True)
+    return facts
 
 
-def _check_growth(folder: Path, manifest: Manifest, recipe: Recipe) -> None:
-    """Refuse a corpus with fewer records than the one in the folder."""
-    overrides = {} if manifest.overrides is None else dict(manifest.overrides)
-    begun = folder / RECIPE_NAME  # not there if a call was killed before its first part
-    before = read_recipe(begun, **overrides).n_records if begun.exists() else recipe.n_records
-    if recipe.n_records < before:
+def _check_kept(folder: Path, manifest: Manifest, facts: dict[str, Any], recipe: Recipe) -> None:
+    """Refuse a corpus that cannot become that of the recipe: another one, a copy, or one with more records."""
+    check_same(folder, manifest, facts)
+    # parts of a copy have other records than those that are generated, and would be made again
+    whole = next(filter(row_of, (folder / "parts" / row.name for row in manifest.parts)), None)
+    if whole is not None and "recipe_sha256" not in file_facts(whole)[0]:
+        raise CorpusError(f"{folder}: holds a copy of a corpus, which is not generated again; choose another name.")
+    before = records_of(folder, manifest)
+    if before is not None and recipe.n_records < before:
         raise CorpusError(
             f"{folder}: holds a corpus of {before} records and not {recipe.n_records}; a corpus grows and does not shrink: choose another "
             "name."
         )
+
+
+def records_of(place: Path, manifest: Manifest) -> int | None:
+    """Number of records that a corpus has or is to have, by its recipe; None if a call was killed before it stored the recipe."""
+    text = recipe_text(place)
+    overrides = {} if manifest.overrides is None else dict(manifest.overrides)
+    return None if text is None else read_recipe(parse_yaml(text, place, RecipeError), **overrides).n_records
 
 
 def check_same(place: Path, manifest: Manifest, facts: dict[str, Any]) -> None:
@@ -89,20 +101,17 @@ def check_same(place: Path, manifest: Manifest, facts: dict[str, Any]) -> None:
     now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
     other = [name for name in now if began.get(name) != now[name]]
     if other:
-        was, installed = (
-            ", ".join(f"{name} {versions.get(name, 'none')}" for name in other) for versions in (began, now)
-        )
+        was, installed = (", ".join(f"{name} {of.get(name, 'none')}" for name in other) for of in (began, now))
         raise CorpusError(
             f"{place}: was begun with {was}; {installed} is installed and can give other samples: install the former to "
             "complete it, or choose another name."
         )
 
 
-def _check_generated(folder: Path, manifest: Manifest) -> None:
-    """Refuse a copy: its parts have other records than those that are generated, and would be made again."""
-    whole = next(filter(row_of, (folder / "parts" / row.name for row in manifest.parts)), None)
-    if whole is not None and "recipe_sha256" not in file_facts(whole)[0]:
-        raise CorpusError(f"{folder}: holds a copy of a corpus, which is not generated again; choose another name.")
+def part_numbers(folder: Path) -> set[int]:
+    """Numbers of the parts that have a file, whole or not, full or not."""
+    numbers = (part_number(path.name) for path in (folder / "parts").glob("part-*.nc"))
+    return {number for number in numbers if number is not None}
 
 
 def remove_other_parts(folder: Path, recipe: Recipe) -> None:

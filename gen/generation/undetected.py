@@ -31,89 +31,37 @@ def make_records(recipe: Recipe, numbers: range) -> list[Made]:
     SimulationError
         If there are none, since every life has ended before them.
     """
-    drawing, final = Drawing(recipe), dict[int, Made]()
-    runs = drawing.first(numbers)
-    while runs:
+    corpus, redraws = recipe.corpus, recipe.truth.undetected == "redraw" and recipe.truth.twins
+    # all records of a specimen are judged together, those of a group share a level
+    size = corpus.records_of_a_specimen if redraws or recipe.life is not None else corpus.n_rungs
+    stop = min(-(-numbers.stop // size) * size, recipe.n_records)
+    scenarios = draw_scenarios(recipe, numbers.start // size * size, stop)
+    final, integrated = dict[int, Made](), dict[int, Run]()
+    while scenarios:
+        runs = runs_of(_with_hits(recipe, scenarios) if redraws else scenarios, integrated)
         integrate_runs(runs)
-        records, again = drawing.judge(runs)
-        for run, record in zip(runs, records, strict=True):
-            if run.scenario.origin.record in numbers:
-                final[run.scenario.origin.record] = record
-        runs = again  # whose records replace those with the fault before
+        records = made_of(runs, _further_ratios(recipe, runs) if redraws else {})
+        if recipe.life is not None:
+            records = with_ends(runs, records, recipe.life.end)
+        usable = (run for run, record in zip(runs, records, strict=True) if isinstance(record, Measured))
+        integrated = {run.scenario.origin.record: run for run in usable}
+        # specimens whose fault cannot be seen get another one, a few times
+        unseen = _unseen(runs, records) if redraws else {}
+        scenarios = _redrawn(recipe, unseen.values())
+        redrawn = {scenario.origin.record for scenario in scenarios}
+        advice = "raise level.faulty_db" if recipe.level.kind == "snr" else "lower level.background_m_s2"
+        for place, scenario in unseen.items():
+            if scenario.origin.record not in redrawn:
+                records[place] = (
+                    f"record {scenario.origin.record}: none of {FAULT_TRIES} drawn faults of class {scenario.fault} can be seen in it; "
+                    f"{advice}, or choose truth.undetected: keep."
+                )
+        # records with another fault replace those with the fault before
+        made = {run.scenario.origin.record: record for run, record in zip(runs, records, strict=True)}
+        final.update({number: record for number, record in made.items() if number in numbers})
     if not final:
         raise SimulationError(f"records {numbers.start}-{numbers.stop - 1}: every life has ended before them.")
     return [final[number] for number in numbers if number in final]
-
-
-class Drawing:
-    """Records of whole specimens or groups: drawn, and judged once they are integrated."""
-
-    def __init__(self, recipe: Recipe) -> None:
-        self.recipe = recipe
-        self._redraws = recipe.truth.undetected == "redraw" and recipe.truth.twins
-        self._tries: dict[int, int] = {}
-
-    def first(self, numbers: range) -> list[Run]:
-        """Records with the given numbers, and all that are judged together with them, with their first fault."""
-        corpus, whole = self.recipe.corpus, self._redraws or self.recipe.life is not None
-        size = corpus.records_of_a_specimen if whole else corpus.n_rungs
-        stop = min(-(-numbers.stop // size) * size, self.recipe.n_records)
-        scenarios = draw_scenarios(self.recipe, numbers.start // size * size, stop)
-        return runs_of(self._with_hits(scenarios)) if scenarios else []
-
-    def judge(self, runs: list[Run]) -> tuple[list[Made], list[Run]]:
-        """Records of integrated runs, and the runs of specimens whose fault is drawn again."""
-        scenarios, snr = [run.scenario for run in runs], self.recipe.level.kind == "snr"
-        largest, ratios = _largest_places(scenarios), dict[int, Sequence[float]]()
-        if self._redraws and snr:  # further tries of the level of records with a fault
-            faulty = [scenarios[place] for place in largest]
-            ratios = {one.origin.record: further_ratios(self.recipe, one, LEVEL_TRIES - 1) for one in faulty}
-        records = made_of(runs, ratios)
-        if self.recipe.life is not None:
-            records = with_ends(runs, records, self.recipe.life.end)
-        if not self._redraws:
-            return records, []
-        judged = [(place, record) for place in largest if isinstance(record := records[place], Measured)]
-        unseen = [place for place, record in judged if not record.detectable]
-        specimens = {scenarios[place].origin.specimen for place in unseen}
-        again = sorted(number for number in specimens if self._tries.get(number, 0) < FAULT_TRIES - 1)
-        for place in unseen:
-            scenario = scenarios[place]
-            if scenario.origin.specimen not in again:
-                records[place] = (
-                    f"record {scenario.origin.record}: none of {FAULT_TRIES} drawn faults of class {scenario.fault} can be seen in it; "
-                    f"{'raise level.faulty_db' if snr else 'lower level.background_m_s2'}, or choose truth.undetected: keep."
-                )
-        if not again:
-            return records, []
-        usable = (run for run, record in zip(runs, records, strict=True) if isinstance(record, Measured))
-        known = {run.scenario.origin.record: run for run in usable}
-        return records, runs_of(self._with_hits(self._redrawn(again)), known)
-
-    def _redrawn(self, specimens: Iterable[int]) -> list[Scenario]:
-        """Scenarios of all records of some specimens with their next fault."""
-        redrawn = []
-        for number in specimens:
-            self._tries[number] = self._tries.get(number, 0) + 1
-            records = self.recipe.records_of(number)
-            redrawn += draw_scenarios(self.recipe, records.start, records.stop, fault_tries=self._tries)
-        return redrawn
-
-    def _with_hits(self, scenarios: list[Scenario]) -> list[Scenario]:
-        """Scenarios of whole specimens, those with another fault whose spalls no loaded ball meets in some record.
-
-        Of a group, the largest severity alone counts, as in :meth:`judge`.
-        """
-        by_number = {scenario.origin.record: scenario for scenario in scenarios}
-        tried = scenarios if self._redraws else []
-        while tried:
-            largest = [tried[place] for place in _largest_places(tried)]
-            missed = {
-                one.origin.specimen for one, is_felt in zip(largest, felt_places(largest), strict=True) if not is_felt
-            }
-            tried = self._redrawn(sorted(n for n in missed if self._tries.get(n, 0) < FAULT_TRIES - 1))
-            by_number.update({scenario.origin.record: scenario for scenario in tried})
-        return list(by_number.values())
 
 
 def made_from(scenarios: list[Scenario]) -> list[Made]:
@@ -128,11 +76,42 @@ def made_of(runs: list[Run], ratios: Mapping[int, Sequence[float]] = {}) -> list
     return [next(measured) if failure is None else failure for failure in failures]
 
 
+def _further_ratios(recipe: Recipe, runs: list[Run]) -> dict[int, Sequence[float]]:
+    """Ratios of the further tries of the level of records with a fault, by their number."""
+    scenarios, snr = [run.scenario for run in runs], recipe.level.kind == "snr"
+    faulty = [scenarios[place] for place in _largest_places(scenarios) if snr]
+    return {one.origin.record: further_ratios(recipe, one, LEVEL_TRIES - 1) for one in faulty}
+
+
+def _with_hits(recipe: Recipe, scenarios: list[Scenario]) -> list[Scenario]:
+    """Scenarios of whole specimens, those with another fault whose spalls no loaded ball meets in some record.
+
+    Of a group, the largest severity alone counts, as in :func:`_unseen`.
+    """
+    by_number, tried = {scenario.origin.record: scenario for scenario in scenarios}, scenarios
+    while tried:
+        largest = [tried[place] for place in _largest_places(tried)]
+        felt = felt_places(largest)
+        tried = _redrawn(recipe, [scenario for scenario, is_felt in zip(largest, felt, strict=True) if not is_felt])
+        by_number.update({scenario.origin.record: scenario for scenario in tried})
+    return list(by_number.values())
+
+
+def _redrawn(recipe: Recipe, unseen: Iterable[Scenario]) -> list[Scenario]:
+    """All records of the specimens of some records, with the next fault, unless the last one has been tried."""
+    tries = {one.origin.specimen: one.origin.fault_try + 1 for one in unseen if one.origin.fault_try < FAULT_TRIES - 1}
+    ranges = [recipe.records_of(specimen) for specimen in sorted(tries)]
+    return [one for some in ranges for one in draw_scenarios(recipe, some.start, some.stop, fault_tries=tries)]
+
+
+def _unseen(runs: list[Run], records: list[Made]) -> dict[int, Scenario]:
+    """Records that were made and whose fault cannot be seen, by place; of a group, that of the largest severity alone is looked at."""
+    scenarios = [run.scenario for run in runs]
+    judged = [(place, record) for place in _largest_places(scenarios) if isinstance(record := records[place], Measured)]
+    return {place: scenarios[place] for place, record in judged if not record.detectable}
+
+
 def _largest_places(scenarios: list[Scenario]) -> list[int]:
     """Places of the records with a fault; of a group, that of the largest severity alone."""
-    return [
-        place
-        for place, scenario in enumerate(scenarios)
-        if scenario.fault != "healthy"
-        and (place + 1 == len(scenarios) or scenarios[place + 1].origin.rung <= scenario.origin.rung)
-    ]
+    rungs = [*(scenario.origin.rung for scenario in scenarios), -1]
+    return [at for at, one in enumerate(scenarios) if one.fault != "healthy" and rungs[at + 1] <= rungs[at]]
