@@ -66,6 +66,7 @@ def few_trees() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("features.baselines.estimators.TREES", 10)
         patch.setattr("features.baselines.estimators.ROUNDS", 10)
+        patch.setattr("gen.support.executor.cores", lambda: 1)  # processes would train whole forests
         yield
 
 
@@ -76,6 +77,7 @@ def quick_estimators() -> Iterator[None]:
         for name in ("svm", "random_forest", "extra_trees", "gradient_boosting", "ensemble"):
             patch.setitem(ESTIMATORS, name, ESTIMATORS["logistic_regression"])
         patch.setitem(RELATIVE_ESTIMATORS, "relative_ensemble", ESTIMATORS["logistic_regression"])
+        patch.setattr("gen.support.executor.cores", lambda: 1)  # processes would fit the whole baselines
         yield
 
 
