@@ -81,9 +81,9 @@ def quick_estimators() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def two_processes() -> Iterator[Client]:
-    """Client of two processes, started once for a file: it takes seconds until they have loaded the simulator."""
+    """Client of two processes, started once: it takes seconds until they have loaded the simulator."""
     with connected(2, "gen.generation.parts") as client:
         assert isinstance(client, Client)
         client.wait_for_workers(2)
