@@ -1,8 +1,9 @@
-"""A disk that is full and a scheduler or worker that cannot be used end a command in one sentence."""
+"""A disk that is full, memory that is short, and a scheduler or worker that cannot be used end a command in one sentence."""
 
 import threading
 from http.server import BaseHTTPRequestHandler, HTTPServer
 
+import numpy as np
 import pytest
 from distributed import LocalCluster
 
@@ -22,6 +23,17 @@ def test_a_full_disk_ends_a_copy_in_one_sentence_and_leaves_nothing(start, tiny_
     assert process.returncode == 2, error
     assert "could not be written" in error
     assert not list(tmp_path.glob("*out*"))
+
+
+def test_a_recording_that_does_not_fit_in_memory_is_refused_in_one_sentence(start, tmp_path):
+    """300 MB of bytes are 2.4 GB of numbers."""
+    path = tmp_path / "large.npy"
+    np.lib.format.open_memmap(path, mode="w+", dtype="i1", shape=(300_000_000,))
+    machine = ("--bearing", "6205", "--rpm", "1500", "--rate", "20000")
+    process = start("diagnose", path, *machine, LARGEST_MEMORY="2400000000")
+    _, errors = process.communicate(timeout=60)
+    assert errors == f"{path}: holds more values than fit in memory; cut it into shorter files.\n"
+    assert process.returncode == 2
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import scipy.io
 from scipy.io import wavfile
 
 from gen.support.errors import CorpusError
-from raceway.importing import import_generic
+from raceway.importing import import_generic, read_signal
 from tests.labels import import_labelled, write_labels
 from tests.raceway.importing.test_labels import COMMON, FS, SIGNAL, imported, noise, write_matlab_7_3
 
@@ -26,8 +26,12 @@ def refusal(folder, *rows, **common):
     ("window", "sentence"),
     [
         (1e300, "window: 1e+300 s are 1e18 or more samples, and the limit is 25000000;"),
+        (0.0, "window: 0.0 s is shorter than two samples"),
+        (-1.0, "window: -1.0 s is shorter than two samples"),
+        (math.inf, "window: inf s is shorter than two samples"),
         (1e306, "window: 1e+306 s is shorter than two samples"),
         (math.nan, "window: nan s is shorter than two samples"),
+        (3.0, "holds 1.05 s, less than one window of 3 s"),
         (1e5, "window: 100000 s are 200000000 samples, and the limit is 25000000;"),
     ],
 )
@@ -61,61 +65,87 @@ def test_files_that_differ_are_not_joined(tmp_path):
     assert "and unit is mg, 1 g = 9.80665 m/s^2 here" in refusal(tmp_path, *rows)
 
 
+def mat(**variables):
+    return lambda path: scipy.io.savemat(path, variables)
+
+
+def cut_to(size, write):
+    return lambda path: (write(path), path.write_bytes(path.read_bytes()[:size]))
+
+
+def csv(text):
+    return lambda path: path.write_text(text)
+
+
+X, NO_MATLAB = {"variable": "x"}, "is truncated, damaged or not a MATLAB file"
 UNUSABLE = {
-    "missing.npy": (None, "could not be read (No such file or directory); check the path"),
-    "empty.csv": (lambda path: path.write_bytes(b""), "is empty"),
-    "words.csv": (lambda path: path.write_text("no\nnumbers\n"), "has no row of numbers among its first 2"),
-    "gap.csv": (
-        lambda path: path.write_text("1\nx\n2\n"),
-        "has text among its rows in line 2 ('x'), where 1 rows would be lost; correct",
-    ),
-    "nan.csv": (
-        lambda path: path.write_text("1\nnan\n" * 2000),
-        "has no number in line 2 ('nan'), where 1999 rows would be lost;",
-    ),
-    "two.csv": (lambda path: path.write_text("1.5,2.5\n" * 2000), "has 2 columns (0, 1) and none is chosen"),
-    "objects.npy": (
-        lambda path: np.save(path, np.array([{}]), allow_pickle=True),
-        "is truncated, damaged or not a NumPy file",
-    ),
-    "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is truncated, damaged or not a NumPy file"),
-    "notes.doc": (lambda path: path.write_bytes(b"RIFF"), "is of no known type; known are .mat, .npy, .wav"),
-    "folder": (lambda path: path.mkdir(), "is of no known type"),
-    "two.mat": (
-        lambda path: scipy.io.savemat(path, {"x": SIGNAL, "y": SIGNAL, "rpm": 5}),
-        "holds x, y, more than one variable with 100 numbers or more; name one with variable",
-    ),
-    "broken_7_3.mat": (
-        lambda path: (write_matlab_7_3(path), path.write_bytes(path.read_bytes()[:900])),
-        "is truncated, damaged or not a MATLAB file",
-    ),
-    "other.mat": (write_matlab_7_3, {"variable": "x"}, "holds vibration, not x"),
+    "missing.npy": (None, {}, "could not be read (No such file or directory); check the path"),
+    "empty.csv": (csv(""), {}, "is empty"),
+    "empty.mat": (csv(""), {}, "is empty (0 bytes); copy it again"),
+    "words.csv": (csv("no\nnumbers\n"), {}, "has no row of numbers among its first 2"),
+    "gap.csv": (csv("1\nx\n2\n"), {}, "has text among its rows in line 2 ('x'), where 1 rows would be lost; correct"),
+    "nan.csv": (csv("1\nnan\n" * 2000), {}, "has no number in line 2 ('nan'), where 1999 rows would be lost;"),
+    "two.csv": (csv("1.5,2.5\n" * 2000), {}, "has 2 columns (0, 1) and none is chosen"),
+    "objects.npy": (lambda path: np.save(path, np.array([{}]), allow_pickle=True), {}, "is truncated, damaged or not a NumPy file"),
+    "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), {}, "is truncated, damaged or not a NumPy file"),
+    "notes.doc": (csv("RIFF"), {}, "is of no known type; known are .mat, .npy, .wav"),
+    "folder": (lambda path: path.mkdir(), {}, "is of no known type"),
     "stereo.wav": (
-        lambda path: wavfile.write(path, FS, np.c_[SIGNAL, SIGNAL]),
-        {"column": 2},
+        lambda path: wavfile.write(path, FS, np.c_[SIGNAL, SIGNAL]), {"column": 2},
         "has the columns 0, 1, and no numbers in 2; choose one with column",
     ),
     "table.npy": (
-        lambda path: np.save(path, np.c_[SIGNAL, SIGNAL]),
-        {"column": "ax"},
+        lambda path: np.save(path, np.c_[SIGNAL, SIGNAL]), {"column": "ax"},
         "has columns without names, so none is called ax; give a number from 0 with column",
     ),
-}
+    "two.mat": (
+        mat(x=SIGNAL, y=SIGNAL, rpm=5), {}, "holds x, y, more than one variable with 100 numbers or more; name one with variable",
+    ),
+    "text.mat": (csv("not found\n" * 50), X, "not a MATLAB file (Unknown mat file type"),
+    "cut.mat": (cut_to(8000, mat(x=SIGNAL)), X, "damaged or not a MATLAB file (could not read bytes)"),
+    "cut_in_the_header.mat": (cut_to(60, mat(x=SIGNAL)), X, NO_MATLAB),
+    "broken_7_3.mat": (cut_to(900, write_matlab_7_3), {}, NO_MATLAB),
+    "other.mat": (write_matlab_7_3, X, "holds vibration, not x"),
+    "field.mat": (mat(run={"y": SIGNAL}), X, "holds run.y, not x"),
+    "letters.mat": (mat(x="lost"), X, "not one column of real numbers"),
+    "complex.mat": (mat(x=SIGNAL * 1j), X, "holds x, but neither real numbers nor text in it"),
+    "cell.mat": (mat(x=np.array([SIGNAL, "a"], dtype=object)), X, "holds x, but neither real numbers nor text in it"),
+    "columns.mat": (mat(x=SIGNAL.reshape(-1, 2)), X, "has 2 columns (0, 1) and none is chosen"),
+    "no_sample.mat": (mat(x=np.zeros((0, 1))), X, "not one column"),
+}  # fmt: skip
+NO_RECORDINGS = {
+    "not_finite.mat": (mat(x=np.where(np.arange(2100) < 3, np.nan, SIGNAL)), X, "has 3 samples of 2100 that are not finite numbers"),
+    "short.mat": (mat(x=SIGNAL[:999]), X, "holds 0.499 s, less than one window of 0.5 s"),
+    "constant.mat": (mat(x=np.zeros(2100)), X, "is constant, each sample is 0 m/s^2"),
+    "beyond_any_sensor.mat": (mat(x=SIGNAL * 1e300), X, "and accelerometers end at 1e+07 m/s^2"),
+}  # fmt: skip
 
 
 def test_each_file_that_cannot_be_used_is_named_with_its_reason(tmp_path):
     np.save(tmp_path / "good.npy", SIGNAL)
     rows = [{"path": "good.npy"}]
-    for name, (write, *keys, _) in UNUSABLE.items():
+    for name, (write, keys, _) in (UNUSABLE | NO_RECORDINGS).items():
         if write is not None:
             write(tmp_path / name)
-        rows.append({"path": name, **(keys[0] if keys else {})})
+        rows.append({"path": name, **keys})
     done, corpus = imported(tmp_path, *rows)
     told = dict(sentence.split(": ", 1) for sentence in done.skipped)
-    assert (done.recordings, len(done.skipped)) == (1, len(UNUSABLE))
+    assert (done.recordings, len(done.skipped)) == (1, len(UNUSABLE | NO_RECORDINGS))
     assert set(corpus.source.values.tolist()) == {"good.npy#0", "good.npy#1000"}
-    for name, (*_, reason) in UNUSABLE.items():
+    for name, (*_, reason) in (UNUSABLE | NO_RECORDINGS).items():
         assert reason in next(text for key, text in told.items() if key.startswith(name)), name
+
+
+@pytest.mark.parametrize("name", UNUSABLE)
+def test_a_single_recording_is_refused_for_the_reason_for_which_an_import_skips_it(tmp_path, name):
+    write, keys, reason = UNUSABLE[name]
+    if write is not None:
+        write(tmp_path / name)
+    with pytest.raises(CorpusError) as refused:
+        read_signal(tmp_path / name, **keys)
+    assert str(refused.value).startswith(f"{tmp_path / name}: ")
+    assert reason in str(refused.value)
+    assert "\n" not in str(refused.value)
 
 
 def test_channels_of_different_lengths_are_no_recording(tmp_path):

@@ -148,20 +148,12 @@ def with_encoding(number):
 
 
 REFUSED = {
-    "missing": ("a.npy", None, {}, "could not be read (No such file or directory); check the path."),
-    "empty": ("a.csv", lambda path: path.write_bytes(b""), {}, "is empty (0 bytes); copy it again."),
-    "unknown_type": ("a.mp3", lambda path: path.write_bytes(b"1"), {}, "is of no known type; known are .mat, .npy, .wav, .csv"),
     "no_wav": ("a.wav", lambda path: path.write_bytes(b"1" * 99), {}, "not a WAV file (File format b'1111' not understood."),
     "cut_wav": ("a.wav", cut_wav, {}, "is truncated, damaged or not a WAV file (Reached EOF prematurely;"),
     "no_samples": ("a.wav", lambda path: path.write_bytes(b"RIFF1234WAVE"), {}, "not a WAV file (Unexpected end of file.)."),
     "no_length": ("a.wav", without_length, {}, "a.wav: is truncated, damaged or not a WAV file."),
     "compressed": ("a.wav", with_encoding(85), {}, "(Unknown wave file format: MPEGLAYER3. Supported formats: PCM, IEEE_FLOAT)."),
     "half_float": ("a.wav", with_encoding(3), {}, "(Unsupported bit depth: the WAV file has 16-bit floating-point data.)."),
-    "named_column": (
-        "a.npy", FILES["values.npy"], {"column": "ax"}, "so none is called ax; give a number from 0 with column.",
-    ),
-    "no_such_column": ("a.csv", FILES["column.csv"], {"column": 3}, "has the columns 0, and no numbers in 3; choose one with column."),
-    "no_such_name": ("a.csv", FILES["column.csv"], {"column": "ax"}, "has the columns 0, and no numbers in ax; choose one with column."),
     "no_such_variable": (
         "a.mat", FILES["only_variable.mat"], {"variable": "y*"}, "holds rpm, x, and no variable y*; name one with variable.",
     ),
