@@ -56,10 +56,7 @@ def test_an_option_refuses_what_is_no_value_of_it_in_one_sentence(run, line):
 
 @pytest.mark.parametrize(
     ("choices", "registry"),
-    [
-        (plotting.VIEWS, VIEWS),
-        (speed_option(lambda: None).__click_params__[0].type.choices, SPEEDS),
-    ],
+    [(plotting.VIEWS, VIEWS), (speed_option(lambda: None).__click_params__[0].type.choices, SPEEDS)],
 )
 def test_the_choices_of_an_option_are_those_of_its_registry(choices, registry):
     """The help loads none of the registries."""

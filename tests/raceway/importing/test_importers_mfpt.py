@@ -27,21 +27,11 @@ def imported(source, output):
 
 
 def test_the_file_name_tells_the_class_and_each_file_is_a_specimen(tmp_path):
-    for name in (
-        "baseline_1.mat",
-        "InnerRaceFault_vload_1.mat",
-        "OuterRaceFault_vload_1.mat",
-        "OuterRaceFault_2.mat",
-    ):
+    for name in ("baseline_1.mat", "InnerRaceFault_vload_1.mat", "OuterRaceFault_vload_1.mat", "OuterRaceFault_2.mat"):
         write(tmp_path / "set", name)
     done, corpus = imported(tmp_path / "set", tmp_path / "corpus")
     assert (done.recordings, done.records, done.skipped) == (4, 8, ())
-    assert sorted(FAULTS[fault] for fault in corpus.fault.values[::2]) == [
-        "healthy",
-        "inner",
-        "outer",
-        "outer",
-    ]
+    assert sorted(FAULTS[fault] for fault in corpus.fault.values[::2]) == ["healthy", "inner", "outer", "outer"]
     assert len(set(corpus.specimen.values.tolist())) == 4
     assert set(corpus.n_spalls.values[corpus.fault == 0]) == {0}
     assert np.isnan(corpus.width.values[corpus.fault > 0]).all()

@@ -71,13 +71,7 @@ def test_every_oddity_of_the_cwru_copies_is_told(cwru):
     told = "\n".join(cwru[0].warnings)
     for number in range(3001, 3009):
         assert f"{number}_" in told
-    for sentence in (
-        "158: ",
-        "197-200: ",
-        "3001-3004: ",
-        "3005-3008: ",
-        "97_Normal_0.mat: its 243938 samples",
-    ):
+    for sentence in ("158: ", "197-200: ", "3001-3004: ", "3005-3008: ", "97_Normal_0.mat: its 243938 samples"):
         assert sentence in told
 
 
@@ -94,16 +88,7 @@ def test_the_mfpt_copies_give_14_recordings_whose_lines_are_a_little_below_nomin
     done, corpus = mfpt
     assert (done.recordings, done.records, done.skipped) == (14, 84, ())
     assert validate_corpus(done.path) == []
-    assert sorted(set((corpus["load"].values / 4.4482216).round().tolist())) == [
-        0,
-        25,
-        50,
-        100,
-        150,
-        200,
-        250,
-        300,
-    ]
+    assert sorted(set((corpus["load"].values / 4.4482216).round().tolist())) == [0, 25, 50, 100, 150, 200, 250, 300]
     recording = int(corpus.recording.values[corpus.source.values == "OuterRaceFault_vload_7.mat#0"][0])
     found, height = envelope_line(corpus, recording, 3.245)
     assert 0.985 < found / 3.245 < 0.997

@@ -17,11 +17,7 @@ from tests.raceway.importing.file_writers import FS, X, excel
 from tests.raceway.importing.people_files import ONE, OTHER_VALUES, PLAIN, REFUSED, RIGHT, THREE
 
 FACTORS = {"g": 9.80665, "mg": 9.80665e-3, "m/s2": 1.0, "mm/s2": 1e-3, "V": 1.0, None: 1.0}
-OF_UNITS = (
-    "the given unit",
-    "states no unit, and m/s2 is assumed",
-    "its level is not absolute",
-)
+OF_UNITS = ("the given unit", "states no unit, and m/s2 is assumed", "its level is not absolute")
 
 
 def write(path, content):

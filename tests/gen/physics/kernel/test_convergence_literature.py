@@ -39,16 +39,8 @@ def errors(case, seed=0):
     some = []
     for _ in range(LANES):
         shaft, cage, inner = rng.uniform(-np.pi, np.pi, 3)
-        motion = Turning(
-            rng.uniform(25, 35),
-            unbalance=2.75e-5,
-            shaft_angle=shaft,
-            cage_angle=cage,
-        )
-        spalls = [
-            Spall("inner", 0.53e-3, 5e-6, inner, 0, profile),
-            Spall("outer", 0.36e-3, 5e-6, -1.5, 0, profile),
-        ]
+        motion = Turning(rng.uniform(25, 35), unbalance=2.75e-5, shaft_angle=shaft, cage_angle=cage)
+        spalls = [Spall("inner", 0.53e-3, 5e-6, inner, 0, profile), Spall("outer", 0.36e-3, 5e-6, -1.5, 0, profile)]
         some.append(record(RIG._replace(half_clearance=half_clearance), motion, spalls if profile else ()))
     marches = ([trip.states[:, :6] for trip in march_lanes(some, N_KNOTS, n, KNOT)] for n in [EXACT, *STEPS])
     exact, *found = map(np.array, marches)
