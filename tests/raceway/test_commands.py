@@ -57,10 +57,6 @@ def test_a_shell_completes_names_of_recipes_and_else_files(words):
     assert completed("my_").output == "file,my_\n"
 
 
-def test_the_version_is_that_of_the_distribution(run):
-    assert run("--version").stdout == f"raceway {version('raceway')}\n"
-
-
 def loaded(lines, modules):
     """Those of the modules that are loaded after some commands, in a process of its own."""
     code = (

@@ -85,9 +85,6 @@ TABLE = [
     ("train {recipe} -o {new} --scheduler tcp://a:1", "--scheduler is for DIR: generate the corpus of the RECIPE with it first"),
     ("import skf {folder} -o {new}", "raceway import: No such command 'skf'"),
     # where results go
-    ("generate {recipe} -o {file}", "file.txt: is a file; give a folder, or a file that ends in .nc, for the corpus."),
-    ("generate {recipe} -o {folder}", "folder: is not empty and holds no corpus; choose another folder."),
-    ("generate {recipe} -o {corpus} --seed 8", "holds a corpus of another recipe or seed; choose another name."),
     ("generate {recipe} -o /proc/corpus", "/proc/corpus: could not be written"),
     ("explore {corpus} -o {new}.html --features {model}", "not a readable netCDF file"),
     ("explore {corpus} -o {new}.html --channel nose", "no channel 'nose'; give one of"),
@@ -100,21 +97,15 @@ TABLE = [
     ("plan {binary}", "binary.yaml: cannot be read"),
     ("plan {file}", "file.txt: a recipe is a mapping"),
     ("plan {recipe} --seed -1", "tiny.yaml: seed: -1 is not allowed here; it must be greater than or equal to 0."),
-    ("generate {recipe} -o {new} --records 0", "records: 0 is not allowed here; it must be greater than or equal to 1."),
     ("features {corpus} -o {new}.nc --scheduler nowhere", "scheduler nowhere: does not answer (missing port number"),
-    ("generate {recipe} -o {begun} --scheduler nowhere", "scheduler nowhere: does not answer (missing port number"),
     ("generate {straight} -o {begun}", "operation.axial_load_n: needs a contact angle; "),
     ("plan {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; give at least 66.12 N."),
     ("generate {wide} -o {begun}", "a spall of 6 mm does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     # corpora
-    ("generate {recipe} -o {table}", "table.nc: has no checksum of Raceway at its end"),
     ("benchmark {corpus} -o {new} --test {table}", "table.nc: has no checksum of Raceway at its end"),
     ("features {unfinished} -o {new}.nc", "is unfinished; run the raceway generate command that began it again."),
     ("plot {missing_part} --record 0 -o {new}.png", "part-00001.nc: is missing; copy it again"),
     ("features {altered_part} -o {new}.nc", "part-00002.nc: is altered, cut off or rewritten by another program: its bytes do not have"),
-    ("train {altered_part} -o {new}", "part-00002.nc: is altered, cut off"),
-    ("info {no_index}", "index.nc: is missing; copy it again"),
-    ("features {pointing_elsewhere} -o {new}.nc", "index.nc: not a readable file of a corpus (load is a virtual dataset)"),
     ("replay {corpus} --record 48", "record 48 is not in it; it has records 0 to 47."),
     ("replay {corpus} --record -1", "record -1 is not in it; it has records 0 to 47."),
     ("plot {corpus} --record 99 -o {new}.png", "no record 99; give one of 0 to 47."),
@@ -183,13 +174,6 @@ def test_every_command_with_a_corpus_is_among_these():
     assert {
         words[0] for words, command in COMMANDS.items() if any(isinstance(one.type, _Corpus) for one in command.params)
     } <= {*READERS}
-
-
-def test_a_scheduler_that_does_not_answer_leaves_no_folder(run, tiny_recipe, tmp_path):
-    result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--scheduler", "nowhere")
-    assert result.exit_code == 2
-    assert "scheduler nowhere: does not answer" in result.stderr
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("damage", [name for name in DAMAGES if name != "unfinished"])

@@ -1,6 +1,5 @@
 """Laws of completion: a call that was interrupted is completed by the same call to the byte, and by no other."""
 
-import fcntl
 import importlib
 import os
 import shutil
@@ -16,7 +15,7 @@ from gen.support import sources
 from gen.support.errors import ClusterError, CorpusError
 from raceway import copy
 from tests.paths import ROOT
-from tests.same_corpora import assert_the_same_corpus, files
+from tests.same_corpora import assert_the_same_corpus
 from tests.tampering import edit_manifest, edited, manifest_content
 
 GENERATE = importlib.import_module("gen.generation.corpus")
@@ -105,15 +104,6 @@ def test_files_of_the_user_beside_the_parts_of_a_file_stay(recipe_file, single, 
     assert {path for path in (tmp_path / "c.nc.parts").rglob("*") if path.is_file()} == set(notes)
 
 
-def test_a_copy_is_not_generated_again(recipe_file, whole, tmp_path):
-    (copied := tmp_path / "copied").mkdir()
-    copy(whole.path, copied)
-    before = files(copied)
-    with pytest.raises(CorpusError, match="holds a copy of a corpus, which is not generated again"):
-        generate(recipe_file, copied)
-    assert files(copied) == before
-
-
 def flip(path):
     content = bytearray(path.read_bytes())
     content[-500] ^= 0xFF
@@ -154,24 +144,6 @@ def test_every_part_that_is_not_the_right_one_is_made_again_to_the_byte(write_re
         shutil.rmtree(folder)
 
 
-@pytest.mark.parametrize(
-    ("facts", "sentence"),
-    [
-        (
-            {"sources_sha256": None},
-            r"was begun with sources unknown; sources [0-9a-f]{12} is installed and can give other samples: install the former",
-        ),
-        ({"versions": {"numpy": "1.0"}}, r"numpy 1\.0, .*netCDF4 none.* is installed"),
-    ],
-)
-def test_a_corpus_that_other_sources_or_libraries_began_is_refused_by_name(recipe_file, begun, facts, sentence):
-    edit_manifest(begun, **facts)
-    before = files(begun)
-    with pytest.raises(CorpusError, match=sentence):
-        generate(recipe_file, begun)
-    assert files(begun) == before
-
-
 def test_edited_sources_neither_complete_a_corpus_nor_keep_its_parts(recipe_file, begun, single, monkeypatch):
     for module in ("gen.generation.corpus", "gen.generation.facts"):
         monkeypatch.setattr(f"{module}.sources_sha256", lambda: "b" * 64)
@@ -209,15 +181,6 @@ def test_the_hash_of_the_sources_changes_with_every_file_that_makes_records(tmp_
     assert sources_sha256() in found
 
 
-def test_a_second_call_in_the_same_folder_is_told_so(recipe_file, copied):
-    handle = os.open(copied, os.O_RDONLY)
-    fcntl.flock(handle, fcntl.LOCK_EX)
-    with pytest.raises(CorpusError, match="another raceway command is writing into it; wait until it ends"):
-        generate(recipe_file, copied)
-    os.close(handle)
-    assert generate(recipe_file, copied).kept == 3
-
-
 def test_what_a_killed_call_left_is_removed_and_nothing_of_the_user(recipe_file, whole, copied):
     for name in (".manifest.json.host.1.1.tmp", ".index.nc.host.22.33.tmp", "parts/.part-00001.nc.host.4.5.tmp"):
         (copied / name).write_bytes(b"half")
@@ -226,25 +189,6 @@ def test_what_a_killed_call_left_is_removed_and_nothing_of_the_user(recipe_file,
     assert [path.name for path in copied.rglob(".*")] == [".notes.tmp"]
     (copied / ".notes.tmp").unlink()
     assert_the_same_corpus(copied, whole)
-
-
-def test_a_damaged_single_file_is_refused_and_stays(recipe_file, single, tmp_path):
-    file = shutil.copyfile(single.path, tmp_path / "c.nc")
-    flip(file)
-    before = file.read_bytes()
-    with pytest.raises(CorpusError, match=r"c\.nc: is altered, .* or delete it and make the corpus again"):
-        generate(recipe_file, file)
-    assert file.read_bytes() == before
-
-
-@pytest.mark.parametrize("changes", [{"seed": 4}, {"operation.load_n": 300}], ids=lambda changes: str(changes))
-def test_another_recipe_does_not_go_into_the_same_corpus(write_recipe, copied, single, tmp_path, changes):
-    before = hashes(copied)
-    other = write_recipe(tmp_path / "other.yaml", changes)
-    for corpus in (copied, single.path):
-        with pytest.raises(CorpusError, match="holds a corpus of another recipe or seed; choose another name"):
-            generate(other, corpus)
-    assert hashes(copied) == before
 
 
 def test_a_second_call_keeps_every_part_whatever_comments_its_recipe_has(recipe_file, whole, single, copied, tmp_path):

@@ -67,17 +67,6 @@ def test_rigs_beyond_those_of_the_recipe_have_its_classes_and_splits(write_recip
     assert {scenario.fault for scenario in many[own.n_records :]} == {one.fault for one in many}
 
 
-def test_a_corpus_does_not_shrink_and_one_in_a_file_does_not_grow(write_recipe, tmp_path):
-    recipe = write_recipe(tmp_path / "r.yaml")
-    generate(recipe, tmp_path / "c", records=12)
-    with pytest.raises(CorpusError, match="holds a corpus of 12 records and not 8; a corpus grows and does not shrink"):
-        generate(recipe, tmp_path / "c", records=8)
-    generate(recipe, tmp_path / "c.nc", records=12)
-    with pytest.raises(CorpusError, match="holds 12 records and not 16; a corpus grows in a folder"):
-        generate(recipe, tmp_path / "c.nc", records=16)
-    assert open_corpus(tmp_path / "c.nc").sizes["record"] == 12
-
-
 def test_parts_of_one_corpus_made_apart_are_completed_or_joined(write_recipe, tmp_path):
     recipe = write_recipe(tmp_path / "r.yaml")
     at_once = generate(recipe, tmp_path / "at_once")

@@ -14,7 +14,6 @@ from gen.support.errors import CorpusError
 from raceway import describe
 from raceway.sharing import card_pictures
 from raceway.sharing.card.page import card_folder
-from raceway.sharing.card_command import card
 from tests.tone_corpora import write_corpus
 
 ORDERS = {"ftf": 0.4, "bpfo": 9.0, "bpfi": 4.0, "bsf": 2.4}  # so that the lines of the pictures are those of the tones
@@ -137,12 +136,6 @@ def test_scores_of_another_corpus_are_refused(run, copied, tmp_path):
     for text in ("[1]", "[" * 100_000):
         (tmp_path / "results.json").write_text(text)
         assert "is not a file of scores" in run("card", copied, "--scores", tmp_path / "results.json").stderr
-
-
-def test_the_help_has_examples_and_names_the_next_step():
-    assert card.help is not None
-    assert card.help.count("\n  raceway ") >= 3
-    assert "Next:" in card.help
 
 
 @pytest.mark.usefixtures("undrawn")
