@@ -90,8 +90,9 @@ def is_deflated(stored: h5py.Dataset) -> bool:
 
 def is_bare_dimension(stored: h5py.Dataset) -> bool:
     """Whether a dataset only stores the size of a netCDF dimension."""
-    label = stored.attrs.get("NAME", b"")
-    return bytes(label).startswith(b"This is a netCDF dimension but not a netCDF variable")
+    if not stored.is_scale:  # asked first: reading an attribute takes ten times as long
+        return False
+    return bytes(stored.attrs.get("NAME", b"")).startswith(b"This is a netCDF dimension but not a netCDF variable")
 
 
 def is_text(stored: h5py.Dataset, name: str, dimension: str, size: int) -> bool:

@@ -117,7 +117,7 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def recordings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[np.ndarray, float]]:
     """Signal [m s-2] and speed [rpm] of one recording of each class."""
     found = {}
-    with open_corpus(corpus(tmp_path_factory.mktemp("tested"), seed=11, rigs=1, records=1, duration=3.0)) as opened:
+    with open_corpus(corpus(tmp_path_factory.mktemp("tested"), seed=11, rigs=1, records=1, duration=2.0)) as opened:
         for number, code in enumerate(opened["fault"].values):
             signal = opened["acceleration"][number, 0].values.astype(float)
             found[FAULTS[code]] = signal, 60 * float(opened["shaft_rate"][number])
