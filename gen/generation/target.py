@@ -84,9 +84,13 @@ def _check_kept(folder: Path, manifest: Manifest, facts: dict[str, Any], recipe:
 
 def records_of(place: Path, manifest: Manifest) -> int | None:
     """Number of records that a corpus has or is to have, by its recipe; None if a call was killed before it stored the recipe."""
-    text = recipe_text(place)
+    recipe = place / RECIPE_NAME
+    if place.is_file():
+        recipe = parse_yaml(recipe_text(place) or "", place, RecipeError)
+    elif not recipe.exists():
+        return None
     overrides = {} if manifest.overrides is None else dict(manifest.overrides)
-    return None if text is None else read_recipe(parse_yaml(text, place, RecipeError), **overrides).n_records
+    return read_recipe(recipe, **overrides).n_records
 
 
 def check_same(place: Path, manifest: Manifest, facts: dict[str, Any]) -> None:
