@@ -81,7 +81,7 @@ def croissant(path: Path) -> dict[str, Any]:
     manifest = read_manifest(path)
     attributes = publication_attributes(manifest)
     files = {file.relative_to(path.parent if path.is_file() else path).as_posix(): file for file in _files(path)}
-    # parts have just been made or compared by size: reading them again would take as long as writing them
+    # the manifest states those of the parts: hashing them again would read the whole corpus
     hashes = {f"parts/{row.name}": row.sha256 for row in manifest.parts}
     kinds = {".nc": "application/x-netcdf", ".json": "application/json", ".yaml": "application/yaml"}
     with open_corpus(path, check="size") as corpus:

@@ -13,7 +13,6 @@ from gen.generation.sources import sources_sha256
 from gen.recipe import read_recipe
 from gen.support import sources
 from gen.support.errors import ClusterError, CorpusError
-from raceway import copy
 from tests.paths import ROOT
 from tests.same_corpora import assert_the_same_corpus
 from tests.tampering import edit_manifest, edited, manifest_content
