@@ -12,11 +12,12 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from typing import Any
 
+import psutil
 from distributed import Client, Future, KilledWorker, Scheduler
 from distributed.comm.core import connect
 from distributed.deploy.spec import SpecCluster
@@ -78,7 +79,10 @@ class _Processes(Subprocess):
         """End the processes: the copies too where the program that made them was killed."""
         if self.process and self.process.stdin:
             self.process.stdin.close()
-        await super().close()
+        while True:
+            with suppress(psutil.NoSuchProcess):  # a copy has ended with its pipe while it was to be killed
+                return await super().close()
+            await asyncio.sleep(0.01)
 
 
 def _suffixes(count: int) -> list[str]:
