@@ -2,7 +2,7 @@
 
 ``python -m benchmarks.lives REAL`` with REAL the corpus that ``raceway import femto`` makes of PRONOSTIA, or a netCDF file with the
 indicators of its snapshots: rms, peak, kurtosis and rms in bands, of shape (bearing, channel, snapshot). It prints the tables of
-docs/transfer.md. Bearings are known by their indicators once a minute.
+docs/lives.md. Bearings are known by their indicators once a minute.
 """
 
 import sys

@@ -2,7 +2,7 @@
 
 ``python -m benchmarks.realism REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them;
 without it, the folder that the environment variable ``RACEWAY_REAL`` names. ``--against CORPUS`` compares another corpus too, such as one
-of an earlier recipe, and prints its values first. docs/transfer.md explains the measures and targets.
+of an earlier recipe, and prints its values first. docs/comparing.md explains the measures and targets.
 """
 
 import argparse

@@ -19,7 +19,10 @@ release = importlib.metadata.version("raceway")
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 root_doc = "docs/site/index"
-include_patterns = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs/**", "recipes/README.md"]
+include_patterns = [
+    *("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs/**", "recipes/README.md"),
+    "studies/ophel2025/errata.md",
+]
 exclude_patterns = ["docs/site/extra/**"]
 myst_heading_anchors = 4
 nb_execution_mode = "force"  # Sphinx itself leaves out pages that have not changed

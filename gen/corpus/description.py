@@ -24,14 +24,11 @@ The data card of a single file `NAME.nc` lies in `NAME.card/`. While a single fi
 `NAME.nc.parts/`. An unfinished corpus lists no parts in its manifest: every whole part that lies in `parts/` counts.
 
 **Checksum.** Every netCDF file of a corpus ends with a line `sha256:` and the SHA-256 of all bytes before that line.
-HDF5 ignores bytes behind its own, so all readers open the file. `gen.open_corpus` compares files with their hashes
-before any library opens them, and refuses a missing or altered file. A file that another program has rewritten, such as
-a copy by `nccopy`, has no such line: open it with `gen.open_corpus(path, check="size")`. `sha256` in `manifest.json` is
-that of its other keys, as `json.dumps(..., sort_keys=True)` writes them; an edited manifest is refused too. `raceway
-validate` checks everything else. What is checked of a corpus from strangers: [security.md](security.md).
-
-ncdump, nccopy, NCO, Octave, R's ncdf4, h5py, netCDF4 and xarray read single files and parts as a whole; CDO reads them
-without text variables. MATLAB was not tried. [sharing.md](sharing.md) has the versions.
+HDF5 ignores bytes behind its own, so [all readers](sharing.md#which-programs-read-what) open the file.
+`gen.open_corpus` compares files with their hashes before any library opens them, and refuses a missing or altered file.
+A file that another program has rewritten, such as a copy by `nccopy`, has no such line: open it with
+`gen.open_corpus(path, check="size")`. `sha256` in `manifest.json` is that of its other keys, as
+`json.dumps(..., sort_keys=True)` writes them. `raceway validate` checks [everything](security.md).
 
 Facts about the records are fields of `manifest.json`, and global attributes of `index.nc` and of a single file, there
 as JSON where they are not text. A fact without content is left out:
@@ -61,10 +58,9 @@ a channel are at the ends of the converter, or in floating point at the largest 
 is missing or not a number.
 
 The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
-and netCDF4 apply when they read, or 32-bit floating point. `scale_factor` and `add_offset` are 32-bit floating point,
-and so is the signal that these readers return; divided by `scale_factor` and rounded, it gives the counts exactly.
-Text is stored as fixed-length characters. Every other
-variable has one value per record, and a `role`:
+and netCDF4 apply when they read, or 32-bit floating point. Divided by `scale_factor` and rounded, the signal that these
+readers return gives the counts exactly. Text is stored as fixed-length characters. Every other variable has one value
+per record, and a `role`:
 
 - `operating`: known to an analyst on site; features may use it,
 - `label`: the target of a classifier,
@@ -74,8 +70,7 @@ variable has one value per record, and a `role`:
 `fault` is 127 (`unknown`) where the class of a recording is not known. That is no class: `raceway train`, `benchmark`
 and `compare` leave such records out.
 
-A specimen is numbered in its rig, and a recording in its specimen: specimens of two rigs may have the same number, and
-are two bearings wherever they are counted or split.
+A specimen is numbered in its rig, and a recording in its specimen.
 
 Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a
 `long_name` and a `role`:
@@ -84,18 +79,16 @@ Every corpus has the variables below. It can have further ones, numbers that are
 
 
 _SIMULATED = """
-Simulated records also have these; `draws` is the recipe of the record alone, as JSON: a number in place of every
-distribution, and the numbers of the record in the section `origin`. `raceway replay` makes the record again from it, in
-whatever corpus it lies, and `raceway replay --recipe FILE` writes it as a recipe to edit. Where simulated and recorded
-records lie in one corpus, recorded ones have NaN, -1, `unjudged` or empty text there:
+Simulated records also have these; `draws` is the [recipe of the record alone](labels.md#one-record-as-a-recipe), as
+JSON, from which `raceway replay` makes the record again. Where simulated and recorded records lie in one corpus,
+recorded ones have NaN, -1, `unjudged` or empty text there:
 
 """
 
 
 _LIFE = """
-Records of a recipe with `life` are snapshots of lives, and also have these. `bearing` then names the single bearing, so
-that it groups the snapshots of a life; `specimen` does so too. A bearing is `censored` if its test ended before it
-failed:
+Records of a recipe with `life` are snapshots of [lives](lives.md), and also have these. `bearing` then names the single
+bearing, so that it groups the snapshots of a life. A bearing is `censored` if its test ended before it failed:
 
 """
 

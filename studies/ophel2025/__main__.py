@@ -25,7 +25,7 @@ def reproduce(output: Path, preset: str | None, changes: tuple[str, ...]) -> Non
     """Run the systems of the seed paper, and write its figures and statements on one page.
 
     For each statement that does not hold, the page has the reason and the one constant with which it holds; --change
-    repeats that experiment. docs/model.md explains the sets of constants.
+    repeats that experiment. errata.md beside this file explains the sets of constants.
     """
     change = _constants(changes)
     chosen = {name: constants for name, constants in PRESETS.items() if preset in (None, name)}

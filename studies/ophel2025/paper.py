@@ -4,7 +4,7 @@ The paper does not give most of its constants, so three parameter sets were foun
 ``paper-hertz`` has the contact stiffness of the geometry, and a load close to the weight of the rotor. ``paper-refit`` has exactly that
 stiffness and that weight, and no spring across the bearing: more statements
 hold, and its load pulls shaft and housing in the direction of the figures. The unit of the paper's figures is read as millimetre
-(docs/model.md, E15); displacements are in micrometres here.
+(errata.md, E15); displacements are in micrometres here.
 """
 
 import math

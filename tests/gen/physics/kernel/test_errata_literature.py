@@ -1,4 +1,4 @@
-"""Defects of the printed equations of the seed paper, listed in docs/model.md.
+"""Defects of the printed equations of the seed paper, listed in studies/ophel2025/errata.md.
 
 Stability is examined in one direction of the system, with the contact as a spring between the rings.
 
@@ -39,7 +39,7 @@ REPAIRED = frozenset({"E1", "E2", "E3", "E4"})
 
 
 def state_matrix(p, repairs):
-    """Matrix A of z' = A z with z = (x1, x2, x1', x2'), shape (..., 4, 4), with the ``repairs`` of docs/model.md."""
+    """Matrix A of z' = A z with z = (x1, x2, x1', x2'), shape (..., 4, 4), with the ``repairs`` of errata.md."""
     first = p.ring_stiffness + p.contact_stiffness
     support = p.support_stiffness if "E1" in repairs else -p.support_stiffness
     reaction = (
