@@ -115,7 +115,7 @@ def _rows(table: xr.Dataset, model: Fitted) -> "DataFrame":
         low, high = model.band
         raise CorpusError(
             f"{title_of(table)}: its features are computed from {band.low:g}-{band.high:g} Hz, and the model was trained on "
-            f"{low:g}-{high:g} Hz; compute them with --band {low:g} {high:g}."
+            f"{low:g}-{high:g} Hz; compute them with the band ({low:g}, {high:g})."
         )
     return feature_rows(table, model.features)
 

@@ -41,6 +41,7 @@ from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.table.band import DEFAULT_BAND, Band, band_of
 from features.table.channels import channels_of
+from features.table.corpora import feature_table
 from features.table.definitions import GROUPS
 from features.table.durations import durations_of, suited
 from features.table.waveforms import Waveforms
@@ -338,6 +339,4 @@ def _feature_table(
             f"{', '.join(GROUPS)}; train the model again."
         )
         raise CorpusError(message)
-    from features.table.corpora import feature_table  # not at the top: dask takes a sixth of the time of a diagnosis
-
     return feature_table(corpus, groups, band=band)

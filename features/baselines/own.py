@@ -127,11 +127,7 @@ class OwnClassifier:
             return getattr(self.fitted if method != "fit" else self.made, method)(*arguments)
         except (Exception, SystemExit) as error:
             features = isinstance(arguments[0], pd.DataFrame)
-            given = (
-                "a table of features, signals come with --waveforms or features.open_waveforms"
-                if features
-                else "signals"
-            )
+            given = "a table of features; features.open_waveforms gives signals" if features else "signals"
             raise EstimatorError(
                 f"{self.name}: {method} failed ({_brief(error)}; it got {given}); RACEWAY_TRACEBACK=1 shows where."
             ) from error

@@ -155,7 +155,7 @@ def recording_reference(
     if shaft_rate is None and np.ptp(rates) > SAME_SPEED * rates.min():
         message = (
             f"{file}: the speeds of {corpus} go from {from_si(rates.min(), 'rpm'):.5g} to {from_si(rates.max(), 'rpm'):.5g} rpm; "
-            "give the speed of the reference (--reference-rpm)."
+            "give the speed of the reference (shaft_rate)."
         )
         raise CorpusError(message)
     windows = signal[: len(signal) // length * length].reshape(-1, length)

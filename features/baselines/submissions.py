@@ -82,7 +82,9 @@ def check_submission(
     try:
         given = pd.read_csv(path, dtype=str, keep_default_na=False, nrows=len(frame) + 1)
     except (OSError, ValueError):
-        raise CorpusError(f"{path}: is no table of predictions; give a file of raceway benchmark --submit.") from None
+        raise CorpusError(
+            f"{path}: is no table of predictions; give a file with the predictions of a submission."
+        ) from None
     if list(given.columns[:3]) != TESTED or not given[TESTED].equals(frame.astype(str).reset_index(drop=True)):
         raise CorpusError(
             f"{path}: does not have the {len(frame)} tested records of {folds} folds by {track} with seed {seed} of this corpus; "

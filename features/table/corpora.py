@@ -136,7 +136,7 @@ def band_warnings(table: xr.Dataset) -> list[str]:
         return []
     needed, hz = f"need {band.lowest_rate:,.0f} Hz", f"{band.low:g}-{band.high:g} Hz"
     return [
-        f"no record has lines and shape: in the band {hz} they {needed}, and the sample rate is {rate:,.0f} Hz; give a lower --band."
+        f"no record has lines and shape: in the band {hz} they {needed}, and the sample rate is {rate:,.0f} Hz; give a lower band."
     ]
 
 

@@ -179,7 +179,7 @@ def speed_warnings(table: xr.Dataset) -> list[str]:
     action = (
         "its features use the estimated speed"
         if corrected
-        else "check the label and the bearing, or use --speed correct"
+        else "check the label and the bearing, or use the speed 'correct'"
     )
     sentences = [
         f"{table['source'].values[row]}: labelled {from_si(label[row], 'rpm'):.0f} rpm, but its {LINES[EVIDENCE[table[BY].values[row]]]} "

@@ -33,12 +33,12 @@ def check_fit(first: Named, other: Named, *, float32: bool) -> None:
         example = f"{(own or channel_names(two))[0]}={(missing or channel_names(one))[0]}"
         raise CorpusError(
             f"{other_name}: has the channels {', '.join(channel_names(two))}, and {name} has {', '.join(channel_names(one))}; give "
-            f"channels of one sensor one name (--rename-channel {example}), or choose common ones (--channels)."
+            f"channels of one sensor one name (rename {example}), or choose common ones (channels)."
         )
     for what, describe, advice in (
         ("sample rate", _sample_rate, "make both at one sample rate"),
         ("record length", _length, "make both with records of one length"),
-        ("storage of the signals", _storage, "store all in floating point (--float32)"),
+        ("storage of the signals", _storage, "store all in floating point (float32)"),
     ):
         if describe(one) != describe(two) and not (float32 and describe is _storage):
             raise CorpusError(
@@ -182,5 +182,5 @@ def check_repeats(digests: NDArray[np.bytes_], places: Sequence[tuple[str, NDArr
         raise CorpusError(
             f"{names[owner[second]]}: record {number[second]} has the same samples as record {number[first]} of "
             f"{names[owner[first]]}, and a record that occurs twice can be in the training and in the test set; give corpora of "
-            "different seeds, or leave these records out (--where)."
+            "different seeds, or leave these records out (where)."
         )

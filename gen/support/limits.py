@@ -91,5 +91,5 @@ def check_limit(name: str, amount: int, what: str, error: type[Exception]) -> No
         asked = str(amount) if amount < 10**18 else "1e18 or more"
         raise error(
             f"{what} {asked} {LIMITS[name].unit}, and the limit is {allowed}; if that is meant, raise it with "
-            f"raceway --limit {name}=NUMBER ({LIMITS[name].meaning})."
+            f"raceway --limit {name}=NUMBER or the environment variable RACEWAY_LIMITS={name}=NUMBER ({LIMITS[name].meaning})."
         )

@@ -76,7 +76,7 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
     default=["specimen"],
     show_default=True,
     metavar="NAME",
-    help=f"Respect in which tested records are new: {', '.join(TRACKS)}, or all. Repeatable. (It was --by.)",
+    help=f"Respect in which tested records are new: {', '.join(TRACKS)}, or all. Repeatable.",
 )
 @click.option(
     "--estimator",

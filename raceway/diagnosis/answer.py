@@ -52,7 +52,7 @@ from raceway.diagnosis.wording import (
 )
 from raceway.importing.recorded import LONGEST, Recorded
 
-WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
+WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (healthy)."
 
 
 class Judged(NamedTuple):
@@ -156,7 +156,7 @@ def _reference(healthy: Recorded, recording: Recorded, used: Recorded, given: Gi
         )
         raise CorpusError(
             f"{healthy.name}: has other channels ({their}) than the recording ({own}), and cannot be used as the healthy recording; "
-            "choose channels that both have (--channel)."
+            "choose channels that both have."
         )
     reference, quality = _usable(healthy, given)
     if quality.useless or not set(used.signals) <= set(reference.signals):
@@ -255,7 +255,7 @@ def _duration(recording: Recorded) -> float:
 def _advice(recording: Recorded, compared: bool) -> tuple[str, ...]:
     duration = _duration(recording)
     longer = f"Record longer: {ENOUGH:g} s instead of {duration:.2g} s."
-    reference = "Give a recording of the machine with a healthy bearing (--healthy)."
+    reference = "Give a recording of the machine with a healthy bearing (healthy)."
     return tuple(([longer] if duration < ENOUGH else []) + ([] if compared else [reference]))
 
 

@@ -37,5 +37,5 @@ after the other. A file that cannot be used is skipped as a whole, with a senten
 
 import lazy_loader
 
-# a single recording needs neither dask nor the corpus format
+# one recording is read without the format of corpora, whose libraries take a second to load
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

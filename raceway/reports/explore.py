@@ -266,7 +266,7 @@ def _features(
     several = "channel" in table.coords
     of = {str(one["channel"].item() if several else table.attrs["channel"]): one for one in channels_of(table)}
     if channel not in of:
-        raise CorpusError(f"{path}: has features of {', '.join(of)}, not of {channel}; choose one with --channel.")
+        raise CorpusError(f"{path}: has features of {', '.join(of)}, not of {channel}; choose one of them.")
     for feature in of[channel]["features"][places].transpose("feature", "record"):
         unit, meaning = _unit({"units": feature["units"].item()}), _text(feature["long_name"].item())
         yield ExplorerColumn(str(feature["feature"].item()), unit, meaning, "feature", _plain(feature.values.tolist()))

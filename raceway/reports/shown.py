@@ -60,7 +60,7 @@ def shown_recording(
         low, high = (from_si(rate, "rpm") for rate in shaft_rates)
         raise CorpusError(
             f"{name}: the speed between {low:.0f} and {high:.0f} rpm cannot be tracked in the signal, in which harmonics of the "
-            f"shaft do not stand above the noise all the time, or which is too short; give one --rpm for a part of constant speed."
+            f"shaft do not stand above the noise all the time, or which is too short; give one speed for a part of constant speed."
         )
     return turning
 

@@ -59,7 +59,7 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
     and test set makes every score too good.
 
     A condition compares variables (docs/format.md) with numbers, or with texts in quotes. A quantity stands in SI units (width), and in
-    those that people read (width_mm, width_um). A comparison with an unknown value (NaN) is false.
+    those that people read (width_mm, width_um). For an unknown value (NaN) != and not in are true and all else is false.
 
       raceway copy corpus -o corpus.nc
       raceway copy corpus.nc -o fast_inner --where "fault in ('inner', 'outer') and shaft_rpm > 1200"

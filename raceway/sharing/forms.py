@@ -148,11 +148,13 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
         raise CorpusError(f"to: there is no form {to!r}; allowed are {', '.join(FORMS)}; {_READ_BY_OTHERS}.")
     suffix = target.suffix if target.suffix in SUFFIXES else ""
     if to is None and target.suffix[1:] in FORMS and not suffix:
-        raise CorpusError(f"{target}: {target.suffix[1:]} is a folder of files; give it by --to {target.suffix[1:]}.")
+        raise CorpusError(
+            f"{target}: {target.suffix[1:]} is a folder of files; give the name of a folder, and to={target.suffix[1:]!r}."
+        )
     if target.suffix in _NOT_WRITTEN:
         raise CorpusError(f"{target}: copies are not written as {target.suffix}; {_READ_BY_OTHERS}.")
     if suffix and to is not None:
-        raise CorpusError(f"{target}: {suffix} is one file, and --to {to} makes a folder; leave one of the two out.")
+        raise CorpusError(f"{target}: {suffix} is one file, and to={to!r} makes a folder; leave one of the two out.")
     form = to or suffix[1:] or "folder"
     if codec is not None and codec not in CODECS:
         raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")

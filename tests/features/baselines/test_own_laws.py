@@ -187,7 +187,7 @@ class Predicting:
     [
         (
             Broken("fit"),
-            r"^Broken: fit failed \(ZeroDivisionError: by zero; it got a table of features, signals come with --waveforms or fea",
+            r"^Broken: fit failed \(ZeroDivisionError: by zero; it got a table of features; features.open_waveforms gives sig",
         ),
         (Broken("codes"), "Broken: its classes_ are 0, 1, 2, 3; leave y as it is, the names of the classes"),
         (Broken("nan"), r"predict_proba gives numbers that are not finite; give finite numbers of shape \(16, 4\)"),

@@ -302,7 +302,7 @@ def test_a_reference_recording_that_cannot_be_used_is_refused(tmp_path):
             signal[: FS // 3],
             r"r.csv: the reference lasts 0.333 s, less than a record of .* \(0.5 s\); give a longer",
         ),
-        (speeds, signal, r"go from 1500 to 1600 rpm; give the speed of the reference \(--reference-rpm\)"),
+        (speeds, signal, r"go from 1500 to 1600 rpm; give the speed of the reference \(shaft_rate\)"),
         (bearings, signal, "has several bearings; give a corpus as reference"),
         (one, np.r_[signal, np.nan], "r.csv: 1 of 12,001 samples are not finite numbers; export it again"),
     ):

@@ -162,7 +162,7 @@ def test_a_warning_names_the_recording_both_speeds_and_the_lines(checked, correc
     inner, ball = speed_warnings(checked)
     assert inner.startswith("inner.csv: labelled 1500 rpm, but its BPFI lines fit 15")
     assert ball.startswith("ball.csv: labelled 1560 rpm, but its shaft harmonics fit 14")
-    assert inner.endswith("%); check the label and the bearing, or use --speed correct.")
+    assert inner.endswith("%); check the label and the bearing, or use the speed 'correct'.")
     assert speed_warnings(corrected)[0].endswith("%); its features use the estimated speed.")
 
 

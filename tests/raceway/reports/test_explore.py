@@ -138,7 +138,7 @@ def test_features_of_other_records_or_of_another_channel_are_refused(corpus, pag
         write_explorer(other, tmp_path / "x.html", table=page.with_name("features.nc"))
     table = read_table(page.with_name("features.nc")).assign_attrs(channel="shaft")
     write_table(table, tmp_path / "shaft.nc")
-    with pytest.raises(CorpusError, match=r"has features of shaft, not of housing; choose one with --channel\."):
+    with pytest.raises(CorpusError, match=r"has features of shaft, not of housing; choose one of them\."):
         write_explorer(corpus, tmp_path / "x.html", table=tmp_path / "shaft.nc")
     with pytest.raises(CorpusError, match="lies above half the sample rate"):
         write_explorer(corpus, tmp_path / "x.html", band=(6000, 9000))

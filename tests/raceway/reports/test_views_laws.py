@@ -75,7 +75,7 @@ def test_the_heading_of_a_kurtogram_tells_its_result(steady):
 def test_a_recording_whose_varying_speed_cannot_be_tracked_is_refused_with_the_option_that_settles_it(seconds):
     noise = np.random.default_rng(2).standard_normal(round(seconds * FS))
     with pytest.raises(
-        CorpusError, match=r"noise: the speed between 600 and 1800 rpm cannot be tracked .* give one --rpm"
+        CorpusError, match=r"noise: the speed between 600 and 1800 rpm cannot be tracked .* give one speed"
     ):
         shown_recording("noise", noise, FS, (10.0, 30.0), ORDERS, DEFAULT_BAND)
 

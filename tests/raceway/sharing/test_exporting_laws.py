@@ -205,10 +205,10 @@ def test_hugging_face_gets_the_classes_that_are_there_and_null_for_a_fault_that_
     ("name", "to", "sentence"),
     [
         ("out", "xls", r"to: there is no form 'xls'; allowed are parquet, huggingface; NAME.nc is netCDF"),
-        ("a.huggingface", None, "huggingface is a folder of files; give it by --to huggingface"),
+        ("a.huggingface", None, "huggingface is a folder of files; give the name of a folder, and to=.huggingface"),
         ("a.mat", None, "a.mat: copies are not written as .mat; NAME.nc is netCDF, which MATLAB, R, Julia and Octave"),
         ("a.zarr", None, "not written as .zarr; .*docs/sharing.md has lines of xarray for CSV and Zarr"),
-        ("a.nc", "parquet", "nc is one file, and --to parquet makes a folder; leave one of the two out"),
+        ("a.nc", "parquet", "nc is one file, and to='parquet' makes a folder; leave one of the two out"),
         ("out", "parquet", "parquet: needs pyarrow; pip install pyarrow, or"),
     ],
 )
