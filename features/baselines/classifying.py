@@ -68,11 +68,14 @@ def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset |
         takes = "features" if model.features else "waveforms"
         title = title_of(data.labels if isinstance(data, Waveforms) else data)
         raise CorpusError(f"{title}: {model.name} was trained on {takes}; give {takes}.")
+    # signals are of one channel, and are compared with no reference
     if isinstance(data, Waveforms):
         each = estimator_probabilities(model, data, title_of(data.labels))
         return predictions(each, model.classes, recording_numbers(data.labels), model.calibration)
+    # records shorter than those of the training have a model of their own
     table, model = data, suited(model, durations_of(data))
     tables, used, colour = channels_of(table), model, None
+    # a reference has a model of its own, of features relative to healthy records
     if reference is not None:
         if model.relative is None:
             message = (
@@ -86,16 +89,19 @@ def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset |
                 f"{title_of(reference)}: the reference has {len(references)} channels and the records have {len(tables)}; give "
                 "a corpus with the same channels."
             )
+        # channels are paired by their place
         pairs = list(zip(tables, references, strict=True))
         used, tables = model.relative, [relative_to(*pair, model.features) for pair in pairs]
         colours = [colour_of(*pair) for pair in pairs]
         colour = Colour(*map(np.concatenate, zip(*colours, strict=True)))
+    # a recording is predicted from the mean features of its records, not from the mean of their answers
     recording = recording_numbers(table)
     rows = [_rows(one, used) for one in tables]
     means = [type(one)(group_means(one.to_numpy(), recording), columns=one.columns) for one in rows]
     each, whole = (
         np.stack([estimator_probabilities(used, some, title_of(table)) for some in values]) for values in (rows, means)
     )
+    # tells a fault of an unknown part: a recording more impulsive than healthy ones of the training
     impulsiveness = impulsiveness_of([one.to_numpy() for one in means], used.features)
     return predictions(
         each,

@@ -40,12 +40,14 @@ def fit_and_calibrate(
     """
     cross_validation = None if estimator in UNTRAINED else calibration_splits(records, seed)
     by, splits = ("nothing", []) if cross_validation is None else cross_validation
+    # the whole training and the folds are independent fits, so all go to the workers at once
     every = np.arange(len(records.fault))
     (whole, _), *folds = fits(
         records.features, records.fault, estimator, [(every, every[:0]), *splits], seed, workers=workers, done=done
     )
     if not folds:
         return whole, UNCALIBRATED
+    # each record is calibrated by the fold that did not train it
     classes, truth = np.unique(records.fault, return_inverse=True)
     probabilities = np.zeros((len(truth), len(classes)))
     for (_, test), (_, of_tested) in zip(splits, folds, strict=True):

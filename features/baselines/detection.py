@@ -94,6 +94,7 @@ def roc(faulty: np.ndarray, score: FloatArray, specimen: IntArray, seed: int) ->
     """
     if faulty.all() or not faulty.any():
         return None
+    # equal scores are one point of the curve, at the last of them
     order = np.argsort(-score, kind="stable")
     last = np.flatnonzero(np.append(np.diff(score[order]) != 0, True))
 
@@ -103,13 +104,16 @@ def roc(faulty: np.ndarray, score: FloatArray, specimen: IntArray, seed: int) ->
             np.append(0, summed[last]) / summed[-1]
             for summed in (np.cumsum((weight * kind)[order]) for kind in (~faulty, faulty))
         )
+        # the curve is a staircase: at a share of false alarms, the hits reached so far
         at = hits[np.searchsorted(alarms, FALSE_ALARMS, side="right") - 1]
         return float(np.trapezoid(hits, alarms)), at
 
     area, detected = curve(np.ones(len(score)))
     found = Roc(area, None, tuple(FALSE_ALARMS.tolist()), tuple(detected.tolist()))
+    # records of one specimen are alike, so the bootstrap draws specimens
     rng, weight = np.random.default_rng(seed), np.empty(len(score))
     kinds = [(kind, *np.unique(specimen[kind], return_inverse=True)) for kind in (faulty, ~faulty)]
+    # of one specimen every draw is the same, and there is no interval
     if min(len(units) for _, units, _ in kinds) < 2:
         return found
     areas, curves = np.empty(RESAMPLES), np.empty((RESAMPLES, len(FALSE_ALARMS)))

@@ -99,6 +99,7 @@ def curve_points(
     ordered = sorted(((_by_specimen(records, train, seed), test) for train, test in splits), key=lambda of: -len(of[0]))
     largest = ordered[0][0]
     specimens = len(np.unique(records.specimen[largest]))
+    # sizes double from the fewest specimens that can hold every class
     smallest = min(LEAST_OF_A_CLASS * len(np.unique(records.fault)), specimens)
     count = 1 + max(1, round(np.log2(specimens / smallest)))
     sizes = np.unique(np.rint(np.geomspace(smallest / specimens, 1, count) * len(largest)).astype(int))

@@ -40,9 +40,11 @@ def read_model_file(path: Path) -> Any:
     if not path.is_file():
         reason = "not a file" if path.exists() else "no such file"
         raise CorpusError(f"{path}: {reason}; give a model made with raceway train.")
+    # before skops takes memory for it
     check_limit("file_bytes", path.stat().st_size, f"{path}: has", CorpusError)
     try:
         with warnings.catch_warnings():
+            # objects of another scikit-learn may load and predict something else
             warnings.simplefilter("error", InconsistentVersionWarning)
             return skops.io.load(path, trusted=TRUSTED)
     except UntrustedTypesFoundException as error:

@@ -169,7 +169,9 @@ class Model(Shown):
             raise CorpusError(
                 f"{title_of(table.labels)}: {self.name} learns from features; give a feature table or a corpus."
             )
+        # estimators of the user and untrained rules take no reference
         compares = isinstance(self.classifier, str) and self.classifier not in UNTRAINED
+        # one fit of all records and the folds of the calibration, twice with a reference
         fits = (1 + FOLDS) * (1 + compares)
         done = counter(progress, fits)
         with connected(workers, __name__) as place:
@@ -296,6 +298,7 @@ def _fit(model: Model, data: xr.Dataset | Waveforms, workers: Workers, done: Cal
         model.features, band = features_of(data, model.groups), band_of(data.attrs)
     else:
         model.features, band = (), DEFAULT_BAND
+    # refused before the fits, which take minutes
     check_classes(records)
     model.groups, model.band, model.corpus, model.records = (
         tuple(model.groups),
@@ -308,6 +311,7 @@ def _fit(model: Model, data: xr.Dataset | Waveforms, workers: Workers, done: Cal
     )
     model.classes = fault_names(model.estimator.classes_)
     model.durations = durations_of(data) if isinstance(data, xr.Dataset) else ()
+    # what a later test needs to tell which records it has seen, and which widths are new
     model.widths = covered_widths(records)
     model.digests = record_digests(records.features.to_numpy() if model.features else records.features)
     model.versions = {library: version(library) for library in _LIBRARIES}

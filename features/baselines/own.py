@@ -91,6 +91,7 @@ class OwnClassifier:
             return self._certain(np.asarray(self._call("predict", X)), len(X))
         method = "predict_proba" if hasattr(self.fitted, "predict_proba") else "decision_function"
         probabilities = np.asarray(self._call(method, X), dtype=float)
+        # margins become probabilities; with two classes there is one margin, that of the second
         if method == "decision_function":
             probabilities = softmax(
                 np.stack([-probabilities, probabilities], axis=1) if probabilities.ndim == 1 else probabilities, axis=1
@@ -158,8 +159,10 @@ def new_classifier(maker: Maker, seed: int, name: str) -> Any:
             raise EstimatorError(
                 f"{name}: cannot be made ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where."
             ) from error
+    # a fitted object is copied, so that folds do not share what it learned
     else:
         made = clone(maker) if isinstance(maker, BaseEstimator) else copy.deepcopy(maker)
+    # told before the first fit, not by an AttributeError inside one
     lacking = [method for method in ("fit", "predict") if not callable(getattr(made, method, None))]
     if lacking:
         raise EstimatorError(
@@ -194,12 +197,14 @@ def load_maker(address: str) -> Maker:
     """
     file, _, name = address.partition(":")
     module_name = file.removesuffix(".py")
+    # a script of the current folder is found first, as by python itself
     here = str(Path.cwd())
     if here not in sys.path:
         sys.path.insert(0, here)
     try:
         module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
+        # the module is there, and something that it imports is missing
         if error.name is None or not f"{module_name}.".startswith(f"{error.name}."):
             raise _import_error(address, module_name, error) from error
         raise EstimatorError(
@@ -208,6 +213,7 @@ def load_maker(address: str) -> Maker:
     except (Exception, SystemExit) as error:
         raise _import_error(address, module_name, error) from error
     if not hasattr(module, name):
+        # help with a misspelt name
         held = [
             own
             for own, value in vars(module).items()
@@ -217,6 +223,7 @@ def load_maker(address: str) -> Maker:
             f"{address}: {module_name} has no {name}; it has {', '.join(held) or 'no class or function'}."
         )
     maker: Maker = getattr(module, name)
+    # fails now, with its address, and not after the features are computed
     new_classifier(maker, 0, address)
     return maker
 

@@ -101,6 +101,7 @@ def predictions(
     """
     every = np.arange(len(recording))
     records = _over_channels(probabilities, calibration)
+    # without features of recordings, their records vote
     whole = combine(records, recording) if of_recordings is None else _over_channels(of_recordings, calibration)
 
     def coloured(pooled: FloatArray, numbers: IntArray) -> Predictions:

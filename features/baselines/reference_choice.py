@@ -50,10 +50,13 @@ def choose_reference(
     """
     healthy, tested = healthy_records(reference), np.ones(table.sizes["record"], dtype=bool)
     mine = record_digests(feature_rows(table, features).to_numpy())
+    # the same records are tested and reference: one recording of each rig has to be the reference
     if np.array_equal(np.sort(mine), np.sort(record_digests(feature_rows(reference, features).to_numpy()))):
         healthy = _first_recordings(healthy)
         tested = np.isin(table["rig"].values, healthy["rig"].values)
+    # a record is never compared with itself
     tested &= ~np.isin(mine, record_digests(feature_rows(healthy, features).to_numpy()))
+    # nor with other windows of the file that the reference was read from
     if FILE in reference.attrs and "source" in table:
         tested &= ~_of_file(table["source"].values, Path(reference.attrs[FILE]))
     if not tested.any():
@@ -138,6 +141,7 @@ def recording_reference(
     wrong = int(np.count_nonzero(~np.isfinite(signal)))
     if wrong:
         raise CorpusError(f"{file}: {wrong:,} of {signal.size:,} samples are not finite numbers; export it again.")
+    # bearing and speed of the reference are those of the corpus, which names them
     with open_corpus(corpus) as opened:
         duration = _duration(opened)
         orders = [np.unique(opened[order].values) for order in Orders._fields]
@@ -158,6 +162,7 @@ def recording_reference(
             "give the speed of the reference (shaft_rate)."
         )
         raise CorpusError(message)
+    # the last incomplete window is dropped
     windows = signal[: len(signal) // length * length].reshape(-1, length)
     speed = float(rates.mean()) if shaft_rate is None else shaft_rate
     table = recording_table(windows, fs, speed, Orders(*(values[0] for values in orders)), UNKNOWN_CODE, band=band)

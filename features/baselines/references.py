@@ -133,9 +133,11 @@ def _nearest_in_speed(
         divide="ignore", invalid="ignore"
     ):  # a speed that is not known is 0 or NaN, and as far from all others
         tested_speed, speed = (np.log(one["shaft_rate"].values) for one in (table, healthy))
+    # records of one rig at one speed share their set
     pairs, number = np.unique(np.stack([number, tested_speed]), axis=1, return_inverse=True)
     nearest = list[NDArray[np.bool_]]()
     for rig, tested in pairs.T:
+        # without a known speed all healthy records of the rig are as near
         apart = np.abs(speed - tested) if np.isfinite(tested) else np.zeros(len(speed))
         closest = np.nanmin(apart[members[int(rig)]], initial=np.inf)
         nearest.append(members[int(rig)] & ~(apart > closest + SAME_SPEED))
@@ -206,11 +208,14 @@ def virtual_references(table: xr.Dataset, features: Sequence[str], seed: int) ->
     for rig in np.unique(table["rig"].values):
         records = np.flatnonzero(table["rig"].values == rig)
         known = records[healthy[records]]
+        # ordered by content, so that the choice does not depend on the order of the table
         known = known[np.argsort(digests[known])]
         for record in records:
+            # windows of the same recording would be closer than any real reference
             others = known[recording[known] != recording[record]]
             nearest = others[np.argsort(np.abs(speed[others] - speed[record]), kind="stable")[:NEAREST]]
             if len(nearest):
+                # the draw belongs to the record, whatever other records there are
                 drawn = np.random.default_rng([seed, int(digests[record])]).integers(len(nearest))
                 pairs.append((int(record), int(nearest[drawn])))
     chosen = np.array(pairs, dtype=np.intp).reshape(-1, 2)

@@ -218,6 +218,7 @@ def benchmark(
         If a classifier of the user fails.
     """
     tests = (tests,) if isinstance(tests, xr.Dataset) else tests
+    # everything that can be refused is refused before the first fit
     names = features_of(table, groups)
     records = labelled_records(table, names)
     cases, left_out = _cases(records, tracks, folds, seed)
@@ -227,6 +228,7 @@ def benchmark(
     chosen = _chosen(estimators, several=len(cases) > 1)
     leading = DEFAULT_ESTIMATOR if estimators is None else next(iter(estimators))
     first, splits = next(iter(cases)), next(iter(cases.values()))["grouped"][1]
+    # all but the scores, which also tells whether kept scores are of the same benchmark
     found = Results(
         corpus=_content(records, count_unknown(table)),
         tests=tuple(_content(other, count_unknown(test)) for other, test in zip(others, tests, strict=True)),
@@ -243,6 +245,7 @@ def benchmark(
         further={track: _further(records, cases[track]) for track in list(cases)[1:]},
         left_out=left_out,
     )
+    # a classifier of the user is scored anew: its code may have changed
     scored = _kept(known, found)
     new = {name: one for name, one in chosen.items() if not (isinstance(one, str) and name in scored[first])}
     own = records_of(waveforms[0], groups) if waveforms else records
@@ -253,8 +256,10 @@ def benchmark(
         for case in _CASES
         if _is_scored(case, track, first, tests)
     ]
+    # a job is one classifier on one track in one case: grouped, leaky, null or other corpora
     done = counter(progress, len(jobs) + curve)
     scores = dict[_Job, Any]()
+    # classifiers of the user stay in this process: they may not be sent to others
     for is_own, given, tables in ((False, records, (table, *tests)), (True, own, waveforms or (table, *tests))):
         makers = {name: one for name, one in new.items() if isinstance(one, str) != is_own}
         some = [job for job in jobs if job.name in makers]
@@ -267,6 +272,7 @@ def benchmark(
         for track in cases:
             grouped, null = (scores[_Job(name, track, case)] for case in ("grouped", "null"))
             scored[track][name] = Baseline(grouped, leaky, null, tested if track == first else ())
+    # curve and importance of the leading classifier, on the first track
     led = records if isinstance(chosen[leading], str) else own
     points = curve_points(led, chosen[leading], splits, seed) if curve else ()
     done(int(curve))

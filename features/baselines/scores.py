@@ -144,6 +144,7 @@ def score(records: Records, predictions: Predictions, seed: int = 0) -> Scores:
     seed
         Of the bootstrap.
     """
+    # a recording has the label of its first record
     _, first = np.unique(predictions.recording, return_index=True)
     faulty, healthy_column = records.fault != HEALTHY_CODE, np.array(predictions.classes) == HEALTHY
     detected = np.array(predictions.predicted)[faulty] != HEALTHY
@@ -153,6 +154,7 @@ def score(records: Records, predictions: Predictions, seed: int = 0) -> Scores:
         roc=roc(faulty, -predictions.probabilities[:, healthy_column].sum(axis=1), records.specimen, seed),
     )
     whole = predictions.by_recording
+    # each record is a recording of its own
     if whole is None:
         return by_record
     healthy = np.array(whole.answers) == HEALTHY
@@ -269,8 +271,10 @@ def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray,
         of_class = fault == c
         _, number = np.unique(specimen[of_class], return_inverse=True)
         records, hits = np.bincount(number), np.bincount(number, weights=correct[of_class])
+        # of one specimen every draw is the same
         if len(records) < 2:
             return None
+        # as many specimens of the class as there are, with all their records
         drawn = rng.integers(len(records), size=(RESAMPLES, len(records)))
         recall += hits[drawn].sum(axis=1) / records[drawn].sum(axis=1)
     low, high = np.quantile(recall / len(classes), INTERVAL)

@@ -126,10 +126,12 @@ def score_splits(
     folds: list[float] = []
     fitted = fits(records.features, labels, estimator, splits, seed)
     for (_, test), (fold, of_tested) in zip(splits, fitted, strict=True):
+        # a fold may lack a class, which then has the probability 0
         probabilities[np.ix_(test, fold.classes_)] = of_tested
         classes = np.union1d(classes, fold.classes_)
         folds.append(_balanced_accuracy(labels[test], probabilities[test]))
     tested = np.sort(np.concatenate([test for _, test in splits]))
+    # of all folds together: single folds may lack classes
     chosen = records._replace(fault=labels).at(tested)
     _, recording = np.unique(chosen.recording, return_inverse=True)
     together = _pool(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)

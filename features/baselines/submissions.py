@@ -80,11 +80,13 @@ def check_submission(
     records = records_of(table, DEFAULT_GROUPS)
     frame = _tested(table, grouped_case(records, track, folds, seed)[1])
     try:
+        # one row more than there are records shows a file that is too long
         given = pd.read_csv(path, dtype=str, keep_default_na=False, nrows=len(frame) + 1)
     except (OSError, ValueError):
         raise CorpusError(
             f"{path}: is no table of predictions; give a file with the predictions of a submission."
         ) from None
+    # numbers, identities and folds prove that the tested records are those of the protocol
     if list(given.columns[:3]) != TESTED or not given[TESTED].equals(frame.astype(str).reset_index(drop=True)):
         raise CorpusError(
             f"{path}: does not have the {len(frame)} tested records of {folds} folds by {track} with seed {seed} of this corpus; "

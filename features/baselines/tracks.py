@@ -86,6 +86,7 @@ def check_track(records: Records, track: Track, folds: int) -> None:
     present = check_classes(records)
     if folds < 2:
         raise CorpusError(f"{where}: {folds} folds are too few; use 2 or more.")
+    # ranges and shapes are dealt out later, and can fill any number of folds
     if track not in ("specimen", "rig", "bearing"):
         return
     group = records.conditions[track] if track == "bearing" else getattr(records, track)
@@ -93,6 +94,7 @@ def check_track(records: Records, track: Track, folds: int) -> None:
     if count < (2 if track == "bearing" else folds):
         advice = f"use at most {count} folds" if count > 1 else "test on another corpus instead"
         raise CorpusError(f"{where}: {count} {name}(s) cannot fill {folds} folds; {advice}.")
+    # a class whose groups are all in one fold is never both trained and tested
     for c in present:
         fault, of_class = FAULTS[c], group[records.fault == c]
         if len(np.unique(of_class)) < 2:
@@ -132,11 +134,13 @@ def held_out_groups(records: Records, track: Track, folds: int, seed: int) -> tu
         raise CorpusError(
             f"{records.title}, track {track}: there is only one {what[track]}, or none; choose another track, or test on another corpus."
         )
+    # a specimen with records in several groups is tested in that of one of them, drawn at random
     rng = np.random.default_rng(seed)
     shuffled = rng.permutation(np.flatnonzero(group >= 0))
     specimens, first = np.unique(records.specimen[shuffled], return_index=True)
     home = np.full(records.specimen.max() + 1, LEFT_OUT)
     home[specimens] = group[shuffled[first]]
+    # specimens without a group of their own are dealt out in turn, class by class
     dealt = group == DEALT
     for c in np.unique(records.fault[dealt]):
         free = np.unique(records.specimen[dealt & (records.fault == c) & (home[records.specimen] == LEFT_OUT)])

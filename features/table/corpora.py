@@ -95,6 +95,7 @@ def feature_table(
         For a group or a treatment of speeds that does not exist, or a band that is too narrow or out of range.
     """
     band = checked_band(*band)
+    # several channels are tables of one channel each, joined along a dimension
     if not isinstance(channel, int | str):
         each = partial(feature_table, corpus, groups, speed=speed, band=band, workers=workers, scheduler=scheduler)
         return joined_channels({name: each(channel=name, progress=progress) for name in channel})
@@ -102,16 +103,20 @@ def feature_table(
     with open_corpus(corpus) as opened:
         number = channel_number(opened, channel, corpus_name(corpus))
         blocks = record_blocks(opened if isinstance(corpus, xr.Dataset) else corpus, check="size")
+        # facts that tell later readers how the features were made
         read = {"channel": str(opened["channel"].values[number]), **band_attributes(band)}
+        # labels are read at once, signals block by block
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
         lasts = {"long_name": "duration of the record", "units": "s"}
         table[DURATION] = "record", opened.sizes["elapsed_time"] / table["sample_rate"].values, lasts
     treatment = checked_speed(speed, table)
     starts = np.cumsum([0, *(block.stop - block.first for block in blocks)])
+    # with speeds every block is read twice: once to estimate them, once for the features
     report = counter(progress, len(blocks) * (1 if treatment == "off" else 2))
     values, missing = np.empty((table.sizes["record"], len(coordinates["feature"][1]))), 0
     with connected(min(workers, len(blocks)) if scheduler is None else scheduler, __name__) as place:
+        # one speed for all windows of a recording, from whatever blocks they are in
         if treatment != "off":
             recording = recording_numbers(table)
             tasks = list(zip(blocks, np.split(recording, starts[1:-1]), strict=True))
@@ -120,6 +125,7 @@ def feature_table(
             table = with_speeds(table, recording, estimates, treatment)
         compute = partial(_features_of_block, groups=tuple(groups), channel=number, band=band)
         tasks = list(zip(blocks, np.split(rates_to_use(table), starts[1:-1]), strict=True))
+        # blocks come back in order, so that rows are written where they belong
         with closing(_counted(compute, tasks, place, report)) as made:
             for first, rows in zip(starts, made, strict=False):
                 values[first : first + len(rows)] = rows

@@ -65,6 +65,7 @@ def read_table(path: Path | str) -> xr.Dataset:
     path = Path(path)
     try:
         check_limit("file_bytes", path.stat().st_size, f"{path}: holds", CorpusError)
+        # the netCDF library is not thread-safe
         with LIBRARY_LOCK:
             table = xr.load_dataset(path, engine="netcdf4", decode_times=False).drop_encoding()
     except CorpusError:
@@ -76,6 +77,7 @@ def read_table(path: Path | str) -> xr.Dataset:
     if not {"features", "feature", "group"} <= set(table.variables):
         message = f"{path}: contains no features (record, feature); write a feature table with raceway features."
         raise CorpusError(message)
+    # a table that another program changed may no longer be what its attributes say
     if table.attrs.pop(DIGEST, None) != _digest(table):
         message = f"{path}: altered, its content does not match its digest; write it again with raceway features."
         raise CorpusError(message)
@@ -87,6 +89,7 @@ def _digest(table: xr.Dataset) -> str:
     whole = hashlib.sha256(_attributes_text(table.attrs))
     for name in sorted(map(str, table.variables)):
         variable = table[name].variable
+        # texts come back from a file as another type, so their characters count
         texts = variable.dtype.kind in "OUT"
         whole.update(repr((name, variable.dims, variable.shape, "text" if texts else variable.dtype.str)).encode())
         whole.update(_attributes_text(variable.attrs))
@@ -122,17 +125,20 @@ def _write_parquet(table: xr.Dataset, path: Path) -> None:
 
     names = [str(name) for name, known in table.variables.items() if known.dims == ("record",)]
     columns = {name: (table[name].values, table[name].attrs) for name in names}
+    # unit and meaning of a feature become metadata of its column
     about = [str(name) for name, known in table.coords.items() if known.dims == ("feature",) and name != "feature"]
     for one in channels_of(table):
         prefix = f"{one['channel'].item()}_" if "channel" in one["features"].coords else ""
         for feature in one["features"].transpose("feature", "record"):
             known = {name: feature[name].item() for name in about}
             columns[f"{prefix}{feature['feature'].item()}"] = feature.values, known
+    # types are those of a first value, so that no column is converted as a whole
     fields = [
         pa.field(name, pa.array(values[:1]).type, metadata={key: str(value) for key, value in attributes.items()})
         for name, (values, attributes) in columns.items()
     ]
     schema = pa.schema(fields, {key: str(value) for key, value in table.attrs.items()})
+    # in groups of rows, so that memory does not grow with the table
     with parquet.ParquetWriter(path, schema) as file:
         for start in range(0, table.sizes["record"], ROW_GROUP):
             rows = slice(start, start + ROW_GROUP)

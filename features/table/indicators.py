@@ -126,14 +126,17 @@ def _lines_and_shape(
     duration = x.shape[-1] / fs
     lines = np.full((len(x), len(feature_names(("lines",)))), np.nan)
     shape = np.full((len(x), len(feature_names(("shape",)))), np.nan)
+    # a line needs some turns of the shaft; shorter records keep NaN
     long_enough = np.flatnonzero(duration * shaft_rate >= SHORTEST[0])
     features = {"lines": lines, "shape": shape}
     if fs < band.lowest_rate or duration < SHORTEST[1] or not long_enough.size:
         return features
     shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
+    # one transform of the signal serves all bands
     coefficients = fourier_coefficients(x[long_enough], fs, band.high)
     *read, fitted = _read(bands_of(coefficients, duration, fs, band), duration, shaft_rate, orders)
     line_views, shape_views = map(_views, read)
+    # how far a fault family stands above another one
     over = np.stack([line_views[..., a] - line_views[..., b] for a, b in RIVALS], axis=-1)
     lines[long_enough] = np.concatenate([_flat(line_views), _flat(over), fitted], axis=-1)
     shape[long_enough] = np.concatenate([_flat(shape_views), _raw_shape(coefficients)], axis=-1)
@@ -182,13 +185,16 @@ def levels_and_shape(
     (record, band, value); and bins per order, shape (record,).
     """
     resolution = 1 / (ZERO_PADDING * duration)
+    # spectra are cut behind the highest line that is looked up
     bins = int(np.max(highest * shaft_rate) / resolution) + 2
+    # the floor spans some lines of the shaft, and at least a width that noise needs
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
     level = np.zeros((len(shaft_rate), len(bands), bins), np.float32)
     shape = np.empty((len(shaft_rate), len(bands), len(SHAPES)))
     for number, band in enumerate(bands):
         z = analytic_band(band, 0, band.shape[-1])
         power = squared_modulus(z)
+        # leakage of the mean and of strong lines would hide weak ones
         weighted = weight_by_hann(np.sqrt(power))
         end = ZERO_PADDING * z.shape[-1] // 2 + 1
         spectrum = fine_amplitudes(weighted, min(bins + int(width.max()) + 4, end))

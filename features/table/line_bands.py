@@ -78,12 +78,14 @@ def fault_bands(
             f"shaft_rate {shaft_rate}, harmonics {harmonics}, sidebands {sidebands}, tolerance {tolerance}: give a positive "
             f"rate, one harmonic or more, no negative number of sidebands and a tolerance between 0 and 1."
         )
+    # the shaft is a family too: its order is 1
     nominal = dict(zip(Orders._fields, fault_orders(orders, "orders").tolist(), strict=True)) | {SHAFT.base: 1.0}
     rows = [
         (row.name, _label(row, harmonic, side), harmonic, side, _order(row, nominal, harmonic, side))
         for row in CLASSES.values()
         if row.evidence
         for harmonic in range(1, harmonics + 1)
+        # lines of the cage or the shaft alone have no sidebands
         for side in (range(-sidebands, sidebands + 1) if row.comb else (0,))
     ]
     table = pd.DataFrame(rows, columns=["fault", "line", "harmonic", "sideband", "order"])
@@ -145,17 +147,21 @@ def fault_metrics(
         bands[column].to_numpy() / step
         for column in (("order", "order_low", "order_high") if unit == "order" else ("frequency", "low", "high"))
     )
+    # from the table, since the spectrum may be over frequencies or over orders
     bins_per_order = middle[0] / bands["order"].iloc[0]
     bins_per_hz = middle[0] / bands["frequency"].iloc[0]
     width = max(FLOOR_WIDTH[0] * bins_per_order, FLOOR_WIDTH[1] * bins_per_hz)
     bins = min(int(high.max()) + 2, values.shape[1])
+    # the floor under the lines, from what lies around them
     floor = running_median(values, np.full(len(values), width), bins)
     found = np.full((len(METRICS), len(values), len(bands)), np.nan)
     for band, place in enumerate(middle):
+        # a band narrower than a bin holds the bin nearest to its line
         first, last = min(int(np.ceil(low[band])), round(place)), max(int(high[band]), round(place))
         if first >= HALF_LINE and last + HALF_LINE < values.shape[1]:
             found[:, :, band] = _metrics(values, floor, first, last, step)
     names = {name: bands[name].to_numpy() for name in ("fault", "line", "harmonic", "sideband")}
+    # one spectrum gives a data frame, several a Dataset
     if np.ndim(spectrum) == 1:
         return bands[list(names)].assign(**dict(zip(METRICS, found[:, 0], strict=True)))
     return xr.Dataset(

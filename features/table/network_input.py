@@ -60,10 +60,12 @@ def envelope_orders(x: Signals, known: Mapping[str, ArrayLike]) -> FloatArray:
     levels = np.zeros((len(x), len(FAMILY_NAMES), BANDS, len(GRID)), np.float32)
     names = ("sample_rate", "shaft_rate", *Orders._fields)
     columns = [np.broadcast_to(np.asarray(known[name], float), len(x)) for name in names]
+    # in batches, so that memory does not grow with the number of signals
     for start in range(0, len(x), BATCH):
         rows = slice(start, start + BATCH)
         signals, (fs, rates, *nominal) = x[rows], (column[rows] for column in columns)
         duration = signals.shape[-1] / fs
+        # levels of a record that cannot show lines stay 0, that of the floor
         usable = usable_records(signals, rates, Orders(*nominal)) & (duration * rates >= SHORTEST[0])
         usable &= duration >= SHORTEST[1]
         if usable.any():

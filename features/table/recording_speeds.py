@@ -72,13 +72,16 @@ def block_sums(task: tuple[RecordBlock, IntArray], channel: int = 0) -> list[Sum
     x, (fs, shaft_rate, *nominal) = read_channel(block, channel, ("sample_rate", "shaft_rate", *Orders._fields))
     levels: dict[int, FloatArray] = {}
     windows: dict[int, int] = {}
+    # records of one batch share a sample rate
     for rate in np.unique(fs[fs > 0]):
         rows = np.flatnonzero(fs == rate)
         orders = Orders(*(order[rows] for order in nominal))
         for numbers, batch in line_levels(x[rows], float(rate), shaft_rate[rows], orders):
             for key, level in zip(recording[rows[numbers]].tolist(), batch, strict=True):
+                # sums of windows can be added over blocks, medians could not
                 levels[key] = levels[key] + level if key in levels else level.astype(float)
                 windows[key] = windows.get(key, 0) + 1
+    # a recording of which no window is usable still counts its records
     nothing = np.zeros((1, 1))
     return [
         Sums(key, count, windows.get(key, 0), levels.get(key, nothing))
@@ -107,6 +110,7 @@ def recording_speeds(
     for block, sums in blocks:
         for new in sums:
             waiting.setdefault(new.recording, {})[block] = new
+            # a recording is estimated when its last block has come, and then forgotten
             missing[new.recording] -= new.records
             if missing[new.recording] == 0:
                 held = waiting.pop(new.recording)
@@ -125,6 +129,7 @@ def with_speeds(table: xr.Dataset, recording: IntArray, estimates: list[ShaftSpe
     codes = np.array([EVIDENCE.index(one.evidence) for one in estimates], np.int8)[recording]
     described = {"units": "Hz", "role": "operating"}
     flags = {"flag_values": np.arange(len(EVIDENCE), dtype=np.int8), "flag_meanings": " ".join(EVIDENCE)}
+    # stored, because the labels that disagree may be replaced by estimates
     disagreeing = sum(not one.agrees for one in estimates)
     return table.assign(
         {
@@ -173,6 +178,7 @@ def speed_warnings(table: xr.Dataset) -> list[str]:
         return []
     label, estimate, uncertainty = (table[name].values for name in ("shaft_rate", ESTIMATE, UNCERTAINTY))
     numbers = recording_numbers(table)
+    # one sentence for a recording, not for each of its windows
     first = np.unique(numbers, return_index=True)[1]
     wrong = first[other_speed(table)[first]]
     corrected = table.attrs["speed"] == "correct"
@@ -188,6 +194,7 @@ def speed_warnings(table: xr.Dataset) -> list[str]:
         f"{action}."
         for row in wrong[:MOST_SENTENCES]
     ]
+    # a set with wrong labels throughout would fill the screen
     more = len(wrong) - MOST_SENTENCES
     if more > 0:
         sentences.append(f"{more} more recording{'s' if more > 1 else ''} with lines that fit another speed.")

@@ -68,6 +68,7 @@ def recording_table(
     every = np.ones(count)
     nominal = Orders(*(float(order) * every for order in orders))
     values, _ = indicators(windows, fs, shaft_rate * every, nominal, groups, band)
+    # all windows are of one recording of one bearing
     same = np.zeros(count, dtype=np.int32)
     variables = {"rig": same, "specimen": same, "recording": same, "fault": np.full(count, fault, dtype=np.int8)}
     variables |= {

@@ -54,10 +54,12 @@ def shaft_speed(
     if not (0 < fs < np.inf and 0 < shaft_rate < np.inf):
         message = f"fs and shaft_rate: {fs} and {shaft_rate} are not both positive numbers; give them in Hz."
         raise ValueError(message)
+    # one window is a recording of one
     x = np.atleast_2d(np.asarray(x))
     each = Orders(*(np.broadcast_to(np.asarray(order, dtype=float), (len(x),)) for order in orders))
     total: FloatArray = np.zeros((1, 1))
     windows = 0
+    # levels are averaged over the windows: noise falls, lines stay
     for _, levels in line_levels(x, fs, np.full(len(x), float(shaft_rate)), each, tolerance):
         total, windows = total + levels.sum(axis=0, dtype=float), windows + len(levels)
     return find_speed(total / max(windows, 1), windows, shaft_rate, tolerance)
@@ -84,15 +86,18 @@ def line_levels(
     tolerance
         Largest relative error of the labels.
     """
+    # long records are cut: within a piece the speed hardly changes
     pieces = max(1, int(np.ceil(x.shape[-1] / fs / LONGEST - 1e-9)))
     length = x.shape[-1] // pieces
     duration = length / fs
     if fs < LOWEST_RATE or duration < SHORTEST[1]:
         return
+    # the same length for all, so that their spectra have the same bins
     cut = x[:, : pieces * length].reshape(-1, length)
     numbers = np.repeat(np.arange(len(x)), pieces)
     rates, nominal = shaft_rate[numbers], Orders(*(order[numbers] for order in orders))
     chosen = np.flatnonzero(usable_records(cut, rates, nominal) & (duration * rates >= SHORTEST[0]))
+    # in batches, so that memory does not grow with the number of records
     for start in range(0, len(chosen), BATCH):
         rows = chosen[start : start + BATCH]
         batch = Orders(*(order[rows] for order in nominal))
@@ -121,6 +126,7 @@ def level_spectra(x: FloatArray, fs: float, shaft_rate: FloatArray, top: float) 
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
     mean = np.zeros((len(x), bins), np.float32)
     bands = bands_of(fourier_coefficients(x, fs, DEFAULT_BAND.high), duration, fs)
+    # the mean over narrow bands needs no choice of the band that a fault excites
     for band in bands:
         z = analytic_band(band, 0, band.shape[-1])
         level = _spectrum_level(np.sqrt(squared_modulus(z)), width, bins)

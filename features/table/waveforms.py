@@ -93,6 +93,7 @@ class Waveforms:
     def _read(self, rows: NDArray[np.intp]) -> NDArray[np.float32]:
         """Signals of some records of the corpus; samples that are not finite become 0."""
         stored = self.signal[rows]
+        # classifiers refuse NaN, and a gap of zeros is as if nothing vibrated
         x = np.nan_to_num(stored.values.astype(np.float32, copy=False), nan=0.0, posinf=0.0, neginf=0.0)
         if self.per_turn is not None:
             fs, shaft_rate = stored["sample_rate"].values, stored["shaft_rate"].values
@@ -139,7 +140,9 @@ def open_waveforms(
     opened = open_corpus(corpus)
     where = corpus_name(corpus)
     number = channel_number(opened, channel, where)
+    # signals stay in the corpus until they are indexed
     labels = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore").load()
+    # speeds known better than the labels, such as estimated ones
     if shaft_rate is not None:
         labels = labels.assign(shaft_rate=labels["shaft_rate"].copy(data=shaft_rate))
     signal = opened[SIGNAL].isel(channel=number).drop_vars(["elapsed_time"])

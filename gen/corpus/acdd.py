@@ -30,6 +30,7 @@ def publication_attributes(manifest: Manifest) -> dict[str, str]:
     publication = manifest.publication
     recorded = _RECORDED if manifest.recipe is None else _BOTH
     platform, instrument, made = _SIMULATED if manifest.importer is None else recorded
+    # what follows from the corpus itself
     fixed = {
         "summary": f"{manifest.records} labelled records of bearing vibration, {made}, with fault class, speed, load and nominal fault "
         f"frequencies of each.",
@@ -44,6 +45,7 @@ def publication_attributes(manifest: Manifest) -> dict[str, str]:
     creators = publication.creators
     institutional = all(creator.name == publication.institution for creator in creators)
     publisher = publication.institution or ", ".join(creator.name for creator in creators)
+    # what a person has to say, and may have left out
     given = {
         "license": _license(publication.license),
         "creator_name": ", ".join(creator.name for creator in creators),

@@ -44,6 +44,7 @@ def chosen_records(
         if where is not None:
             chosen = np.intersect1d(chosen, records_where(where, _variables(corpus)))
         places.append(chosen)
+    # an empty copy helps nobody: say what the records have instead
     if not any(map(len, places)):
         words = [f"where {where!r}"] * (where is not None) + [f"split {split!r}"] * (split is not None)
         count = sum(corpus.sizes["record"] for corpus in corpora)

@@ -120,6 +120,7 @@ def fault_counts(columns: Columns) -> FaultCounts | None:
     rig, specimen, detectable, fault_tries, level_tries = (
         _column(columns, name) for name in ("rig", "specimen", *OF_FAULTS)
     )
+    # whether a healthy record shows a fault is no question
     detectable = detectable[_column(columns, "fault") != FAULTS.index("healthy")]
     if not detectable.size:
         return None

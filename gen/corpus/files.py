@@ -59,6 +59,7 @@ def _both_hashes(path: Path) -> tuple[str, str]:
     if known is not None:
         return known
     digest, left = hashlib.sha256(), key[1][0] - _CHECKSUM_BYTES
+    # one reading gives both: the hash of the whole file and that of all before its last line
     with path.open("rb", buffering=0) as stream:
         while left > 0 and (block := stream.read(min(left, _READ_BYTES))):
             digest.update(block)
@@ -66,6 +67,7 @@ def _both_hashes(path: Path) -> tuple[str, str]:
         before = digest.hexdigest()
         digest.update(stream.read())
     both = digest.hexdigest(), before
+    # a file that changed within a tick of the clock has the same stamp as before
     if stamp(path) == key[1] and time.time_ns() - key[1][1] > _CLOCK_TICK:
         if len(_hashes) >= _MOST_HASHES:
             _hashes.clear()
@@ -197,6 +199,7 @@ def writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
     hidden = str(temporary or path)
     try:
         yield
+    # users know the name that they gave, not the temporary one
     except CorpusError as error:
         if hidden not in str(error):
             raise
@@ -303,11 +306,13 @@ def _error_number(error: OSError | RuntimeError, folder: Path) -> int:
     >>> _error_number(RuntimeError("write failed (errno = 28, error message = 'No space left on device', buf = 0x7fafb143fe10)"), Path())
     28
     """
+    # netCDF and HDF5 hide the number of the system in their texts, or lose it
     in_text = re.search(r"errno = (\d+)", str(error))
     code = getattr(error, "errno", None) or (int(in_text[1]) if in_text else 0)
     if code > 0 or "HDF" not in str(error):
         return max(code, 0)
     try:
+        # writing a little more to the same place fails for the same reason, and names it
         with tempfile.TemporaryFile(dir=folder) as trial:
             trial.write(bytes(_TRIAL_BYTES))
             trial.flush()

@@ -29,6 +29,7 @@ def check_fit(first: Named, other: Named, *, float32: bool) -> None:
         [channel for channel in channel_names(corpus) if channel not in channel_names(against)]
         for corpus, against in ((two, one), (one, two))
     )
+    # an example with channels of these corpora, which may be the answer
     if own or missing:
         example = f"{(own or channel_names(two))[0]}={(missing or channel_names(one))[0]}"
         raise CorpusError(
@@ -75,6 +76,7 @@ def with_same_variables(corpora: Sequence[Named]) -> tuple[list[xr.Dataset], tup
         for name in per_record(corpus):
             _check_same(name, variables.setdefault(name, (path, corpus[name].variable)), (path, corpus[name].variable))
     signals = [corpus[SIGNAL].attrs for _, corpus in corpora]
+    # attributes of the signal on which all agree
     common = {key: value for key, value in signals[0].items() if all(of.get(key) == value for of in signals)}
     # h5py gives an axis with its byte order stated, of which netCDF4 warns
     time = corpora[0][1]["elapsed_time"]
@@ -173,10 +175,12 @@ def check_repeats(digests: NDArray[np.bytes_], places: Sequence[tuple[str, NDArr
     names = np.array([name for name, _ in places], object)
     owner = np.repeat(np.arange(len(places)), [len(records) for _, records in places])
     number = np.concatenate([records for _, records in places])
+    # equal digests become neighbours
     order = np.argsort(digests, kind="stable")
     one, other = order[:-1], order[1:]
     same = np.flatnonzero((digests[one] == digests[other]) & (digests[one] != b"") & (owner[one] != owner[other]))
     if same.size:
+        # the first repeated record, so that the sentence does not depend on the order of the digests
         place = same[np.argmin(other[same])]
         first, second = int(one[place]), int(other[place])
         raise CorpusError(

@@ -29,6 +29,7 @@ def lock(directory: Path) -> Iterator[None]:
         try:
             free = lock_descriptor(handle, blocking=False)
         except OSError:
+            # a file system without locks must not keep anybody from writing
             free = True
         if not free:
             raise CorpusError(

@@ -116,6 +116,7 @@ def facts_of_parts(rows: Iterable[PartRow], facts: Mapping[str, Any], *, complet
     """
     rows = list(rows)
     publication: Publication = facts.get("publication") or Publication()
+    # a fact without content is left out
     known = {name: value for name, value in facts.items() if name not in COUNTED and value is not None}
     return {
         "raceway_format": FORMAT,
@@ -154,6 +155,7 @@ def manifest_of(content: Mapping[str, Any] | bytes, place: Path) -> Manifest:
     try:
         values: dict[str, Any] = json.loads(content) if isinstance(content, bytes) else dict(content)
         _check_format(values["raceway_format"], place)
+        # the hash covers all other keys, so that an edited manifest is noticed
         if isinstance(content, bytes) and values.pop(_HASH, None) != _hash_of(values):
             raise CorpusError(_altered(place))
         manifest = Manifest.model_validate_json(json.dumps(values))
@@ -205,8 +207,10 @@ def read_manifest(path: Path | str, check: Check = "sha256") -> Manifest:
     place = path / MANIFEST_NAME
     if not place.exists():
         raise CorpusError(f"{path}: has no manifest.json, so it is not a corpus; make one with raceway generate.")
+    # a link could lead out of the folder
     plain_file(path, MANIFEST_NAME)
     try:
+        # before memory is taken for it
         check_limit("manifest_bytes", place.stat().st_size, f"{place}:", CorpusError)
         content = place.read_bytes()
     except OSError as error:

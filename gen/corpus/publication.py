@@ -34,6 +34,7 @@ def check_orcid(text: str) -> str:
         raise ValueError(f"{text!r} is not an ORCID; it has four groups of four digits, such as 0000-0002-1825-0097.")
     *digits, last = match[1].replace("-", "")
     total = 0
+    # check digit of ISO 7064, 11-2
     for digit in digits:
         total = (total + int(digit)) * 2
     check = (12 - total % 11) % 11

@@ -226,6 +226,7 @@ def make_dataset(
     import xarray as xr  # not at the top: recipes use the names above, and xarray takes 0.25 s to load
 
     variables = {variable.name: variable for variable in SCHEMA + extra}
+    # a column without a description would be a variable without a unit
     if variables.keys() != columns.keys():
         message = f"columns {sorted(variables.keys() ^ columns.keys())} are either missing or not described; give each exactly once."
         raise CorpusError(message)
@@ -242,6 +243,7 @@ def make_dataset(
         "channel": ("channel", np.asarray(channels, dtype=object), named),
         "elapsed_time": ("elapsed_time", np.arange(signal.shape[2]) / fs, axis),
     }
+    # CF calls text variables auxiliary coordinates
     labels = {variable.name: data.pop(variable.name) for variable in variables.values() if variable.dtype == "str"}
     return xr.Dataset(
         data,
@@ -258,6 +260,7 @@ def schema_problems(dataset: "xr.Dataset", further: tuple[Variable, ...] = ()) -
     if dataset[SIGNAL].dims != SIGNAL_DIMS:
         problems.append(f"{SIGNAL} has dimensions {dataset[SIGNAL].dims}, not {SIGNAL_DIMS}.")
     known = {variable.name: variable for variable in SCHEMA + further}
+    # further variables are allowed if they say what they are
     for name, array in dataset.variables.items():
         if name in (SIGNAL, "channel", "elapsed_time"):
             continue
@@ -287,6 +290,7 @@ def records_in_memory(records: Any) -> "xr.Dataset":
     missing = _missing(records)
     if missing:
         raise CorpusError(f"the Dataset has no variable {', '.join(missing)}; the format of corpora needs it.")
+    # a single record has no axis of records
     rows = records if "record" in records.dims else records.reset_coords().expand_dims("record")
     if set(rows[SIGNAL].dims) != set(SIGNAL_DIMS) or not rows[SIGNAL].size:
         raise CorpusError(
@@ -316,6 +320,7 @@ def _values_problems(known: Variable | None, name: str, array: "xr.Variable") ->
         flags = class_names(array.attrs)
     except (ValueError, OverflowError):
         return [f"{name} has flag_values that are not whole numbers."]
+    # a variable of somebody else may have any type and unit
     if known is None:
         return []
     kind = "O" if known.dtype == "str" else np.dtype(known.dtype).kind

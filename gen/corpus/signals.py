@@ -56,9 +56,11 @@ def judge(signal: NDArray[np.integer] | NDArray[np.floating]) -> NDArray[np.int8
     """
     lowest, highest = signal.min(axis=2), signal.max(axis=2)
     counts = np.issubdtype(signal.dtype, np.integer)
+    # extremes tell enough for most channels, and need no mask of all samples
     lost = lowest == MISSING_COUNT if counts else ~(np.isfinite(lowest) & np.isfinite(highest))
     low = np.full_like(lowest, MISSING_COUNT + 1) if counts else lowest
     high = -low if counts else highest
+    # samples are counted only where a channel reaches an end of the converter
     at_ends = np.zeros(lowest.shape, int)
     for place in zip(
         *np.nonzero((lowest <= low) | (highest >= high)), strict=True

@@ -66,6 +66,7 @@ def _records_problems(path: Path, manifest: Manifest) -> list[str]:
         for block in blocks_of(path, manifest.records):
             problems += _text_problems(path, stored_columns(path, block.first, block.stop))
         return problems + _signal_problems(path, manifest.signals)
+    # one part at a time, so that memory does not grow with the corpus
     for row in manifest.parts:
         file = path / "parts" / row.name
         columns = stored_columns(file)

@@ -80,6 +80,7 @@ def records_where(text: str, variables: Variables) -> NDArray[np.intp]:
 def _evaluated(line: str, variables: Variables) -> pd.Series:
     """Whether a condition is true for each record, after a check of all that it names."""
     tree, columns = ast.parse(line, mode="eval").body, label_columns(variables)
+    # a condition comes from strangers: names, numbers, texts and comparisons alone
     wrong = next((node for node in ast.walk(tree) if not _is_allowed(node)), None)
     if wrong is not None:
         part = ast.unparse(wrong)[:60] or type(wrong).__name__  # an operator has no text of its own
@@ -90,6 +91,7 @@ def _evaluated(line: str, variables: Variables) -> pd.Series:
         near = difflib.get_close_matches(unknown, columns, 3)
         told = f"the nearest are {', '.join(near)}" if near else "docs/format.md lists them"
         raise CorpusError(f"where: there is no column {unknown}; {told}; a text stands in quotes.")
+    # only the columns that it names
     table = pd.DataFrame({name: _column(variables[columns[name][0]], columns[name][1]) for name in named})
     for node in ast.walk(tree):
         if isinstance(node, ast.Compare):
@@ -137,6 +139,7 @@ def _check_values(comparison: ast.Compare, table: pd.DataFrame, variables: Varia
         wrong = next((value for value in values if classes and value not in classes), None)
         if wrong is not None:
             raise CorpusError(f"where: {name} has no value {wrong!r}; allowed are {', '.join(map(repr, classes))}.")
+    # pandas would call a number and a text unequal without a word
     if len(kinds) > 1:
         told = f"{ast.unparse(comparison)[:60]!r} compares texts with numbers"
         raise CorpusError(f"where: {told}; texts stand in quotes, and numbers do not.")

@@ -94,14 +94,18 @@ def diagnose_recording(
         feature_names(model.groups, Band(*model.band))
     ):
         raise CorpusError(f"{model.name}: the model takes features that this version does not make; train it again.")
+    # a signal that cannot tell anything ends here, with the reason
     used, quality = _usable(recording, given)
     shown = (recording.used, *(each.used for each in healthy))
     if quality.useless:
         return _with_levels(_useless(given, model, quality), shown)
     references = [_reference(one, recording, used, given) for one in healthy]
     spectra = mean_spectra(list(used.signals.values()), used.fs, given)
+    # every speed and bearing that the lines allow, and those that they rather tell
     pairs, elsewhere = find_pairs(spectra, given)
+    # the classifier is asked at each of them
     judged = [_judge(used, pair, model, references) for pair in pairs]
+    # strong lines of no part of this bearing: it may be another bearing
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
     diagnosis = _conclude(judged, elsewhere, given, strange)
     advice = diagnosis.advice + (
@@ -111,6 +115,7 @@ def diagnose_recording(
     if len(used.signals) > 1:
         sentence = f"{sentence[:-1]}; channels {listed([*used.signals], 'and')}, as axes of one housing."
     diagnosis = replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings), sentence=sentence)
+    # a healthy verdict says how often such verdicts were wrong
     if diagnosis.verdict == HEALTHY:
         missed, of = missed_faults(_duration(used), compared=bool(healthy))
         told = f"{missed} of {of} faulty recordings of about this length from three machines were called healthy"
@@ -134,12 +139,14 @@ def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
         total = sum(signal.size for signal in recording.signals.values())
         raise CorpusError(f"{recording.name}: {wrong:,} of {total:,} samples are not finite numbers; export it again.")
     signals = recording.used.signals
+    # the middle of the given speeds and the first bearing are enough to tell a useless signal
     rate, orders = float(np.sqrt(np.prod(given.rates))), next(iter(given.bearings.values()))
     checked = {name: quality_of(signal, recording.fs, rate, orders) for name, signal in signals.items()}
     kept = {name: signals[name] for name, quality in checked.items() if not quality.useless}
     if not kept:
         return recording, next(iter(checked.values()))
     duration = _duration(recording)
+    # what is left out is told
     warnings = [f"Only the first {LONGEST:g} s of {duration:,.0f} s are used."] if duration > LONGEST else []
     warnings += [f"Channel {name} is left out, since {checked[name].useless}." for name in checked.keys() - kept.keys()]
     several = len(signals) > 1
@@ -190,6 +197,7 @@ def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[R
         for name, signal in recording.signals.items()
         for spectrum in band_spectra(signal, recording.fs, pair.rate, name)
     ]
+    # evidence is searched whatever the classifier says, and compared with it
     lines = find_evidence(spectra, pair.rate, pair.orders)
     predicted = _predict(recording, pair, model, references)
     whole = predicted.by_recording
@@ -206,9 +214,11 @@ def _predict(recording: Recorded, pair: Pair, model: Model, references: Sequence
     model = suited(model, [_duration(one) for one in (recording, *references)])
     if references:
         healthy = [_table(one, recording.signals, pair, model, HEALTHY) for one in references]
+        # each healthy recording keeps a number of its own, since they tell how much the machine varies
         numbered = [one.assign(recording=one["recording"] + number) for number, one in enumerate(healthy)]
         known = xr.concat(numbered, "record", combine_attrs="override")
         return predict(_table(recording, recording.signals, pair, model, UNKNOWN), model, known)
+    # axes of one housing are channels of one record
     rows = [
         _rows(windows_of(signal, recording.fs, model), recording.fs, pair, model)
         for signal in recording.signals.values()
@@ -219,6 +229,7 @@ def _predict(recording: Recorded, pair: Pair, model: Model, references: Sequence
         np.stack([estimator_probabilities(model, DataFrame(some, columns=columns), recording.name) for some in values])
         for values in (rows, means)
     )
+    # all windows are of one recording
     alone = np.zeros(each.shape[1], dtype=np.intp)
     impulsiveness = impulsiveness_of(means, model.features)
     return predictions(each, model.classes, alone, model.calibration, of_recordings=whole, impulsiveness=impulsiveness)
@@ -265,6 +276,7 @@ def _conclude(judged: list[Judged], elsewhere: tuple[Pair, ...], given: Given, s
     differing = len({one.verdict for one in judged}) > 1
     why = first.why
     advice: tuple[str, ...] = ("Measure the speed during the recording, and check the bearing designation.",)
+    # the strongest doubt first: lines that this bearing and speed do not explain
     if elsewhere or strange is not None:
         why = unexplained(first.pair, elsewhere, strange)
         advice = (
@@ -274,6 +286,7 @@ def _conclude(judged: list[Judged], elsewhere: tuple[Pair, ...], given: Given, s
         why = different_classes([(one.pair, one.verdict) for one in judged])
         advice = ("Measure the speed during the recording, or give a narrower range.",)
     verdict = UNSURE if why else first.verdict
+    # speeds and bearings that give the same answer are named beside the first
     told = pair_in_words(first.pair, given, [one.pair for one in judged[1:] if not differing])
     if why:
         sentence = f"Unsure ({candidates(first.probabilities)}): {why}; {told}."

@@ -49,6 +49,7 @@ def count_verdicts(
     CorpusError
         As `Model.score`.
     """
+    # rows of the corpus, because a reference takes records out of the table
     tested = table.assign(row=("record", np.arange(table.sizes["record"])), rate=("record", rates_to_use(table)))
     if reference is not None:
         tested, reference, _ = choose_reference(tested, reference, model.features)
@@ -59,6 +60,7 @@ def count_verdicts(
     with open_corpus(corpus) as opened:
         names = table["channel"].values.tolist() if "channel" in table["features"].dims else [table.attrs["channel"]]
         channels = [channel_number(opened, name, corpus) for name in names]
+        # one recording at a time: its windows in a row are its signal again
         for number in range(len(whole.probabilities)):
             rows = tested.isel(record=predicted.recording == number)
             signals = opened[SIGNAL].isel(record=rows["row"].values, channel=channels).values

@@ -107,6 +107,7 @@ def diagnose(
     first = next(readings, None)  # before the model, so that whatever is missing is told at once
     if first is None:
         raise click.UsageError(f"no recording can be used; the first of {len(paths)}: {next(iter(unusable.values()))}")
+    # healthy recordings are read before the model, so that a wrong file is told at once
     compared = [(read_as_stated if several else read_recording)(path, reading) for path in healthy]
     references = [one for one, *_ in compared]
     doubts = _doubts(speeds) + tuple(note for *_, found in compared for note in found)
@@ -115,12 +116,14 @@ def diagnose(
     given = _given(known, speeds)
     from gen.support.garbage import keep_garbage
 
+    # the libraries of the model hold much that is never freed, and collecting garbage among it takes time
     with keep_garbage():
         loaded, source = _model(model)
         from raceway.diagnosis import diagnose_recording
         from raceway.diagnosis.facts import assumptions, diagnosis_facts
 
     found = []
+    # one recording at a time, read when its turn comes
     for path, recorded, used, of_file in chain((first,), readings):
         with set_aside(path, unusable if several else None), notice_compilation():
             diagnosis = diagnose_recording(recorded, given, loaded, healthy=references)
@@ -134,6 +137,7 @@ def diagnose(
             facts = assumptions(recorded, known, diagnosis, used, healthy, source, notes)
             _write_page(diagnosis, recorded, references, page, path.name, facts)
         found.append(diagnosis_facts(diagnosis, recorded, path, source, page, notes))
+    # files that could not be used stand in the table, too
     rows = rows_of(found, unusable)
     if several and output is not None:
         write_index(rows, recording.resolve().name, output)

@@ -84,8 +84,10 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     orders
         Nominal fault orders, as numbers.
     """
+    # lines of the shaft are in every machine
     free = [~_near_shaft(spectrum, shaft_rate) for spectrum in spectra]
     families = [row for row in CLASSES.values() if row.evidence]
+    # the bound holds for the whole search, so it counts all places that are looked at
     trials = TRIALS_PER_BIN * sum(
         free_bins[slice(*place)].sum()
         for row in families
@@ -94,6 +96,7 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     )
     lines: list[Line] = []
     least = LEAST_LEVEL
+    # the strongest family first; its lines are then taken out, so that they count for no other
     while families and trials:
         first_lines = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in families]
         held = [
@@ -109,6 +112,7 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
         strongest = int(np.argmax(sums))
         ratio, _, fundamental = first_lines[strongest]
         row, family = families.pop(strongest), held[strongest]
+        # each further family must be as strong as noise allows and not far below the strongest
         level = 10 * float(np.log10(max(ratio, 1.0)))
         if not family or level < least or (not row.comb and sum(not line.side for line in family) < CAGE_LINES):
             continue
@@ -208,17 +212,20 @@ def _family(
     rates = {"": 0.0, row.side: side_of(row, orders) * shaft_rate, SHAFT.base: shaft_rate}
     base = row.lines[0].multiple
     places = [(harmonic, "", 0) for harmonic in _harmonics(row)]
+    # of balls and races also sidebands, at the rate of the cage and of the shaft
     if row.comb:
         places += [(harmonic, side, sign) for harmonic in (1, 2) for side in rates if side for sign in (-1, 1)]
     searches = {}
     for harmonic, side, sign in places:
         frequency = harmonic * fundamental + sign * rates[side]
         searches[harmonic, side, sign] = spectrum.bins(frequency, 0.5 * spectrum.width + DRIFT * frequency)
+    # one bound for all harmonics and sidebands of the family
     trials = max(1.0, TRIALS_PER_BIN * sum(last - first for first, last in searches.values()))
     threshold = spectrum.threshold(FALSE_ALARM / trials)
     lines: dict[tuple[int, str, int], Line] = {}
     for (harmonic, side, sign), (first, last) in searches.items():
         ratio = np.where(free[first:last], spectrum.ratio[first:last], 0.0)
+        # a sideband counts only beside its harmonic
         if not ratio.size or ratio.max() <= threshold or (sign and (harmonic, "", 0) not in lines):
             continue
         peak = _peak(spectrum, first + int(ratio.argmax()))

@@ -89,4 +89,5 @@ def assumptions(
         "model": source.name,
         "notes": " ".join(notes),
     }
+    # what was not asked for needs no row
     return [(name, text) for name, text in facts.items() if text]

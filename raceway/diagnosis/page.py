@@ -85,6 +85,7 @@ def write_diagnosis(
         pairs=[(pair, True) for pair in diagnosis.explanations] + [(pair, False) for pair in diagnosis.elsewhere],
         assumed=assumed,
     )
+    # only a page of Raceway is replaced
     check_result(Path(output), "page")
     write_text_durably(page, Path(output))
 
@@ -116,6 +117,7 @@ def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded, healthy: Recorded 
     if diagnosis.spectrum is not None:
         spectrum = diagnosis.spectrum
         if under is not None:
+            # in the band of the recording, which may not be the best one of the healthy recording
             (of_healthy,) = band_spectra(under.signal, under.fs, under.shaft_rate, spectrum.channel, [spectrum.band])
             envelope.plot(*_levels(of_healthy, diagnosis.shaft_rate), linewidth=0.7, **UNDER)
         _draw_levels(envelope, spectrum, diagnosis)
@@ -143,6 +145,7 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
     """Level of the envelope spectrum over its floor, with the lines of each family, and the evidence marked."""
     order, level = _levels(spectrum, diagnosis.shaft_rate)
     families = _families(diagnosis.orders)
+    # some harmonics of the highest family, as far as the spectrum goes
     top = min(order[-1], (DRAWN_HARMONICS + 0.15) * max(lines[0] for lines in families.values()))
     visible = order <= top
     names: dict[str, float] = {SHAFT.label: 1.0}
@@ -157,6 +160,7 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
     axes.plot(order[visible], level[visible], color=INK, linewidth=0.7)
     axes.axhline(LEAST_LEVEL, color=FAINT, linewidth=0.7, linestyle=(0, (4, 3)))
     shown = (spectrum.band, spectrum.channel)
+    # evidence of other bands or channels would not stand on this curve
     marked = [line for line in diagnosis.evidence if (line.band, line.channel) == shown and line.order <= top]
     for line in marked:
         marker = "o" if not line.side else "s"

@@ -44,17 +44,20 @@ def _useless(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> tup
         reason = f"the recording lasts {duration:.3g} s and {least:.3g} s are the least ({turns:g} shaft revolutions and {seconds:g} s)"
         return reason, f"record {max(ENOUGH, math.ceil(TURNS / shaft_rate)):,.0f} s, and check speed and sample rate"
     spread, largest = np.ptp(x), np.abs(x).max()
+    # constant up to rounding
     if spread <= FLATTEST * largest:
         reason = "the signal is constant, as of a sensor or cable that is not connected"
         return reason, "check sensor, cable and channel, and record again"
     if not POSSIBLE[0] <= spread <= POSSIBLE[1]:
         return f"the values spread over {spread:.2g} m/s², which is no vibration", "check unit, column and export"
     steps = np.diff(x)
+    # a column of times, or a counter
     if np.all(steps >= 0) or np.all(steps <= 0):
         return "the values only rise or only fall, as in a column of times", "choose another column"
     if fs < LOWEST_RATE:
         reason = f"the sample rate of {fs:,.0f} Hz is below {LOWEST_RATE:,.0f} Hz, so no band with the impacts of a bearing is left"
         return reason, "record at 10,000 Hz or more"
+    # the lines of every part must lie in the band that is used
     highest, top = shaft_rate * max(orders.bpfo, orders.bpfi, 2 * orders.bsf), min(DEFAULT_BAND.high, fs / 2)
     if highest > top:
         speed = from_si(shaft_rate, "rpm")
@@ -68,6 +71,7 @@ def _useless(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> tup
 def _warnings(x: FloatArray, fs: float, duration: float, shaft_rate: float) -> list[str]:
     warnings = []
     share = clipped_share(x)
+    # clipped impacts make lines that the machine does not have
     if share:
         warnings.append(
             f"{100 * share:.{1 if share < 0.1 else 0}f} % of the samples are at the highest or lowest value, so the "
@@ -83,6 +87,7 @@ def _warnings(x: FloatArray, fs: float, duration: float, shaft_rate: float) -> l
             f"The recording is short ({duration:.2g} s, {duration * shaft_rate:.0f} shaft revolutions), so that faint lines cannot be "
             "told from noise; 10 s are better."
         )
+    # a wrong unit is seen by a level that machines do not have
     rms = float(np.std(x))
     if not PLAUSIBLE_RMS[0] <= rms <= PLAUSIBLE_RMS[1]:
         warnings.append(

@@ -148,6 +148,7 @@ class _Grid(NamedTuple):
         rate, evidence = self.rates[number], self.evidence[bearing]
         error = np.log(self.rates / rate)
         around = np.abs(error) <= LABEL_TOLERANCE
+        # how narrow the peak of the evidence is tells how well the speed is known
         spread = spread_of(error[around], evidence[around], int(around[:number].sum()))
         return Pair(
             bearing=name,
@@ -250,19 +251,23 @@ def strange_comb(spectra: LevelSpectra, pair: Pair, lines: Sequence[Line]) -> fl
     frequencies that differ from a harmonic of the evidence ``lines`` by a multiple of the shaft rate.
     """
     lowest, highest = np.log(STRANGE_ORDERS)
+    # a fine grid in the logarithm, since lines widen with their frequency
     order = np.exp(np.arange(lowest, highest, STEP))
     harmonics = np.array(HARMONICS)[:, None] * order
     places = pair.rate * harmonics[:, :1].T / spectra.resolution
     levels = levels_at(spectra.envelope[None], places, order / order[0])[0]
     width = 4 * spectra.resolution / pair.rate  # half of a main lobe, in orders
+    # neither the shaft nor the mains
     free = _off(harmonics, 1.0, width + SHAFT_DRIFT * harmonics)
     for mains in MAINS:
         free &= _off(harmonics, mains / pair.rate, width)
     heights = comb_height(np.where(free, levels, FLOOR), spectra.windows)
+    # nor a part of this bearing
     own = np.zeros(len(order), bool)
     for family in np.outer(families(_row(pair.orders))[0], HARMONICS).ravel():
         own |= np.abs(order - family) < TOLERANCE * family
     strange = free[:2].all(axis=0) & ~own
+    # nor a sideband of lines that were found
     for line in lines:
         if not line.side:
             beside = [order - harmonic * line.order / line.harmonic for harmonic in HARMONICS]
@@ -271,6 +276,7 @@ def strange_comb(spectra: LevelSpectra, pair: Pair, lines: Sequence[Line]) -> fl
             ).all(axis=0)
     left = np.where(strange, heights, -np.inf)
     place = int(left.argmax())
+    # what is left must be stronger than every comb of the bearing
     if left[place] < max(STRONG_COMB, heights[own].max(initial=0.0)):
         return None
     return float(order[place])

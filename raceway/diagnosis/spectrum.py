@@ -79,7 +79,9 @@ def band_spectra(
     """
     segments, duration = _segments(x, fs, shaft_rate)
     coefficients = fourier_coefficients(segments, fs, fs / 2)
+    # resonances and tones would otherwise rule the envelope
     whitened = whiten_by_psd(coefficients, round(WHITENING_WIDTH * duration))
+    # overlapping segments are worth less than independent ones
     count = 1 + (len(segments) - 1) / OVERLAP_LOSS
     spectra = []
     for band in bands_of(x, fs) if bands is None else bands:
@@ -90,6 +92,7 @@ def band_spectra(
         top = min(TOP_ORDER * shaft_rate, 0.6 * (band[1] - band[0]))
         bins = min(int(top / resolution) + 1, amplitude.shape[-1])
         power = np.mean(amplitude.astype(float) ** 2, axis=0)
+        # over the floor, so that one bound of noise holds at all frequencies
         ratio = power[:bins] / _floor(power, resolution, shaft_rate, count, bins)
         spectra.append(BandSpectrum(band, resolution, 2 / duration, ratio, count, channel))
     return spectra

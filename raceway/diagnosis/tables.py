@@ -103,6 +103,7 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
         list=LIST,
     )
     make_result_folder(pages)
+    # only results of Raceway are replaced
     for file, kind, text in ((INDEX, "page", page), (LIST, LIST_KIND, _csv_text(rows))):
         check_result(pages / file, kind)
         write_text_durably(text, pages / file)

@@ -45,10 +45,13 @@ def judge(
     """
     likely = max(probabilities, key=lambda name: probabilities[name])
     families = by_family(lines)
+    # plain lines go before a classifier that sees nothing
     if likely == HEALTHY and families and _answers(next(iter(families.values()))):
         return next(iter(families)), ""
+    # a fault is sure, and no line tells its part
     if impulsive and not families and faulty(probabilities) >= threshold:
         return DAMAGED, ""
+    # many faults change the colour of a machine and show no line
     if likely == HEALTHY and distance > 1:
         return UNSURE, (
             f"healthy is the likeliest, but the spectral colour differs {distance:.1f} times as much from that of the healthy recording "
@@ -56,11 +59,14 @@ def judge(
         )
     if probabilities[likely] < threshold:
         return UNSURE, _doubt(families, threshold)
+    # lines and classifier agree, unless the sidebands tell of another part
     if likely in families:
         foreign = _foreign_sidebands(families[likely])
         return (UNSURE, f"the classifier says {likely}, but {foreign}") if foreign else (likely, "")
+    # lines of the cage alone speak for balls, which go round with it
     if families.keys() == {CLASSES[likely].companion}:
         return likely, ""
+    # healthy bearings have faint lines of all parts
     if likely == HEALTHY:
         level = OBVIOUS if probabilities[likely] >= SURE else PLAIN
         families = {fault: held for fault, held in families.items() if _plain(held, level)}

@@ -120,6 +120,7 @@ def speed_warning(pair: Pair, given: Given) -> tuple[str, ...]:
     """Sentences on a speed at the end of the search, and on a label that does not fit the lines."""
     (low, high), uncertainty, ends = given.rates, from_si(pair.uncertainty, "rpm"), given.searched
     sentences = ()
+    # a maximum at the end of a search may lie beyond it
     if pair.strength > STRONG_COMB and not ends[0] * (1 + AT_END) < pair.rate < ends[1] * (1 - AT_END):
         first, last = (f"{from_si(end, 'rpm'):,.0f}" for end in ends)
         sentences = (

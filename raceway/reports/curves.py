@@ -23,6 +23,7 @@ def draw_detection(bins: Sequence[WidthBin], false_alarms: float | None) -> Figu
     figure, axes = _panel()
     width = [from_si(one.width, "mm") for one in bins]
     axes.vlines(width, [one.low for one in bins], [one.high for one in bins], color=BLUE, linewidth=1.2)
+    # the area of a dot is the number of its records
     axes.scatter(
         width, [one.detected for one in bins], _areas([one.records for one in bins]), INK, linewidth=0, zorder=3
     )
@@ -33,6 +34,7 @@ def draw_detection(bins: Sequence[WidthBin], false_alarms: float | None) -> Figu
             color=INK, fontsize=8, ha="right", va="bottom",
         )  # fmt: skip
     axes.set_xscale("log")
+    # the ticks of a logarithmic axis would stand at powers of ten, which are too few here
     ticks = np.geomspace(min(width), max(width), 4)
     axes.set_xticks(ticks, [f"{tick:.2g}" for tick in ticks])
     axes.xaxis.set_minor_locator(NullLocator())

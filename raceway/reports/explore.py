@@ -142,13 +142,16 @@ def write_explorer(
     with open_corpus(corpus) as opened:
         number, count = channel_number(opened, channel, corpus_name(corpus)), opened.sizes["record"]
         check_band(band, float(opened["sample_rate"][0]), corpus_name(corpus))
+        # a choice of a large corpus is spread evenly, so that all its machines are in it
         places = np.linspace(0, count - 1, min(count, records)).round().astype(int)
         known = [*_labels(opened, places), *_features(table, opened, places, str(opened["channel"].values[number]))]
+        # blocks go to workers without the labels that only the page needs
         kept = opened[[SIGNAL, *(name for name in READ if name in opened)]].isel(record=places, channel=[number])
         kept = kept.assign({name: kept[name].load() for name in kept.data_vars if name != SIGNAL})
         blocks = (kept.isel(record=slice(first, first + BLOCK)) for first in range(0, len(places), BLOCK))
         reduced, report = list[list[str]](), counter(progress, len(places))
         task = partial(_reduced_block, band=band, sound=sound)
+        # one block of records at a time, so that memory does not grow with their number
         with closing(run(task, blocks, workers if scheduler is None else scheduler)) as made:
             for size, texts in made:
                 reduced.append(texts)
@@ -165,6 +168,7 @@ def write_explorer(
         records=count,
         sound=sound,
         script=script,
+        # the page runs no script but this one, whatever texts a corpus holds
         digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         parts=_parts(facts, known, reduced),
     )
@@ -188,16 +192,20 @@ def _reduced(shown: DrawnRecord) -> dict[str, np.ndarray]:
     visible = int(np.searchsorted(shown.turns, TURNS))
     x = shown.signal[: max(2, visible)] - np.mean(shown.signal)
     peak = max(float(np.abs(x).max()), TINY)
+    # a waveform as its extremes in each column of the screen, in one byte each
     lowest, highest = (np.round(127 / peak * _thinned(edge, x, COLUMNS)) for edge in (np.minimum, np.maximum))
+    # in dB below the highest level, in steps that fit one byte
     density = psd(shown.signal[None], shown.fs, SEGMENT)[1][0, 1:]  # the mean is removed
     density_db = 10 * np.log10(np.maximum(density, TINY))
     orders, spectrum = squared_envelope(shown)
+    # no more orders than the pictures of raceway plot show
     last = min(highest_drawn_order(*fault_lines(shown.orders, shown.fault)), orders[-1])
     level = spectrum[(orders > 0) & (orders <= last)]
     level_db = 20 * np.log10(level / max(float(np.median(level)), TINY) + 1e-12)
     _, times, grid = envelope_map(shown, last)
     rows = min(ROWS, len(times))
     cells = np.zeros((ROWS, CELLS))
+    # the highest of the values that share a cell, so that no line is lost
     cells[:rows] = _thinned(np.maximum, _thinned(np.maximum, grid, CELLS).T, rows).T
     shades = np.clip(np.round(SHADES / BRIGHTEST_DB * cells), 0, SHADES).astype(np.uint8).reshape(-1, 2)
     scales = (peak, x.size / shown.fs, density_db.max(), last, times[0], times[-1], rows)
@@ -207,6 +215,7 @@ def _reduced(shown: DrawnRecord) -> dict[str, np.ndarray]:
         "highest": highest.astype(np.int8),
         "density": _steps(density_db.max() - _thinned(np.maximum, density_db, DENSITIES)),
         "envelope": _steps(_thinned(np.maximum, level_db, LEVELS)),
+        # two cells in a byte
         "waterfall": shades[:, 0] | shades[:, 1] << 4,
     }
 
@@ -330,6 +339,7 @@ def _parts(
         },
         "quantities": [_told(one) for one in known],
     }
+    # each part is inflated by the page when it is needed
     parts = {"about": about} | {f"quantity{n}": one.values for n, one in enumerate(known)}
     parts = {name: _packed(json.dumps(part, allow_nan=False).encode()) for name, part in parts.items()}
     for number, texts in enumerate(blocks):

@@ -51,6 +51,7 @@ def plot(result: BandTree | OrderMap | Coherence, axes: Axes | None = None, *, r
         case BandTree():
             _draw_bands(axes, result, np.atleast_2d(result.score)[record])
         case OrderMap():
+            # of several records one is drawn
             amplitude = result.amplitude if result.amplitude.ndim == 2 else result.amplitude[record]
             level = level_over_median(amplitude[:, 1:])
             draw_grid(axes, (result.orders[1:], result.turns, level), (0.0, BRIGHTEST_DB), "dB above the median")
@@ -69,10 +70,12 @@ def _draw_bands(axes: Axes, tree: BandTree, score: FloatArray) -> None:
     divisions, drawn = np.unique(levels), score[np.isfinite(score)]
     limits = {"vmin": min(0.0, float(drawn.min())), "vmax": max(1.0, float(drawn.max())), "cmap": "Greys"}
     mesh: Any = None
+    # a row for each division of the frequencies, its bands side by side
     for row, division in enumerate(divisions):
         chosen = levels == division
         across = from_si(np.append(edges[chosen, 0], edges[chosen, 1][-1]), "khz")
         mesh = axes.pcolormesh(across, [row - 0.5, row + 0.5], score[chosen][None], rasterized=True, **limits)
+    # the best band is framed and named
     best = int(np.argmax(score))
     low, high = from_si(edges[best], "khz")
     row = int(np.searchsorted(divisions, levels[best]))

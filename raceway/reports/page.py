@@ -137,6 +137,7 @@ def _scores(results: Results) -> dict[str, Any]:
 def _panels(scores: Scores) -> list[tuple[str, bytes, str]]:
     """Small figures with alternative text and caption: detection by width and against false alarms, and reliability, as far as known."""
     panels = []
+    # pictures of what is known: corpora without widths or without healthy records lack some
     if scores.detection:
         caption = (
             "Share of the faulty records that are predicted to be faulty, whatever the class, by width. The lines are the 95 % "
@@ -201,6 +202,7 @@ def _findings(results: Results, chance: float) -> list[str]:
         f"{_with_interval(baseline.grouped)}; chance is {chance:.3f}, and the untrained envelope rule reaches "
         f"{rule.grouped.balanced_accuracy:.3f}."
     )
+    # each score stands beside chance, a leaking split and permuted labels
     sentences = [
         grouped,
         _false_alarms(baseline.grouped),
@@ -211,6 +213,7 @@ def _findings(results: Results, chance: float) -> list[str]:
         sentences.append(f"{results.corpus.unknown} records whose class is not known are left out of all scores.")
     if results.uncovered_widths:
         sentences.append(f"Cross-validation: {severity_warning(results.uncovered_widths)}")
+    # then what it is worth on other corpora
     for title, test, of_rule in zip(_test_titles(results), baseline.tests, rule.tests, strict=True):
         whole = "" if test.by_recording is None else f", {test.by_recording.balanced_accuracy:.3f} by recording"
         sentences.append(

@@ -42,6 +42,7 @@ def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
     """
     figure = Figure(figsize=(COLUMN * len(records), 5.0), layout="constrained")
     panels = figure.subplots(3, len(records), squeeze=False)
+    # sets are compared on one scale
     for row in panels[:2]:
         for axes in row[1:]:
             axes.sharey(row[0])
@@ -50,6 +51,7 @@ def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
         _draw_turns(waveform, shown)
         waveform.set_title(shown.title, color=_colour(number), fontweight="bold")
         frequencies, power = psd(shown.signal[None], shown.fs, SEGMENT)
+        # over the whole energy, since gains of machines differ
         share = power[0] / power[0].sum()
         level = 10 * np.log10(np.maximum(share, 10 ** (FAINTEST_DB / 10)))
         density.plot(from_si(frequencies, "khz"), level, color=INK, linewidth=0.8)
@@ -102,11 +104,13 @@ def draw_distributions(measures: Mapping[str, Mapping[str, FloatArray]], names: 
             if values.size:
                 share = (np.arange(values.size) + 0.5) / values.size
                 axes.plot(values, share, color=_colour(number), linewidth=1.8 if number == 0 else 1.0)
+        # the outermost hundredths of any set would squeeze all others
         inner = np.concatenate([np.quantile(values, (0.01, 0.99)) for values in sets.values() if values.size])
         if inner.size and inner.max() > inner.min():
             axes.set_xlim(inner.min(), inner.max())
         axes.set(xlabel=label, ylim=(0, 1))
         axes.locator_params(axis="x", nbins=5)
+    # the last row may have places to spare
     for axes in panels[len(measures) :]:
         axes.remove()
     for number, name in enumerate(names):

@@ -32,6 +32,7 @@ def draw_content(fault: IntArray, rig: IntArray, quantities: Mapping[str, FloatA
     quantities
         Values by label, shape (record,). Each gets a histogram if it varies; values that are not finite are omitted.
     """
+    # what has one value throughout needs no picture
     quantities = {label: values for label, values in quantities.items() if _varies(values)}
     rows = -(-(1 + len(quantities)) // 2)
     figure = Figure(figsize=(WIDTH, 0.4 + 1.5 * rows), layout="constrained")
@@ -68,6 +69,7 @@ def _varies(values: FloatArray) -> bool:
 def _draw_distribution(axes: Axes, fault: IntArray, values: FloatArray, present: IntArray) -> None:
     finite = np.isfinite(values)
     values = values[finite]
+    # drawn log-uniformly, as most wide ranges are
     wide = values.min() > 0 and values.max() > 10 * values.min()
     spaced = np.geomspace if wide else np.linspace
     edges = spaced(values.min(), values.max(), 25)
@@ -97,6 +99,7 @@ def draw_scores(baselines: Mapping[str, "Baseline"], chance: float, unseen: str)
     axes.hlines(rows, 0, 1, color=FAINT, linewidth=0.4, alpha=0.5)
     axes.vlines(chance, -0.6, len(rows) - 0.45, color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
     axes.text(chance, len(rows) - 0.4, "chance", color=INK, fontsize=8, va="bottom", ha="center")
+    # the score in the middle, other corpora below it, controls as hollow signs
     _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, BLUE, "o", f"unseen {unseen}")
     tests = zip(*(baseline.tests for baseline in scored), strict=True)
     for number, (test, (colour, marker)) in enumerate(zip(tests, cycle(TEST_MARKERS), strict=False), start=1):

@@ -22,7 +22,9 @@ def template(name: str, package: str = "raceway.reports") -> jinja2.Template:
 
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(read),
+        # texts of a corpus come from strangers
         autoescape=True,
+        # a misspelt variable is an error, not an empty place on a page
         undefined=jinja2.StrictUndefined,
         finalize=lambda value: visible(value) if isinstance(value, str) else value,
         trim_blocks=True,

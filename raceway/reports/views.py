@@ -140,6 +140,7 @@ def _cepstrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None
     """Real cepstrum over revolutions: a family of lines is a peak at one revolution over its order, and at its multiples."""
     own, others = fault_lines(shown.orders, shown.fault)
     fundamentals = {line.label for line in (SHAFT, *FUNDAMENTALS)}
+    # harmonics of a line share its peak, so fundamentals are enough
     own, others = (
         {name: 1 / order for name, order in lines.items() if name in fundamentals} for lines in (own, others)
     )
@@ -150,6 +151,7 @@ def _cepstrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None
     name_lines(
         axes, own, {name: place for name, place in others.items() if place < CEPSTRUM_TURNS}, colour, CEPSTRUM_TURNS
     )
+    # over the angle if the speed varies, so that peaks stay narrow
     for one, look in ((under, UNDER), (shown, OVER)):
         if one is not None:
             y, rate = (
