@@ -82,6 +82,7 @@ def draw_features() -> Figure:
         record["shaft_rate"].values,
     )
     orders = Orders(*(record[name].values.reshape(1) for name in Orders._fields))
+    # the second band, in which the spall of this record stands out
     whitened = bands_of(fourier_coefficients(x, fs, DEFAULT_BAND.high), x.size / fs, fs)[1]
     level, _, bins = levels_and_shape([whitened], x.size / fs, rate.reshape(1), np.array([HIGHEST_ORDER]))
     figure = Figure(figsize=(7, 4.6), layout="constrained", dpi=72)

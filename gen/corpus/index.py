@@ -70,7 +70,6 @@ def open_corpus(path: Path | str | xr.Dataset, check: Check = "sha256") -> xr.Da
     CorpusError
         If the corpus is unfinished, one of its files is missing, altered or outside its folder, or a variable is not in the format.
     """
-    # records in memory are treated as an opened corpus
     if not isinstance(path, Path | str):
         records = records_in_memory(path)
         for problem in operating_problems({name: records[name].values for name in ("sample_rate", "shaft_rate")}):

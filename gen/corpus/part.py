@@ -72,7 +72,6 @@ def write_part(dataset: "xr.Dataset", path: Path, codec: Codec = "zlib") -> Part
     """
     signal = dataset[SIGNAL].values
     signals = count_verdicts(judge(signal))
-    # compressed here, without the lock of the library, so that threads run in parallel
     chunks = {at: deflate(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
     with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
@@ -90,7 +89,6 @@ def write_part(dataset: "xr.Dataset", path: Path, codec: Codec = "zlib") -> Part
             with h5py.File(temporary, "r+") as file:
                 write_unicode(file, texts)
                 _write_chunks(chunks, file)
-        # the last line, behind all that HDF5 reads
         digest = append_checksum(temporary)
     return PartRow(path.name, len(signal), path.stat().st_size, digest, signals)
 
@@ -106,14 +104,12 @@ def _declare(
     values, dimensions, attributes = variable.values, tuple(map(str, variable.dims)), dict(variable.attrs)
     storage: dict[str, Any] = {"fill_value": attributes.pop("_FillValue", False)}
     if name == SIGNAL:
-        # one chunk for each record and channel: reading a signal reads nothing else
         storage |= {"chunksizes": (1, 1, values.shape[2]), **CODECS[codec].options}
         if values.dtype.kind == "f":
             storage["fill_value"] = np.nan
     elif name == "elapsed_time":
         storage |= CODECS["zlib"].options
     elif values.dtype.kind in "OU":
-        # text as characters of one length, which all readers know
         values = np.array([text.encode() for text in values], "S")
         values = values.view("S1").reshape(len(values), -1)
         dimensions += (f"{name}_length",)

@@ -108,6 +108,7 @@ class Draws(NamedTuple):
                 )
             return min(max(value, bounds["low"]), bounds["high"])
 
+        # shares are multiplied in SI units, since the quantity may have another unit
         drawn = dict(numbers)
         for key in shares:
             value = numbers[key]

@@ -27,10 +27,13 @@ def read_expression(text: Any, kinds: Mapping[str, Any]) -> Any:
         raise ValueError(f"has {len(text)} characters, at most {MOST_CHARACTERS} are allowed; shorten it.")
     try:
         with warnings.catch_warnings(action="error"):
+            # parsed, and never run: only calls of these kinds with numbers are read
             tree = ast.parse(text.strip(), mode="eval").body
         share: dict[str, Any] = {}
+        # a share: a distribution times the name of a quantity
         if isinstance(tree, ast.BinOp) and isinstance(tree.op, ast.Mult) and isinstance(tree.right, ast.Name):
             tree, share = tree.left, {"share_of": tree.right.id}
+        # a plain number
         if not isinstance(tree, ast.Call):
             return called(kinds["constant"], [+_value(tree)], share)
         kind, values = _value(tree.func), [_value(value) for value in tree.args]
@@ -40,6 +43,7 @@ def read_expression(text: Any, kinds: Mapping[str, Any]) -> Any:
             raise ValueError(f"{shown} ends too early; within braces a distribution needs quotes.") from None
         raise ValueError(f"{shown} is neither a number nor a distribution; {_EXAMPLES}") from None
     if kind not in kinds:
+        # help with a misspelt name
         near = difflib.get_close_matches(str(kind), kinds, 1)
         advice = f"did you mean {near[0]}?" if near else f"choose from {', '.join(kinds)}."
         raise ValueError(f"{reprlib.repr(kind)} is no distribution; {advice}")

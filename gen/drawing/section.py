@@ -88,17 +88,21 @@ class Section(BaseModel):
             value = values[key]
             if not is_distribution(value):
                 continue
+            # keys of this level, each from the stream of its own name
             if bounds.get("per", own) == of.level:
                 if "each" in bounds:
+                    # keys that are drawn for each item have as many values as there are items
                     count = self.stated_count() or 1 if count is None else count
                     drawn[key] = of.values(key, value, count)
                 else:
                     drawn[key] = of.value(key, value)
+                # the count itself is drawn ahead of what it counts
                 if key == self.counted:
                     count = round(drawn[key])
                     drawn[key] = float(count)
                 if value.share_of is not None:
                     shares[key] = value.share_of
+            # per=rig draws a common value here, about which the records scatter later
             elif value.per == of.level:
                 drawn[key] = value.about(of.value(key, value))
         if shares:
@@ -107,6 +111,7 @@ class Section(BaseModel):
         if sections and drawn:  # they can name the numbers of this one
             numbers = {name: value * split_unit(name)[1] for name, value in drawn.items() if isinstance(value, float)}
             known = {**known, **numbers}
+        # sections within this one, each under its own name
         for key, value in sections:
             inner = of.within(key, own, known)
             if isinstance(value, tuple):
@@ -134,6 +139,7 @@ class Section(BaseModel):
             if isinstance(value, Listed):
                 drawn[key] = value.values
             else:
+                # one number stands for every item
                 each = "each" in bounds_of(type(self))[key]
                 drawn[key] = (value.value,) * (1 if stated is None else stated) if each else value.value
         for key, value in self.below():

@@ -33,15 +33,18 @@ def part_dataset(
 ) -> xr.Dataset:
     """Records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
     hidden = recipe.truth.undetected == "healthy"
+    # labels of a fault that nobody can see are those of its record without it
     scenarios = [
         record.scenario if record.detectable or not hidden else record.scenario.without_fault() for record in records
     ]
     runs = [replace(record.run, scenario=one) for record, one in zip(records, scenarios, strict=True)]
+    # what only records of lives have
     lives = [life for one in scenarios if (life := one.origin.life) is not None]
     life_labels = LIFE if lives or recipe.life is not None else ()
     of_mechanisms = [
         mechanisms.label_values(one.recipe, record.chain_labels) for one, record in zip(scenarios, records, strict=True)
     ]
+    # each stage gives the labels of what it knows
     columns: dict[str, ArrayLike] = {
         DRAWS: scenario_texts([record.scenario for record in records]),
         "step_error": np.full(len(records), np.nan) if step_error is None else step_error,
@@ -55,6 +58,7 @@ def part_dataset(
         columns |= {label.name: label.column(rows) for label in labels}
     columns |= {label.name: [values[label.name] for values in of_mechanisms] for label in mechanisms.LABELS}
     per_unit, n_channels = counts_per_unit(recipe), len(recipe.recording.channels)
+    # filled row by row, so that memory holds each signal once
     signal: Any = np.empty((len(records), n_channels, recipe.n_samples), np.float32 if per_unit is None else np.int16)
     for row, record in zip(signal, records, strict=True):
         row[:] = record.signal

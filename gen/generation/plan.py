@@ -79,6 +79,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         If the recipe cannot be simulated, or none of its records can.
     """
     whole = read_recipe(recipe, seed=seed, records=records)
+    # parts of the corpus stand for the whole of a large one
     ranges = some_ranges(whole)
     drawn = [scenario for first, stop in ranges for scenario in draw_scenarios(whole, first, stop)]
     present = len(drawn) / sum(stop - first for first, stop in ranges)  # lives that have ended have no more records
@@ -86,11 +87,13 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     # by chance, since evenly spaced records might meet the same cell of every grid
     places = sorted(np.random.default_rng(0).permutation(len(drawn))[:MOST_CHECKED].tolist())
     found = list(steps_of([drawn[place] for place in places]))
+    # a record that cannot be simulated has a sentence in place of its steps
     steps = [one for one in found if isinstance(one, int)]
     failures = [one for one in found if isinstance(one, str)]
     if not steps:
         raise SimulationError(failures[0])
     recording = whole.recording
+    # counts of what was drawn become counts of the corpus
     of_drawn, of_checked = count / len(drawn), count / len(places)
     return Plan(
         recipe=whole.name,

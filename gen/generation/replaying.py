@@ -50,10 +50,13 @@ def replay(path: Path | str, record: int) -> Replayed:
         stored = row[SIGNAL].values[0]
         names = [str(name) for name in corpus["channel"].values]
         numbers = {name: row[name].values for name in NUMBERS if name in corpus}
+    # from the stored recipe alone, whatever corpus it lies in
     again = labelled(scenario.recipe, made_from([scenario]))
     (signal,) = decoded([again])[SIGNAL].values
+    # a copy may have other channels, in another order and under other names
     places = [_place(channel, name, signal, scenario) for channel, name in zip(stored, names, strict=True)]
     dataset = again.isel(channel=places).assign_coords(channel=again["channel"][places].copy(data=names))
+    # a copy has numbers of its own
     dataset = dataset.assign({name: again[name].copy(data=values) for name, values in numbers.items()})
     return Replayed(dataset, np.array_equal(signal[places], stored))
 

@@ -57,9 +57,11 @@ def prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe) ->
             if not facts["publication"].stored:
                 facts = facts | {"publication": manifest.publication}
             finished = manifest.complete
+        # nothing of a user is overwritten
         elif any(folder.iterdir()):
             raise CorpusError(f"{folder}: is not empty and holds no corpus; choose another folder.")
         if not finished:
+            # from now on the folder says of what corpus its parts are
             write_manifest(folder, facts_of_parts([], facts, complete=False))
             write_durably(text, folder / RECIPE_NAME)
             remove_other_parts(folder, recipe)
@@ -101,6 +103,7 @@ def check_same(place: Path, manifest: Manifest, facts: dict[str, Any]) -> None:
         )
     if manifest.recipe_sha256 != facts["recipe_sha256"]:
         raise CorpusError(f"{place}: holds a corpus of another recipe or seed; choose another name.")
+    # other libraries can round otherwise
     began = manifest.versions | {"sources": (manifest.sources_sha256 or "unknown")[:12]}
     now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
     other = [name for name in now if began.get(name) != now[name]]

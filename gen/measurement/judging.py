@@ -68,6 +68,7 @@ def _judge_of_lines(parts: Parts, spectra: ComplexArray) -> Judge:
     ``spectra`` are those of the ``signals``, shape (part, channel, frequency).
     """
     n = parts.signals.shape[2]
+    # lines stand at orders: bins are counted in turns of the shaft
     turns = (parts.angles[-1] - parts.angles[0]) / (2 * math.pi) * n / (n - 1)
     searched = [
         (band, part, first, stop)
@@ -77,14 +78,17 @@ def _judge_of_lines(parts: Parts, spectra: ComplexArray) -> Judge:
         if first < stop <= (band[1] - band[0]) // 2 + 1  # lines of the squared envelope of the band, that at 0 included
     ]
     n_lines = parts.signals.shape[1] * sum(stop - first for *_, first, stop in searched)
+    # one bound for all lines, bands and channels of the search
     margin = math.sqrt(2 * math.log(max(n_lines, 1) / FALSE_ALARM))
     lines_of = functools.cache(lambda band: _lines(parts, spectra[..., slice(*band)], band))
 
     def sees(gains: Gains) -> bool:
         seen: set[int] = set()
         for band, part, *window in searched:
+            # a part that was seen in one band needs no other
             if part not in seen and _stands_out(*lines_of(band), *window, *gains, margin):
                 seen.add(part)
+        # every damaged part must be seen
         return len(seen) == len(parts.orders)
 
     return sees
@@ -154,6 +158,7 @@ def _stands_out(
     for channel in range(lines.shape[1]):
         highest = highest_of_twin = 0.0
         for line in range(around[0], around[1]):
+            # lines of bearing and background add with the gains, without a new transform
             noise = n * n * lines[4, channel, line]
             healthy = abs(b * (b * lines[1, channel, line] + n * lines[3, channel, line]) + noise)
             twin[line - around[0]] = healthy

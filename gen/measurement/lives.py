@@ -26,6 +26,7 @@ def with_ends(runs: Sequence[Run], records: Sequence[Measured | str], end: LifeE
     for place, run in enumerate(runs):
         lives[run.scenario.origin.specimen].append(place)
     ended = [*records]
+    # limits of the test end a life at the first snapshot beyond them
     for places in lives.values():
         whole = [(place, record) for place in places if not isinstance(record := records[place], str)]
         last = next((place for place, record in whole if limited and _is_beyond(record, end)), None)
@@ -34,11 +35,13 @@ def with_ends(runs: Sequence[Run], records: Sequence[Measured | str], end: LifeE
             life = _life(record).model_copy(update={"first_detectable_time": seen})
             if last is not None:
                 life = _ended_at(life, _life(records[last]))
+            # such a test may have ended before any limit was reached: the remaining life is not known
             elif limited and not life.event:
                 life = life.model_copy(update={"rul": None, "rul_revolutions": None})
             origin = record.scenario.origin.model_copy(update={"life": life})
             ended[place] = record._replace(scenario=record.scenario.edited(origin=origin))
         if last is not None:
+            # the machine stands still after its end
             ended = ["" if place in places and place > last else record for place, record in enumerate(ended)]
     return ended
 

@@ -147,8 +147,10 @@ def _measured(run: Run, parts: Parts, sees: Judge, level: Any, level_try: int, g
     changes = {"origin": run.scenario.origin.model_copy(update={"level_try": level_try})} if level_try else {}
     scenario = run.scenario.edited(level=level, **changes)
     recording = scenario.recipe.recording
+    # bearing over background, at the gains that the level asks for
     signal: Any = np.float32(bearing) * parts.signals[1:].sum(axis=0)
     signal += np.float32(background) * parts.signals[0]
+    # faults of the measuring chain come ahead of the converter, whose range they use up
     signal, labels = disturb(signal, scenario.recipe.sensor_faults, recording.sample_rate_hz, scenario.stream)
     signal += np.float32(recording.si()["offset"])
     clipped, rounding = 0, 0.0
@@ -159,6 +161,7 @@ def _measured(run: Run, parts: Parts, sees: Judge, level: Any, level_try: int, g
     snr = bearing_over_background(parts.products, gains, rounding) if signal.any() else math.nan
     record = Measured(run, scenario, signal, labels, clipped, snr)
     if run.twin is not None:
+        # from the products of the parts, so that no signal is made without the fault
         level_of_fault, share = fault_over_rest(parts.products, gains, rounding)
         return record._replace(fault_snr=level_of_fault, fault_share=share, detectable=int(sees(gains)))
     return record._replace(fault_share=0.0, detectable=0) if scenario.fault == "healthy" else record

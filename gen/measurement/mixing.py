@@ -81,8 +81,10 @@ def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: 
     machine, sums = np.empty(BLOCK, np.float32), np.zeros((6, BLOCK), np.float32)
     n_orders = lines.amplitudes.shape[1] - len(lines.steps)
     tables = np.empty((len(lines.steps), BLOCK), np.complex64)
+    # each tone has a table of its turn over a block, so that no sample needs a sine
     for tone, step in enumerate(lines.steps):
         _advance(step, tables[tone])
+    # block by block, so that all of it stays in the cache of the processor
     for start in range(kept.start, kept.stop, BLOCK):
         stop = min(start + BLOCK, kept.stop)
         _turn_block(angles[start:stop], turn)
@@ -97,6 +99,7 @@ def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: 
                 _modulate(lines.modulations[1 + channel if part > 0 else 0], turn, signals[part, channel, start:stop])
             for j in range(stop - start):
                 signals[0, channel, start + j] += machine[j] + others[channel, start + j]
+            # mean products of the parts: from them every gain gives its power
             row = 0
             for one in range(len(signals)):
                 for other in range(one + 1):

@@ -32,6 +32,7 @@ def parts_of(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[Parts]:
     """Bearings behind their paths, modulated by the shaft, and the backgrounds of their machines."""
     axis, n, bearings = timeline(runs[0].scenario.recipe), rigs[0].n, _behind_paths(runs, rigs)
     angles, lines, noises, others = [angles_of(run.motion) for run in runs], [], [], []
+    # everything random of the background comes from one stream of the record
     for run, rig, turned in zip(runs, rigs, angles, strict=True):
         scenario, rng = run.scenario, run.scenario.stream("noise")
         lines.append(_lines(scenario, rig, rng))
@@ -44,6 +45,7 @@ def parts_of(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[Parts]:
     for place, (run, rig, turned) in enumerate(zip(runs, rigs, angles, strict=True)):
         signals = np.concatenate([noises[place][None, :, : axis.returned], bearings[place][..., : axis.returned]])
         products = tuple(mix(signals, others[place], turned, lines[place], axis.kept).tolist())
+        # only a record with a twin is judged by its lines
         orders, steady = lines_of_faults(run) if run.twin else (), run.scenario.speed_profile is None
         parts.append(Parts(signals[..., axis.kept], products, rig.impulse_lines, orders, turned[axis.kept], steady))
     return parts

@@ -86,15 +86,18 @@ def rig_filters(scenario: Scenario) -> RigFilters:
     """Transfer paths and background of the rig of a record. Everything that is locked to the shaft has a phase that belongs to the rig."""
     recipe, axis, phases = scenario.recipe, timeline(scenario.recipe), functools.partial(scenario.stream, level="rig")
     background, channels, fs = recipe.background, recipe.recording.channels, axis.fs
+    # a length that is fast to transform
     n = next_fast_len(axis.returned, real=True)
     frequency = np.arange(n // 2 + 1) * (fs / n)
     own = [channel.path or recipe.path for channel in channels]
     corner = recipe.recording.si()["high_pass"]
     sensor = high_pass(corner, frequency)
     chain = sensor * pass_band(frequency * (2 / fs))
+    # each channel has a path, of its own or common to all
     paths = np.stack([path.si()["direct"] + transmissibility(path.modes, frequency) for path in own])
     impulse_paths, of_impulses = paths * chain, 0.0
     if background.impulses or background.knocks:
+        # an impulse keeps its height, whatever the resonances of the path
         impulse_paths /= np.abs(irfft(impulse_paths, n)).max(axis=1, keepdims=True)
     if background.impulses is not None:
         # An impulse of strength ``a`` raises all lines by ``a^2`` times its energy; the mean of ``a^4`` is 3 for a normal distribution.

@@ -72,6 +72,7 @@ def _faults(recipe: Sections) -> Iterator[str]:
         return
     if faulty == 0:
         yield "corpus.rungs: no entry of faults with a weight above 0 has a severity; add a fault, or leave rungs out."
+    # rung 0 makes one of so many records healthy, whatever the weights say
     at_least = faulty / (len(rungs) - 1)
     if recipe.corpus.fault_choice == "by_weight" and rungs[0] == 0 and healthy < at_least * (1 - 1e-9):
         yield (
@@ -82,6 +83,7 @@ def _faults(recipe: Sections) -> Iterator[str]:
 
 def _corpus(recipe: Sections) -> Iterator[str]:
     corpus = recipe.corpus
+    # the recipe of one record has one of everything
     if recipe.origin is not None:
         if (recipe.n_records, len(recipe.faults), recipe.life) != (1, 1, None):
             yield (
@@ -148,6 +150,7 @@ def _operation(recipe: Sections) -> Iterator[str]:
         if reach[place]["axial_load_n"][1] > 0 and angles == {0.0}:
             yield f"{place}.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."
         yield from load_problems(recipe.bearing, operation, reach, place)
+        # a key without an effect is a misunderstanding
         given = "temperature_celsius" in operation.model_fields_set and recipe.origin is None
         if given and recipe.contact.lubricant is None:
             yield f"{place}.temperature_celsius: has no effect without oil; give contact.lubricant, or leave it out."

@@ -25,6 +25,7 @@ def _call_of(kind: str) -> Callable[..., Fault]:
         except ValidationError as error:
             raise RecipeError("\n".join(f"{kind} fault: {sentence}" for sentence in sentences(error, model))) from None
 
+    # help(gen.outer) then has the keys of its section
     call.__name__ = call.__qualname__ = kind
     call.__doc__ = f"""{model.__doc__}
 

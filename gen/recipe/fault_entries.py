@@ -36,6 +36,7 @@ def fault_entries(value: Any) -> Any:
         return entries
     taken: set[str] = set()
     filled = [_fill(dict(entry), defaults, taken) for entry in entries]
+    # a default that no entry takes is misspelt
     unknown = next((key for key in defaults if key not in taken), None)
     if unknown is not None:
         known = {key for entry in entries for key in _keys(entry)}

@@ -126,6 +126,7 @@ def _plain(annotation: Any, metadata: Iterable[Any]) -> str:
     if get_origin(annotation) is Annotated:
         inner, *more = arguments
         return _plain(inner, [*metadata, *(entry for part in more for entry in getattr(part, "metadata", [part]))])
+    # limits stand in the annotations of pydantic
     limits = {name: getattr(entry, name) for entry in metadata for name in _LIMITS if hasattr(entry, name)}
     if get_origin(annotation) is tuple:
         return f"list of {_plain(arguments[0], [])}" + _sizes(limits, "entries")

@@ -53,6 +53,7 @@ def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | N
         raise RecipeError("faults: is given twice, also as fault; give it once.")
     given: dict[str, Any] = plain(keys)  # a copy
     data: dict[str, Any] = {}
+    # whole sections first, then single keys into the sections that have them
     for name in [name for name in given if name in Recipe.model_fields]:
         data[name] = given.pop(name)
     for name, value in given.items():
@@ -62,12 +63,14 @@ def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | N
     if isinstance(faults, list):
         faults = [{"kind": one} if isinstance(one, str) else one for one in faults]
     data.setdefault("faults", faults)
+    # records in memory have defaults of their own where a recipe has none
     for name, value in DEFAULTS.items():
         section = data.setdefault(name, value)
         if isinstance(section, dict) and isinstance(value, dict):
             data[name] = value | section
     corpus = data.setdefault("corpus", {})
     if isinstance(corpus, dict) and isinstance(data["faults"], list):
+        # in turn, so that each fault has as many records
         corpus.setdefault("fault_choice", "in_turn")
         _count(corpus, max(len(data["faults"]), 1), n)
     data.setdefault("title", _title(data))
@@ -144,6 +147,7 @@ def _count(corpus: dict[str, Any], n_faults: int, n: int | None) -> None:
             corpus.setdefault(name, 1)
         return
     of_a_specimen = corpus["records_per_specimen"] * len(rungs or [1])
+    # both counts are given, and nothing is left to complete
     if n is None and {"rigs", "specimens_per_rig"} <= corpus.keys():
         return
     n = of_a_specimen if n is None else n
@@ -154,6 +158,7 @@ def _count(corpus: dict[str, Any], n_faults: int, n: int | None) -> None:
         raise RecipeError(
             f"n: {n} records of each fault are no whole number of specimens of {of_a_specimen} records; use a multiple of {of_a_specimen}."
         )
+    # the count that is left out follows from the other one
     for one, other in (("rigs", "specimens_per_rig"), ("specimens_per_rig", "rigs")):
         if one in corpus and specimens % corpus[one]:
             raise RecipeError(

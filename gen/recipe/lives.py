@@ -34,6 +34,7 @@ def life_problems(recipe: Sections) -> Iterator[str]:
 def _other_keys(recipe: Sections, life: LifeSection) -> Iterator[str]:
     corpus, size, converter = recipe.corpus, recipe.corpus.records_per_specimen, recipe.recording.converter
     reach = ranges(recipe)
+    # a life grows one spall
     for number, fault in enumerate(recipe.faults):
         if not isinstance(fault, Spalls):
             yield f"faults[{number}].kind: {fault.kind} has no life; with life, use inner, outer and ball."
@@ -44,6 +45,7 @@ def _other_keys(recipe: Sections, life: LifeSection) -> Iterator[str]:
             yield f"faults[{number}].profile: a trace would stretch as its spall grows; use another profile."
         if reach[f"faults[{number}]"]["width_mm"][0] >= life.end.length_mm:
             yield f"faults[{number}].width_mm: a spall begins longer than life.end.length_mm; begin with 0.25 or so."
+    # keys whose meaning a life takes over, or that would never act
     for wrong, place, advice in (
         (corpus.rungs is not None, "corpus.rungs", "severities come from the growth; leave rungs out"),
         (recipe.level.kind != "physical", "level.kind", "a drawn level would hide the growth; use kind: physical"),
@@ -79,6 +81,7 @@ def _loads(recipe: Sections, life: LifeSection) -> Iterator[str]:
             yield f"{place}.axial_load_n: lives are known under radial loads alone; leave it out."
         for name in unrated:
             yield f"bearing: {name} has no dynamic rating, which a life needs; docs/catalogue.md lists bearings that have one."
+        # which bearing it is shows when it is drawn
         if operation.load_n.share_of == STATIC_RATING:
             continue  # known when it is drawn
         (lightest, heaviest), (slowest, fastest) = (reach[place][key] for key in ("load_n", "shaft_rpm"))
@@ -88,6 +91,7 @@ def _loads(recipe: Sections, life: LifeSection) -> Iterator[str]:
                 f"{place}.load_n: reaches {weakest:.3g} times the dynamic rating of the bearing; lower it, or say life.accelerated: true "
                 f"for an overload test."
             )
+        # half of the lives under the lightest load have ended by then
         latest = (
             max(_median(life, lightest / rating, element) for rating, element in rated) / to_si(slowest, "rpm") / _HOUR
         )
@@ -98,6 +102,7 @@ def _loads(recipe: Sections, life: LifeSection) -> Iterator[str]:
         )
         if life.cadence_h > latest:
             yield f"life.cadence_h: {life.cadence_h:g} h is longer than half of the lives, {latest:.3g} h; use a hundredth of it or so."
+        # snapshots that end before any spall begins would all be healthy
         watched = min(life.withdrawal_h.support()[1], _horizon(recipe, life))
         if watched < earliest:
             yield (

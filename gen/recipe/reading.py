@@ -45,6 +45,7 @@ def read_recipe(
     if isinstance(recipe, str | Path):
         where: Path | str = find_recipe(recipe)
         data = read_yaml(where, RecipeError)
+    # a Dataset of records has its recipe in an attribute
     elif (attributes := getattr(recipe, "attrs", None)) is not None:
         where = f"{RECIPE_TEXT} of the Dataset"
         if RECIPE_TEXT not in attributes:
@@ -59,6 +60,7 @@ def read_recipe(
     try:
         return Recipe(data, **overrides)
     except RecipeError as error:
+        # each sentence names the file
         raise RecipeError("\n".join(f"{where}: {sentence}" for sentence in str(error).split("\n"))) from None
 
 

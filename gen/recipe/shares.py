@@ -46,6 +46,7 @@ def ranges(recipe: Sections) -> dict[str, dict[str, Support]]:
 
 def share_problems(recipe: Sections) -> Iterator[str]:
     """Sentences about shares that cannot be; those after the first may be wrong."""
+    # where there are shares at all
     for place, section in sections_with_places(recipe):
         kind = re.sub(r"\[\d+\]", "", place)
         for key, quantity in quantities(section).items():
@@ -55,6 +56,7 @@ def share_problems(recipe: Sections) -> Iterator[str]:
                 yield (
                     f"{place}.{key}: the level of a draw can be chosen for quantities of operation alone; leave per out."
                 )
+    # what they name, and the range that follows
     for place, section, above in _scopes(recipe):
         own = quantities(section)
         for key, quantity in own.items():
@@ -76,6 +78,7 @@ def _scopes(recipe: Sections) -> Iterator[tuple[str, Section, Ranges]]:
     yield "bearing", recipe.bearing, {}
     if recipe.contact.lubricant is not None:
         yield "contact.lubricant", recipe.contact.lubricant, {}
+    # quantities without a range of numbers, such as the free angle, are known when they are drawn
     rig = {**machine, **_bearing_ranges(recipe)}
     yield "specimen", recipe.specimen, {**rig, FREE_ANGLE: None}
     built = {**rig, **_ranges(recipe.specimen, {**rig, FREE_ANGLE: None})}
@@ -110,6 +113,7 @@ def _ranges(section: Section, above: Ranges) -> dict[str, Support | None]:
         whole, factor = ends_of(named), split_unit(named)[1] / split_unit(key)[1]
         if whole is None:
             return None
+        # a factor may be negative, so all products of ends are tried
         ends = [part * end * factor for part in share for end in whole]
         return min(ends), max(ends)
 
@@ -134,6 +138,7 @@ def _name_problems(recipe: Sections, section: Section, above: Ranges, key: str) 
             yield f"{named} is not known here; {advice}."
         else:
             yield f"there is no quantity {named!r}; " + (f"did you mean {near[0]}?" if near else f"{advice}.")
+    # a share of a share of itself would never end
     chain = [key]
     while (named := _DEPENDS_ON.get(share := own[chain[-1]].share_of, share)) in own and named not in chain[1:]:
         if named == key:

@@ -65,10 +65,12 @@ def draw_scenarios(
             f"{recipe.name}: has no records {first} to {numbers.stop if stop is None else stop} (exclusive); it has "
             f"{recipe.n_records}, numbered from 0."
         )
+    # a recipe of one record has nothing left to draw
     if recipe.origin is not None:
         return [scenario_of(recipe)]
     first_specimen, last_specimen = recipe.specimen_of(numbers[0]), recipe.specimen_of(numbers[-1])
     first_rig, last_rig = recipe.rig_of(first_specimen), recipe.rig_of(last_specimen)
+    # machines, then bearings, then records: each level draws with what is known of those above it
     rigs = {
         number: _draw_rig(recipe, _draws(recipe, "rig", number, number, point))
         for number, point in points_of(recipe, "rig", first_rig, last_rig + 1).items()
@@ -90,6 +92,7 @@ def _draws(recipe: Recipe, level: Any, of: int, item: int, point: NDArray[np.flo
 
 def _draw_rig(recipe: Recipe, draws: Draws) -> tuple[Recipe, Draws]:
     """Recipe of a rig with one record, whose fault is not drawn again, and what its specimens are drawn with."""
+    # the recipe of one record has the fault that was drawn last
     undetected = "keep" if recipe.truth.undetected == "redraw" else recipe.truth.undetected
     truth = TruthSection.model_validate({"twins": recipe.truth.twins, "undetected": undetected})
     drawn: dict[str, Any] = {"corpus": _ONE, "truth": truth, **_OF_FILES}
@@ -102,6 +105,7 @@ def _draw_rig(recipe: Recipe, draws: Draws) -> tuple[Recipe, Draws]:
     drawn["machine"] = machine.model_copy(update={"balance_rpm": machine.balance_rpm or _highest_speed(recipe)})
     if (oil := drawn["contact"].lubricant) is not None:
         oil.check(f"rig {draws.of}")
+    # quantities of which those of lower levels can be shares
     dimensions = {"pitch_diameter_mm": bearing.pitch_diameter, "ball_diameter_mm": bearing.ball_diameter}
     known = {**_known(recipe.machine, machine), **dimensions}
     return recipe.model_copy(update=drawn), draws._replace(point=[], known=known, bearing=bearing)
@@ -160,11 +164,13 @@ def _draw_specimen(recipe: Recipe, rig: Recipe, of_rig: Draws, draws: Draws, fau
     drawn: dict[str, Any] = {"specimen": section}
     # of one combination of grids for all specimens of a rig
     of_rig = of_rig._replace(grids=replace(of_rig.grids))
+    # keys with per=rig, then those with per=specimen; the rest is drawn for each record
     for key, given in (("operation", recipe.operation_of(entry)), ("level", recipe.level_of(entry))):
         drawn[key] = given.draw(of_rig.within(key, "rig")).draw(draws.within(key, "specimen"))
     fault = recipe.faults[entry].draw(built._replace(point=[], attempt=fault_try).within("faults", "specimen"))
     for part in fault.components:
         part.check(built.bearing, f"specimen {draws.of}")
+    # conditions of the fault are those of the record by now
     fault = fault.model_copy(update={"weight": 1.0, "operation": None, "level": None})
     drawn["faults"] = (fault,)
     drawn["origin"] = OriginSection.model_construct(
@@ -177,12 +183,15 @@ def _draw_specimen(recipe: Recipe, rig: Recipe, of_rig: Draws, draws: Draws, fau
         fault_try=fault_try,
     )
     specimen, known = rig.model_copy(update=drawn), dict(built.known)
+    # loads can be shares of what the bearing carries
     known[STATIC_RATING] = lambda _: static_rating(of_rig.bearing)
     known[LEAST_AXIAL_LOAD] = lambda value: least_axial_load(value("load_n"), built.bearing.contact_angle)
     rungs = (1.0,) if recipe.corpus.rungs is None or not fault.components else recipe.corpus.rungs
+    # the same fault at every severity of the ladder
     faults = tuple(fault if share == 1 else sound() if share == 0 else fault.at_severity(share) for share in rungs)
     if recipe.life is None:
         return specimen, known, faults, None
+    # a life follows from the middle of its conditions, which then vary about it
     middle = _draws(recipe, "record", 0, 0, np.full(64, 0.5))._replace(known=known)
     conditions = drawn["operation"].draw(middle.within("operation", "record")).si()
     return specimen, known, faults, draw_life(recipe, specimen, built.bearing, conditions)
@@ -216,6 +225,7 @@ def _draw_records(recipe: Recipe, specimens: Mapping[int, Specimen], numbers: ra
     faulty specimen has one point for a group. A healthy one has one for each record: those after the first of a group come after the
     points of all groups, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
     """
+    # records of a group share the draws of their first one
     rungs, points = recipe.corpus.n_rungs, dict[int, NDArray[np.float64]]()
     first, last = numbers[0] // rungs * rungs, numbers[-1] // rungs * rungs
     for place in range(rungs):
@@ -225,6 +235,7 @@ def _draw_records(recipe: Recipe, specimens: Mapping[int, Specimen], numbers: ra
         group, place = divmod(number, rungs)
         first, placed = number, {}
         if len(faults) > 1:
+            # the step that the narrowest spall needs is that of the whole group
             widths = [w for fault in faults for part in fault.components for w in getattr(part, "width_mm", ())]
             first, placed = number - place, {"pair": group, "rung": place, "narrowest_mm": min(widths, default=None)}
         item, origin = recipe.item_of(first), specimen.origin
@@ -236,6 +247,7 @@ def _draw_records(recipe: Recipe, specimens: Mapping[int, Specimen], numbers: ra
         drawn["faults"] = (faults[place if placed else 0],)
         drawn["origin"] = origin.model_copy(update={"record": number, **placed})
         scenario = Scenario(specimen.model_copy(update=drawn))
+        # records of a life are its snapshots, as long as it lasts
         if life is None:
             yield scenario
         elif (snapshot := number - recipe.records_of(origin.specimen).start) < len(life):

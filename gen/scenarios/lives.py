@@ -40,15 +40,18 @@ def draw_life(recipe: Recipe, specimen: Any, bearing: Bearing, conditions: Mappi
     first_length, *rngs = (stream(recipe.seed, "specimen", number, f"life.{name}") for name in _HISTORIES)
     draws = Draws(recipe.seed, "specimen", number, Combination(number), [])
     drawn, element = section.draw(draws.within("life", "specimen")).si(), bearing.rolling_element
+    # above its whole rating a bearing is in an overload test
     ratio = conditions["load"] / (bearing.dynamic_rating or 1.0)
     if ratio > 1 and not section.accelerated:
         raise RecipeError(
             f"specimen {number}: its load is {ratio:.3g} times the dynamic rating; lower operation.load_n, or say life.accelerated: true."
         )
+    # histories are long enough for all snapshots that the recipe asks for
     step = drawn["history"] / STEPS
     count = 2 + int((drawn["entry"] + slots * to_si(section.cadence_h, "h")) / step)
     load, speed, warmer, noise = (history(rng, count) for rng in rngs)
     load, speed = log_normal(load, drawn["load_history"]), log_normal(speed, drawn["speed_history"])
+    # fatigue and growth as functions of the age
     law = Growth(*(drawn[name] for name in ("growth", "growth_exponent", "critical", "acceleration")))
     sums = ageing(
         step,
@@ -61,8 +64,10 @@ def draw_life(recipe: Recipe, specimen: Any, bearing: Bearing, conditions: Mappi
     )
     (fault,) = specimen.faults
     (width,) = fault.si()["width"]
+    # the spall begins at a scattered length, and ends where the recipe or the race does
     first = float(width) * math.exp(drawn["first_length_scatter"] * first_length.standard_normal())
     last = min(to_si(section.end.length_mm, "mm"), widest_spall(fault.part, bearing))
+    # a bearing that failed before the watch began is not in the corpus
     for attempt in range(_TRIES):
         life = Life(sums, law, life_share(draws.u(f"life.share.{attempt}"), element), min(first, last))
         failure = life.age_at(last)
@@ -70,14 +75,17 @@ def draw_life(recipe: Recipe, specimen: Any, bearing: Bearing, conditions: Mappi
             break
     else:
         raise RecipeError(f"specimen {number}: hardly any bearing lives until life.entry_h; lower it, or the load.")
+    # snapshots up to the failure or the withdrawal
     ages = _snapshot_ages(section, drawn["entry"], slots, life.age_at(to_si(section.damaged_from_mm, "mm")))
     end = min(ages[-1], max(drawn["withdrawal"], drawn["entry"]))
     ages = ages[:-1][ages[:-1] <= min(failure, end)]
+    # conditions at each snapshot, from the slow histories
     load, speed, warmer = (
         np.interp(ages, sums.age, each) for each in (load, speed, drawn["temperature_history"] * warmer)
     )
     snapshots, all_turns = list[Aged](), float(sums.at("turns", failure))
     for age, of_load, of_speed, rise in zip(*(each.tolist() for each in (ages, load, speed, warmer)), strict=True):
+        # the damage at this age, frozen for the length of the record
         turns, length = float(sums.at("turns", age)), float(life.length_at(age))
         grown = _grown(fault, length, drawn["full_depth"])
         (length,), (depth,) = (grown.si()[name].tolist() for name in ("width", "depth"))  # to the last bit
@@ -93,6 +101,7 @@ def draw_life(recipe: Recipe, specimen: Any, bearing: Bearing, conditions: Mappi
             overloaded=int(ratio * of_load > HIGHEST_RATIO),
         )
         clearance, waviness = (drawn[name] * (turns * ratio) for name in ("clearance", "waviness"))
+        # wear opens the clearance and roughens the races with the turns under load
         worn = _plus(specimen.specimen, diametral_clearance_um=clearance, waviness_nm=waviness)
         sections = {"faults": (grown if length else sound(),), "specimen": worn}
         snapshots.append((sections, snapshot, of_load, of_speed, rise))

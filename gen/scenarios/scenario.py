@@ -181,6 +181,7 @@ def scenario_of(recipe: Recipe) -> Scenario:
         )
     drawn = recipe.as_drawn()
     if drawn.machine.balance_rpm is None:
+        # a hand-written recipe may leave it out: then its own speed is the highest
         rpm = {"balance_rpm": drawn.operation.shaft_rpm}
         drawn = drawn.model_copy(update={"machine": drawn.machine.model_copy(update=rpm)})
     scenario = Scenario(drawn)

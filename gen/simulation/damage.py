@@ -40,11 +40,13 @@ def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[Spall, ...]:
     inputs = list[Spall]()
     for number, spall in enumerate(spalls):
         changed = dict[str, Any](seed=seeds[number])
+        # smooth paths of a rigid ball have a formula, all others a table
         if has_width or spall.profile == "trace" or spall.roughness > 0:
             paths, widths = spall_paths(scenario, number), (0.0,)
             if has_width:
                 widths = _met(spall.site, *footprints(scenario.bearing, ball_load))
                 margins = zip(paths, widths, strict=True)
+                # the pressure of a contact of some width averages the path
                 paths = [contact_mean(path, spall.width, width, max(widths)) for path, width in margins]
             changed |= {"profile": "table", "width": spall.width + 2 * max(widths), "table": tuple(map(tuple, paths))}
         inputs.append(spall._replace(**changed))
@@ -113,7 +115,9 @@ def waviness_of(scenario: Scenario) -> Waviness:
     if not (rms or of_balls or worn):
         return ROUND
     place, profile = (scenario.recipe.seed, scenario.origin.specimen), scenario.speed_profile
+    # the races are those of the specimen; only the fast waves depend on the speed of the record
     whole, passages = _waves(place, scenario.bearing, rms, of_balls, worn)
+    # the fastest moment of a profile decides
     highest_rate = scenario.conditions["shaft_rate"] * (1.0 if profile is None else max(profile.shares))
     highest_order = FASTEST_WAVE * scenario.recipe.recording.sample_rate_hz / highest_rate
     return Waviness(

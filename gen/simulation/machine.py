@@ -48,9 +48,11 @@ def machine_of(scenario: Scenario) -> Machine:
     drawn, bearing, load = scenario.machine, scenario.bearing, scenario.conditions["load"]
     resonator = None if scenario.recipe.machine.resonator is None else scenario.recipe.machine.resonator.si()
     mass = drawn["shaft_mass"] + drawn["housing_mass"]
+    # the recipe gives frequencies, the equations take springs
     stiffness_x = mass * (2 * math.pi * drawn["support_frequency"]) ** 2
     stiffness_y = stiffness_x * drawn["support_ratio"]
     spring = damper = 0.0
+    # without a resonance of the sensor its body is absent
     if resonator is not None:
         spring, damper = sensor_springs(resonator["mass"], resonator["frequency"], resonator["damping"])
     factor, damping, half_clearance = _contact(scenario)
@@ -112,11 +114,13 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
     """Load-deflection factor [N m^-n], damping [N s/m] and half the clearance [m] of one ball, with thermal expansion and oil film."""
     bearing, conditions, lubricant = scenario.bearing, scenario.conditions, scenario.recipe.contact.lubricant
     factor, clearance = stiffness_of(bearing), scenario.properties["diametral_clearance"]
+    # the inner ring grows more than the outer one
     clearance = warm_clearance(bearing, clearance, conditions["inner_ring_hotter"])
     if lubricant is None:
         return factor, 0.0, clearance / 2
     heaviest, oil = heaviest_ball_load(scenario), lubricant.si()
     lubricant = Lubricant(oil["viscosity_40"], oil["viscosity_100"], oil["density"], oil["pressure_viscosity"])
+    # the film of the most loaded ball, in series with the contact
     made = film(bearing, lubricant, conditions["temperature"], conditions["shaft_rate"], heaviest)
     if made.thickness > THICKEST_FILM:
         raise ValueError(

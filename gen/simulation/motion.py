@@ -60,6 +60,7 @@ def turning_of(scenario: Scenario, shaft_angle: float, cage_angle: float, spin_a
     """Rotation of a record from its angles at the start [rad]."""
     drawn, conditions, walk = scenario.machine, scenario.conditions, scenario.recipe.operation.slip_walk
     of_fault = {name: value for part in scenario.components for name, value in part.turning().items()}
+    # a random process has a stream of its own, and only if the record has it
     seeds = {
         seed: int(scenario.stream(name).integers(2**52))
         for seed, name, needed in (
@@ -165,6 +166,7 @@ def _means(motion: Motion, axis: Timeline) -> tuple[float, FaultOrders]:
     terms = slice(TILT_FIRST)  # speed, slip and spin
     settle, turn, phase = axis.settle / axis.fs, 2 * np.pi * motion.frequencies[terms], motion.phases[terms]
     if profile is None:
+        # at constant speed the mean of a cosine is known exactly
         means = (np.sin(turn * (settle + duration) + phase) - np.sin(turn * settle + phase)) / (turn * duration)
     else:  # weighted by the shaft rate, with 20 points per turn: ten to a cycle of the fastest process
         points = int(np.clip(20 * turning.shaft_rate * duration, 2**12, 2**17))
@@ -180,6 +182,7 @@ def _means(motion: Motion, axis: Timeline) -> tuple[float, FaultOrders]:
     slip = turning.mean_slip + turning.slip_rms * mean(SLIP_FIRST, SLIP_TERMS)
     if turning.walk > 0:
         walk, middles = _walk(bearing, turning, axis), (np.arange(axis.record) + 0.5) / axis.fs
+        # the walk of the slip has been drawn already: its mean is taken
         slip += float(walk.mean() if profile is None else np.average(walk, weights=share_at(profile, middles)))
     orders = slipping_orders(bearing, slip)
     wander = turning.spin_rms * mean(SPIN_FIRST, SPIN_TERMS)

@@ -76,6 +76,7 @@ def angles_of(motion: Motion) -> FloatArray:
     rates, phases = 2 * np.pi * motion.frequencies[:SPEED_TERMS], motion.phases[:SPEED_TERMS]
     size = math.sqrt(2 / SPEED_TERMS)
     if profile is None:
+        # the integral of a cosine sum is known at every node; between nodes it is interpolated
         nodes = np.arange(axis.dropped, axis.dropped + axis.returned + STRIDE, STRIDE) / axis.fs
         integral = 0.0
         if wander > 0:
@@ -84,6 +85,7 @@ def angles_of(motion: Motion) -> FloatArray:
         angles = _between(omega * (nodes + integral))[: axis.returned]
         angles += start
         return angles
+    # with a profile the speed is summed from sample to sample
     middles = (np.arange(axis.dropped + axis.returned - 1) + 0.5) / axis.fs
     speed = share_at(profile, middles - axis.settle / axis.fs)
     if wander > 0:

@@ -93,6 +93,7 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] = {}) -> list[Ru
         If a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if recordings differ.
     """
     twins, motions = same_recording(scenarios).truth.twins, [draw_motion(scenario) for scenario in scenarios]
+    # a fault that is drawn again needs no second integration of its twin
     integrated = {(number, one.steps): one for number, run in known.items() if (one := run.healthy)}
     of_group = dict[tuple[int, int], Integration | None]()
     runs = list[Run]()
@@ -104,12 +105,14 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] = {}) -> list[Ru
         steps, pair = steps_per_sample(given, scenario), scenario.origin.pair
         before, own, twin = integrated.get((scenario.origin.record, steps)), Integration(given, steps), None
         if scenario.fault == "healthy":
+            # a healthy record is the twin of another one, or of itself
             own = before or own
         elif twins:
             # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
             twin = before or of_group.get((pair, steps)) or Integration(without_fault(given, scenario), steps)
         runs.append(Run(scenario, motion, own, twin))
         if pair >= 0:
+            # one twin serves all severities of a group
             of_group.setdefault((pair, steps), runs[-1].healthy)
     return runs
 

@@ -39,10 +39,12 @@ def steps_per_sample(given: KernelInput, scenario: Scenario) -> int:
             f"record {number}: its shaft turns {math.degrees(turn / fs):.3g} degrees per sample; raise "
             f"recording.sample_rate_hz to {math.ceil(turn / LARGEST_TURN)}."
         )
+    # the step follows the fastest mode of the machine and the narrowest spall
     rate, narrowest = fastest_rate(given), scenario.origin.narrowest_mm  # of the spalls of a group
     need = max(min(rate / (FINE_STEP * fs), ENOUGH), rate / (FOLLOWED_STEP * fs))
     passages = passage_rate(given, None if narrowest is None else to_si(narrowest, "mm"))
     need = max(need, min(PASSAGE_STEPS * passages / fs, MAX_OVERSAMPLING))
+    # a step of the recipe's own is refused only where it would be unstable
     if asked is not None:
         if rate / (asked * fs) > COARSEST_STEP:
             raise SimulationError(
@@ -50,6 +52,7 @@ def steps_per_sample(given: KernelInput, scenario: Scenario) -> int:
                 f"{1e6 / (asked * fs):.3g} us; raise recording.oversampling to {math.ceil(need)} or leave it out."
             )
         return asked
+    # steps divide a sample so that two filters can decimate them
     for factor in _FACTORS:
         if factor >= need:
             return factor

@@ -155,6 +155,7 @@ def threads(client: Client) -> Iterator[int]:
         now = time.monotonic()
         workers = getattr(client.cluster, "workers", {}).values()
         here = [worker for worker in workers if isinstance(worker, _Processes)]
+        # processes of this machine that have ended, such as for want of memory
         for ended in (worker.process for worker in here if worker.process and worker.process.returncode is not None):
             if _threads(client):
                 break  # the program was killed, and its copies work on
@@ -163,6 +164,7 @@ def threads(client: Client) -> Iterator[int]:
             )
         if now - counted_at > COUNT_AGAIN_S or not count:
             count, counted_at = sum(_threads(client).values()), now
+            # a cluster may be without workers for a while, between two jobs of a batch system
             if count or here:
                 had_workers_at = now
             elif now - had_workers_at > PATIENCE_S:

@@ -56,10 +56,12 @@ def run(function: Callable[[Item], Result], items: Iterable[Item], workers: Work
             return
         from gen.support import cluster
 
+        # the function is sent once to each worker
         task, waiting, left = cluster.sent_once(client, function), deque["Future"](), iter(items)
         arrived, threads, patience = Event(), cluster.threads(client), PATIENCE_S
         while True:
             n_threads, under_way = next(threads), sum(not future.done() for future in waiting)
+            # a bounded number of tasks and of results, so that memory does not grow with the items
             for item in islice(left, max(0, min(AHEAD * n_threads - under_way, HELD * n_threads - len(waiting)))):
                 waiting.append(client.submit(_call, task, item, pure=False))
                 waiting[-1].add_done_callback(lambda _: arrived.set())
@@ -69,6 +71,7 @@ def run(function: Callable[[Item], Result], items: Iterable[Item], workers: Work
                 arrived.wait(PATIENCE_S)
                 arrived.clear()
                 continue
+            # a result that is long in coming is asked for again, ever more patiently
             done = cluster.result_within(client, waiting[0], patience)
             patience = min(2 * patience, LONGEST_S) if done is None else PATIENCE_S
             if done is not None:

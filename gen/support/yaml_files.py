@@ -52,6 +52,7 @@ class _Composer(Composer):
         node = super().compose_node(parent, index)
         self.levels -= 1
         if not isinstance(event, AliasEvent):
+            # an alias counts as often as the value that it repeats, so that few bytes cannot ask for much
             self.sizes[node] = self.count + 1 - before
             self.count += 1
         elif node in self.sizes:
@@ -122,12 +123,14 @@ def read_yaml(path: Path, error: type[RacewayError]) -> Any:
         if path.exists() and not path.is_file():
             raise error(f"{path}: cannot be read (is a folder, a pipe or a device); give a YAML file.")
         with path.open("rb") as stream:
+            # one byte more than allowed shows a file that is too long, and no more is read
             content = stream.read(limit("yaml_bytes") + 1)
             size = max(len(content), path.stat().st_size)
     except OSError as flaw:
         raise error(f"{path}: cannot be read ({flaw.strerror or flaw}); give a YAML file.") from None
     check_limit("yaml_bytes", size, f"{path}: is", error)
     try:
+        # text editors of Windows write UTF-16
         wide = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
         text = content.decode("utf-16" if wide else "utf-8")
     except UnicodeDecodeError as flaw:

@@ -198,9 +198,11 @@ def _lines(envelope: _Envelopes, shaft_rate: FloatArray, orders: Orders, fault: 
     """Measures of the line of a class with a line of its own."""
     fundamental = CLASSES[fault].lines[0]
     order = fundamental.multiple * np.asarray(getattr(orders, fundamental.base))
+    # real lines lie beside their nominal place
     line = highest_place(envelope.level, order * shaft_rate / envelope.step, SEARCHED)
     rows = np.arange(len(line))
     level = DB_PER_NEPER * envelope.level[rows, line]
+    # width and sidebands of noise are not those of a line
     clear = level > CLEAR_DB
     spacing = (orders.ftf if fault in BALLS else 1.0) * shaft_rate
     sides = line[:, None] + np.outer(spacing / envelope.step, (-1, 1))

@@ -60,6 +60,7 @@ def _letters(comparison: Comparison) -> dict[str, str]:
 def _part(comparison: Comparison, fault: str) -> dict[str, Any]:
     """Variables of the template about one class."""
     letters = _letters(comparison)
+    # sets without this class have no column
     sets = [windows for windows in (comparison.synthetic, *comparison.real) if _of_class(windows, fault).size]
     measures = [measure for measure in MEASURES if measure.name in comparison.auc[fault]]
     values = {

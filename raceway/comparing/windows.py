@@ -79,6 +79,7 @@ def common_ground(folders: list[Path], top: float, window: float | None) -> Comm
         if window is not None and lengths[-1] < window * (1 - 1e-9):
             message = f"{folder}: its records are {lengths[-1]:g} s long, shorter than the window of {window:g} s; choose a shorter one."
             raise CorpusError(message)
+    # what all corpora can give: a machine must not be known by its sample rate
     common = CommonForm(min(lengths) if window is None else window, min(rates), top)
     if common.window < SHORTEST:
         folder = folders[int(np.argmin(lengths))]
@@ -102,6 +103,7 @@ def measured_windows(folder: Path, name: str, common: CommonForm, most: int) -> 
             key: corpus[key].values
             for key in ("fault", "rig", "specimen", "sample_rate", "shaft_rate", *Orders._fields)
         }
+        # a line is looked up at a rate and at orders that are known
         known = np.all(
             [np.isfinite(columns[key]) & (columns[key] > 0) for key in ("shaft_rate", *Orders._fields)], axis=0
         )
@@ -113,8 +115,10 @@ def measured_windows(folder: Path, name: str, common: CommonForm, most: int) -> 
         labelled = columns["fault"] != UNKNOWN_CODE
         record, start = _chosen(columns, known & labelled, corpus.sizes["elapsed_time"], common.window, most)
         values = np.full((len(record), len(NAMES)), np.nan)
+        # records of one sample rate at a time, so that memory does not grow with the corpus
         for fault, fs, block in _blocks(columns, record):
             values[block] = _measure_block(corpus, columns, common, record[block], start[block], fault, fs)
+    # a constant signal has no measures
     usable = np.isfinite(values).any(axis=1)
     fault, unknown = columns["fault"][record], int((~labelled).sum())
     return Windows(name, folder, record[usable], start[usable], fault[usable], values[usable], unknown)

@@ -126,6 +126,7 @@ def notice_compilation() -> Iterator[None]:
         said = False
 
         def on_start(self, event: Any) -> None:
+            # only kernels that are kept take long enough to tell
             cached = event.data["dispatcher"].stats.cache_path is not None  # other functions compile in milliseconds
             if cached and not self.said:
                 self.said = True

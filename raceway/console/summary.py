@@ -94,14 +94,17 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
     for problem in file_problems(directory, manifest, "size"):
         raise CorpusError(problem)
     parts = {directory / "parts" / row.name: row.records for row in manifest.parts} or {directory: manifest.records}
+    # the index has the labels of all parts; without it, each part has its own
     whole = manifest.complete and directory.is_dir()
     files = {directory / INDEX_NAME: manifest.records} if whole else parts
     measured = read_units(next(iter(files)), "label").items()
     sizes = {name: unit for name, unit in measured if unit in READABLE}
+    # labels alone: no signal is read
     labels, first = _labels(files, sizes), next(iter(parts))
     _, (_, channels, samples) = file_facts(first)
     fs = float(labels["sample_rate"][0])
     bearings = np.array([name for file, records in files.items() for name in read_texts(file, "bearing", records)])
+    # counts of the chosen records
     if where is not None:
         chosen = _chosen(directory, where)
         labels, bearings = {name: values[chosen] for name, values in labels.items()}, bearings[chosen]
@@ -182,6 +185,7 @@ def show_facts(facts: dict[str, Any]) -> None:
     known |= {"parts": f"{facts['parts']:,}", "size": show.size(facts["bytes"])}
     known["versions"] = ", ".join(f"{name} {number}" for name, number in facts.get("versions", {}).items())
     show.facts(known)
+    # what a user should know before using it
     for heading, key in (("Left out:", "failures"), ("Skipped:", "skipped"), ("Warnings:", "warnings")):
         if facts[key]:
             show.text("", heading, *(f"- {sentence}" for sentence in facts[key]))

@@ -94,6 +94,7 @@ def import_recordings(
     """
     output = output.absolute()
     check_new(output)
+    # what can be refused is refused before a file is read
     samples = window * collection.fs
     length = round(samples) if math.isfinite(samples) else 0
     if length < 2:
@@ -111,6 +112,7 @@ def import_recordings(
         importer=collection.importer,
         basis=collection.facts,
     ) as corpus:
+        # recordings are read, cut and written one after the other
         _write_parts(_records(candidates, collection, length, log, progress), collection, candidates, corpus)
         if not corpus.rows:
             raise CorpusError(_nothing_usable(collection.importer, log.skipped))
@@ -150,8 +152,10 @@ def _write_parts(
 ) -> None:
     own = None
     for signal, known in records:
+        # the identity of the corpus follows from its files and its first signal
         own = own or _corpus_identity(collection.importer, candidates, signal)
         size = max(1, min(_PART_RECORDS, _PART_BYTES // signal.nbytes))
+        # as many records as a part holds, or as memory should
         batch = [(signal, known), *islice(records, size - 1)]
         columns = {name: [values[name] for _, values in batch] for name in known}
         numbers = zip(columns["rig"], columns["specimen"], columns["recording"], strict=True)

@@ -125,6 +125,7 @@ def import_cwru(
     published, wanted = _labels("all"), _labels(subset)
     candidates: dict[int, Candidate] = {}
     skipped: list[str] = []
+    # files are known by the published number in their name, whatever folder they are in
     for path in files_below(source, ".mat"):
         name, number = name_of(path, source), recording_number(path.stem)
         if number not in published:
@@ -183,6 +184,7 @@ def _read(path: Path, number: int, specimen: int, motor_load: int) -> Recording:
     held = _HELD_AS.get(number, number)
     warnings: list[str] = []
     signal = table_signal(read_matlab(path, f"X{held:03d}_DE_time"), None).values * STANDARD_GRAVITY
+    # some files hold the variable of another recording, as they were published
     if held != number:
         warnings.append(f"holds the variable X{held:03d}_DE_time, as published for recording {number}")
     if fault == "healthy":

@@ -71,12 +71,14 @@ def import_femto(source: Path, output: Path, *, progress: Progress | None = None
             f"{source}: has no folder such as Bearing1_1 with files acc_00001.csv; give the one that holds them."
         )
     candidates, warnings = list[Candidate](), list[str]()
+    # a folder is a life, and the number of a file its age
     for specimen, (folder, files) in enumerate(sorted(lives.items())):
         missing = [number for number in range(min(files), max(files)) if number not in files]
         if missing:
             warnings.append(
                 f"{name_of(folder, source)}: {len(missing)} snapshots are missing, the first is acc_{missing[0]:05d}."
             )
+        # filled by the first file of the life that is read
         clock = dict[str, float]()
         candidates += [
             Candidate(name_of(path, source), partial(_read, path, number, max(files), specimen, clock))
@@ -90,9 +92,11 @@ def _read(path: Path, number: int, last: int, specimen: int, clock: dict[str, fl
     values, folder = _numbers(path), path.parent.name
     rpm, load = _CONDITIONS[folder[len("bearing")]]
     age, censored = EVERY * (number - 1), any(part.lower() == "test_set" for part in path.parts)
+    # its clock and its number tell the age twice; a difference is told
     begun = float(values[0, :4] @ (3600, 60, 1, 1e-6)) - age
     away = math.remainder(begun - clock.setdefault("begun", begun), _DAY)
     unknown = dict.fromkeys((variable.name for variable in LIFE), math.nan)
+    # the test ended with the last file, at the failure unless the set was cut off
     left = math.nan if censored else EVERY * (last - number)
     known = {
         "age": age,

@@ -106,6 +106,7 @@ def guarded(path: Path, kind: str) -> Iterator[None]:
         size = os.fstat(stream.fileno()).st_size
     if size == 0:
         raise UnusableError("is empty (0 bytes); copy it again")
+    # before the library takes memory for it
     check_limit("file_bytes", size, "is", UnusableError)
     try:
         with warnings.catch_warnings():

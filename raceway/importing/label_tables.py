@@ -53,12 +53,14 @@ def read_table_of_labels(path: Path, common: Mapping[str, Any]) -> list[tuple[st
     texts: list[_Row] = []
     for number, cells in lines:
         place, named = f"{path}, row {number}", [*names, *[""] * len(cells)]
+        # a value without a key would be lost in silence
         lost = next((cell for name, cell in zip(named, cells, strict=False) if cell and not name), None)
         if lost is not None:
             message = f"{place}: {lost!r:.60} is in a column without a key in row {first}; give the key, or quote a text with commas."
             raise CorpusError(message)
         texts.append((place, {name: cell for name, cell in zip(named, cells, strict=False) if cell}))
     numbers = [f"{text}\n" for _, keys in texts for key, text in keys.items() if key in _NUMBERS and is_number(text)]
+    # one form of numbers for the whole table: a comma in it is decimal or in thousands throughout
     form, *others = readings(numbers) or [None]
     form = None if others else form
     rows = [
@@ -77,6 +79,7 @@ def _labels_of(
     found: list[tuple[str, Labels]] = []
     problems: dict[str, str] = {}
     for place, own in rows:
+        # the cell of a row goes before a common key, and this before the file beside the table
         keys = {key: value for key, value in {**shared, **given, **own}.items() if value is not None}
         try:
             found.append((place, Labels.model_validate(keys)))
@@ -87,9 +90,11 @@ def _labels_of(
                 if key in keys and key not in own:
                     start = "common key " if key in given else f"{beside}: "
                 told = sentence.replace("; give it.", f"; give it there, or for all files in {beside.name}.")
+                # the same flaw in every row is one sentence
                 problems.setdefault(told, start)
     if problems:
         raise CorpusError("\n".join(f"{start}{told}" for told, start in islice(problems.items(), _MOST_SENTENCES)))
+    # facts of the corpus cannot differ between its files
     for key in _ALIKE:
         _check_alike(key, [(place, getattr(labels, key)) for place, labels in found], "give all files the same")
     rates = [(place, labels.sample_rate_hz) for place, labels in found if labels.sample_rate_hz]
@@ -119,6 +124,7 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
     """Lines of a table that are not empty, with their numbers from 1, as spreadsheets count; the first has the keys."""
     try:
         with guarded(path, "CSV"), path.open(encoding=encoding_of(path), errors="replace", newline="") as text:
+            # the mark of the line with the keys is that of the table
             head = next((line for line in lines_of(text) if line.strip(f" \r\n{_MARKS}")), "")
             mark = next((mark for mark in _MARKS if mark in head), ",")
             text.seek(0)

@@ -61,6 +61,7 @@ def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Pr
     skipped: list[str] = []
     for path in files_below(source, ".mat"):
         name, stem = name_of(path, source), path.stem.lower()
+        # the class stands at the beginning of a name
         fault = next((fault for prefix, fault in _FAULT_OF_PREFIX.items() if stem.startswith(prefix)), None)
         if fault is None:
             skipped.append(f"{name}: the name does not begin with baseline, InnerRaceFault or OuterRaceFault; skipped.")
@@ -82,6 +83,7 @@ def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Pr
 def _read(path: Path, fault: str, number: int) -> Recording:
     signal = table_signal(read_matlab(path, "bearing.gs"), None).values * STANDARD_GRAVITY
     fs = _number(path, "bearing.sr")
+    # two sample rates were published, one twice the other
     factor = round(fs / FS) if math.isfinite(fs) else 0
     if factor < 1 or factor * FS != fs:
         message = f"was sampled at {fs:g} Hz, which is not a multiple of {FS:g} Hz"

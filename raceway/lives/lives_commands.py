@@ -65,6 +65,7 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
     from gen.support.units import from_si
     from raceway.lives.prognosis import SHARES, check_lives, score_lives
 
+    # refused before the features are computed, which takes minutes
     for one in (corpus, tested or corpus):
         with open_corpus(one) as opened:
             check_lives(opened, str(one))

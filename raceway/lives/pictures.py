@@ -50,12 +50,14 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
         panels[2].set(ylabel="spall [mm]", xlabel="age [h]")
         for axes in panels[:3]:
             axes.set_xlim(age[0], max(age[-1], age[0] + 1e-6))
+        # when the spall begins, and when it can first be seen
         for name, style in (("initiation_time", ":"), ("first_detectable_time", "--")):
             at = from_si(float(life[name].values[0]), "h")
             if at <= age[-1]:
                 for axes in panels[1:3]:
                     axes.axvline(at, color=INK, linestyle=style, linewidth=0.8, label=name.replace("_", " "))
                 panels[2].legend(loc="upper left")
+        # all lives beside those of the other corpus
         if like is not None:
             with open_corpus(like) as other:
                 _draw_courses(panels[3], opened, other)

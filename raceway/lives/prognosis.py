@@ -183,6 +183,7 @@ def score_lives(table: xr.Dataset, tested: xr.Dataset | None = None, *, folds: i
     """
     lives = lives_of(table)
     if tested is not None:
+        # estimates are of bearings that were not trained
         common = sorted({*table["identity"].values.tolist()} & {*tested["identity"].values.tolist()})
         if common:
             raise CorpusError(
@@ -196,6 +197,7 @@ def score_lives(table: xr.Dataset, tested: xr.Dataset | None = None, *, folds: i
     if len(np.unique(lives.bearing)) < folds:
         raise CorpusError(f"{len(np.unique(lives.bearing))} bearings are fewer than {folds} folds; use fewer folds.")
     estimates = {name: np.empty(len(lives.age)) for name in METHODS}
+    # a bearing is trained or tested as a whole
     for train, test in GroupKFold(folds, shuffle=True, random_state=0).split(lives.age, groups=lives.bearing):
         if not lives.failed[train].any():
             raise CorpusError(

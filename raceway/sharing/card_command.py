@@ -73,6 +73,7 @@ def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None
         return
     scored = f", scores of {show.count_text(len(rows), 'classifier')}" if rows else ""
     show.text(f"{written}: {show.count_text(len(added.pictures), 'picture')}{scored}.")
+    # what readers of a published corpus will look for
     missing = [
         name
         for name in ("license", "creator", "date")

@@ -61,12 +61,14 @@ def complete_card(path: Path, scores: Path | None = None) -> CardAdditions:
     """
     check_card(path)
     with open_corpus(path) as corpus:
+        # a wrong file of scores is refused before anything is drawn
         given = None if scores is None else read_scores(scores, corpus)
         manifest, folder = read_manifest(path), card_folder(path)
         with writing(folder):
             folder.mkdir(exist_ok=True)
         with lock(folder):
             remove_temporary_files(folder)
+            # what an earlier call added stays, unless it is given again
             known = read_additions(folder, manifest)
             write_additions(
                 folder, known
@@ -82,6 +84,7 @@ def _write_pictures(folder: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
     drawn: list[CardPicture] = []
+    # a typical record of each class
     for code in np.unique(corpus["fault"].values):
         fault = FAULT_NAMES[int(code)]
         shown, caption = chosen_example(corpus, int(code))
@@ -133,6 +136,7 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
     try:
         if path.exists() and not path.is_file():
             raise CorpusError(f"{path}: is a folder, a pipe or a device; give results.json of raceway benchmark.")
+        # a file of scores comes from anywhere
         check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
         results = json.loads(path.read_bytes())
         title, classes = results["corpus"]["title"], results["corpus"]["classes"]
@@ -155,6 +159,7 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
         raise CorpusError(
             f"{path}: is not a file of scores ({reason}); give results.json of raceway benchmark."
         ) from None
+    # scores belong to the card of the corpus that they were measured on
     here = class_counts(corpus["fault"])
     here.pop(UNKNOWN, None)
     if title != corpus.attrs.get("title") or classes != here:

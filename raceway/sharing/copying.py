@@ -236,13 +236,17 @@ def choose(
             for corpus, path in zip(_rename_channels(opened, rename or {}), sources, strict=True)
         ]
         named = list(zip(map(str, sources), opened, strict=True))
+        # all corpora must fit the first one
         for other in named[1:]:
             check_fit(named[0], other, float32=float32)
         corpora, filled = with_same_variables(named)
+        # the same channels may come in another order
         order = channel_names(corpora[0])
         corpora = [corpus if channel_names(corpus) == order else corpus.sel(channel=order) for corpus in corpora]
         records = chosen_records(corpora, where, split)
+        # before any signal is read
         check_limit("records", sum(map(len, records)), "copy: the corpora hold", CorpusError)
+        # how the copy differs from its sources, for its history
         told = {
             "joined": f"{len(sources)} corpora" if len(sources) > 1 else None,
             "where": where,

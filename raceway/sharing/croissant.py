@@ -94,6 +94,7 @@ def croissant(path: Path) -> dict[str, Any]:
             "description": attributes["summary"],
             "keywords": attributes["keywords"].split(", "),
             "identifier": attributes["id"],
+            # a version that follows from the content
             "version": f"1.0.0+{content_id(manifest)[:8]}",
             "isLiveDataset": False,
             **_publication_facts(manifest.publication),

@@ -160,6 +160,7 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
         raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")
     if codec is not None and form not in ("folder", "nc"):
         raise CorpusError(f"codec: --codec is for corpora; leave it out for {form}.")
+    # told now, and not after the corpora are read
     package = _NEEDS.get(form)
     if package is not None and find_spec(package) is None:
         raise CorpusError(f"{form}: needs {package}; pip install {package}, or choose another form.")

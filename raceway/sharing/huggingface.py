@@ -46,6 +46,7 @@ def _card(export: Export, sizes: dict[str, int]) -> str:
 
 def _header(export: Export, sizes: dict[str, int]) -> str:
     """YAML header; every value below the upper keys is JSON on a line of its own."""
+    # JSON is YAML, so that no text of a corpus can become a key
     facts: dict[str, str] = {
         "pretty_name": export.title,
         **_licence(str(export.chosen.attributes.get("license", ""))),

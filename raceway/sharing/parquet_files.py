@@ -102,6 +102,7 @@ def _table(export: Export, block: Block, schema: "pa.Schema", *, names: bool) ->
     columns: list[Any] = [pa.array(block.numbers)]
     for column in export.columns:
         if column.flags and not names:
+            # classes as the places that the features of datasets count
             known, codes = [*known_classes(column)], block.dataset[column.variable].values
             columns.append(pa.array(np.searchsorted(known, codes), pa.int64(), mask=~np.isin(codes, known)))
         elif column.flags and names:
@@ -111,6 +112,7 @@ def _table(export: Export, block: Block, schema: "pa.Schema", *, names: bool) ->
             columns.append(pa.array(values.tolist(), pa.string()) if values.dtype.kind in "OUS" else pa.array(values))
     signal = block.accelerations()
     for place in range(signal.shape[1]):
+        # the signal of each channel is a list of one length
         flat = np.ascontiguousarray(signal[:, place]).reshape(-1)
         columns.append(pa.FixedSizeListArray.from_arrays(pa.array(flat), signal.shape[2]))
     return pa.table(columns, schema=schema)

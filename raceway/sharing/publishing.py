@@ -57,6 +57,7 @@ def publish(path: Path | str, publication: Publication | Mapping[str, Any]) -> N
     path = Path(path)
     if not isinstance(publication, Publication):
         publication = read_publication(publication)
+    # a card that somebody else wrote is not replaced
     check_card(path)
     corpus_files(path)
     manifest = read_manifest(path)
@@ -66,6 +67,7 @@ def publish(path: Path | str, publication: Publication | Mapping[str, Any]) -> N
         remove_left_behind_of(path)
         if publication == manifest.publication:
             return
+        # a single file keeps its counts, of which it has no parts to count
         content = facts_of_parts([], facts) | {"records": manifest.records, "signals": manifest.signals._asdict()}
         content |= {"parts_sha256": manifest.parts_sha256} if manifest.parts_sha256 else {}
         old = {*facts, *publication_attributes(manifest)} - {"raceway_format"}

@@ -61,6 +61,7 @@ def card_text(corpus: xr.Dataset, manifest: Manifest, added: additions.CardAddit
     """Page of an opened corpus that lies at ``path``, whose ``first`` file has signals."""
     title = str(corpus.attrs.get("title", "Untitled corpus"))
     publication, single = manifest.publication, path.is_file()
+    # what a person has stated, with a row for each
     terms = (
         ("licence", publication.license),
         *(("creator", ", https://orcid.org/".join(filter(None, (it.name, it.orcid)))) for it in publication.creators),
