@@ -48,9 +48,8 @@ as JSON where they are not text. A fact without content is left out:
 | `publication` | licence, creators and other facts of [publication](sharing.md) |
 | `recipe_text` | attribute only: the recipe as in `recipe.yaml` |
 
-Every file has the global attributes `Conventions`, `raceway_format`, `title`, `history`, `source` and `signals`;
-generated parts also have `recipe`, `recipe_sha256`, `sources_sha256`, `versions` and `failures`. `index.nc` and single
-files have all facts and the attributes of [publication](sharing.md).
+Every file has `Conventions`, `raceway_format`, `title`, `history`, `source` and `signals`. `index.nc` and single files
+have all facts and the attributes of [publication](sharing.md).
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
 a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;

@@ -224,10 +224,8 @@ than one way.
 SKF 6308.
 
 **Compare the orders with those of the maker of your bearing.** *Other orders* marks the rows whose BPFO or BPFI differs
-by more than 0.2 % from the one that table [1] prints for a wide inner ring bearing of the same size, and how far the
-table is above or below the row. For 306K it prints the orders of 7 balls, 16 % below the 8 balls of the 6306, which the
-ratings of the same maker [2] confirm; for 208K and 308K its BPFO is 1.5 % lower, as with larger balls. Features search
-a line within 1.5 to 2 % of its nominal order: 1.5 % leave nothing for an error of the speed, and 16 % miss the line.
+by more than 0.2 % from the one that table [1] prints for a wide inner ring bearing of the same size. Features search a
+line within 1.5 to 2 % of its nominal order: 1.5 % leave nothing for an error of the speed, and 16 % miss the line.
 Tables of labels and recipes take the geometry of your bearing instead of a designation.
 
 """
