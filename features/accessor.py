@@ -99,6 +99,7 @@ class SignalAccessor:
 
     def kurtogram(self, narrowest: float = 0.0) -> xr.DataArray:
         """Kurtosis of bands as of `features.signal.kurtogram`, over ``band`` with the coordinates ``low`` and ``high`` [Hz]."""
+        # edges of the bands follow from length and rate, not from the samples
         tree = kurtogram(self._probe(), self.fs, narrowest=narrowest)
         found = self._over(
             "kurtosis",
@@ -172,6 +173,7 @@ class SignalAccessor:
 
     def _over(self, name: str, axis: str, axis_units: str, units: str, compute: Compute) -> xr.DataArray:
         """Result of a function of arrays (record, time), with a new last dimension."""
+        # a short signal tells axis and type, so that a lazy result needs no computation
         along, probed = compute(self._probe())
 
         def flat(x: FloatArray) -> FloatArray:

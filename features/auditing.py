@@ -49,6 +49,7 @@ def audit_splits(corpus: Path | str | xr.Dataset) -> list[str]:
     """
     with open_corpus(corpus) as opened:
         keys = [opened[name].values for name in ("rig", "specimen", "fault", "recording")]
+        # what leaks are recordings and bearings, not records
         _, first, number = np.unique(np.stack(keys), axis=1, return_index=True, return_inverse=True)
         sources = [str(opened["source"].values[row]).rpartition("#")[0] for row in first]
         recordings = [
@@ -95,11 +96,13 @@ def _copies(corpus: xr.Dataset, recordings: Sequence[_Recording], number: Sequen
     samples = corpus.sizes["elapsed_time"]
     step = max(1, _READ_BYTES // (4 * samples))
     first, shared = dict[int, int](), Counter[tuple[int, int]]()
+    # some records at a time, so that memory does not grow with the corpus
     for start in range(0, len(number) if samples > BLOCK else 0, step):
         signal = corpus[SIGNAL].isel(record=slice(start, start + step), channel=0).values
         for own, record in zip(number[start : start + step], signal, strict=True):
             for other in (first.setdefault(block, own) for block in block_hashes(record)):
                 if recordings[other].specimen != recordings[own].specimen:
+                    # a block that two recordings share by chance is not enough
                     shared[other, own] += 1
     copies = [
         f"{recordings[one].source} and {recordings[other].source}"

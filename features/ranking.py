@@ -46,6 +46,7 @@ def rank_features(
     records = labelled_records(table, features_of(table, held))
     check_classes(records)
     splits = track_splits(records, records.fault, "specimen", folds, seed)
+    # each column by itself: features that replace one another all rank low
     single = [[column] for column in range(records.features.shape[1])]
     losses = permutation_losses(records, single, IMPORTANCE_ESTIMATOR, splits, seed)
     group = table["group"].to_series()[lambda of: of.isin(held)]

@@ -65,6 +65,7 @@ def train_and_score(
 
     def trained(some: "xr.Dataset") -> "tuple[Model, Scores | None]":
         test = some["split"].values == SPLITS.index("test")
+        # without both kinds of records there is nothing to score
         whole = not test.any() or test.all()
         with progress("training", "fits") as report:
             workers = team.options(len(test))["workers"]
@@ -112,6 +113,7 @@ def reference_table(recipe: "Recipe", team: Team = USUAL) -> "xr.Dataset":
     parts, recipes = list["xr.Dataset"](), both_lengths(recipe)
     for one in recipes:
         table = make_table(one, team)
+        # nothing else is needed for a training, and what ships should be small
         kept = table.reset_coords()[["features", "group", *_LABELS]].set_coords("group")
         kept = kept.isel(feature=kept["group"].isin(with_energies(DEFAULT_GROUPS)))
         kept.attrs = {name: table.attrs[name] for name in _FACTS}
@@ -153,6 +155,7 @@ def make_table(recipe: "Path | str | Recipe", team: Team = USUAL) -> "xr.Dataset
     from gen.support.executor import cores
 
     workers = team.workers or cores()
+    # the corpus takes gigabytes, its features megabytes
     with temporary_folder() as folder:
         corpus = folder / "corpus"
         with notice_compilation(), progress("generating", "records") as report:
@@ -294,6 +297,7 @@ def _lock(path: Path) -> Iterator[None]:
             try:
                 held.enter_context(lock.acquire(blocking=False))
             except Timeout:
+                # a second process would train the same model again
                 notice("waiting for another process that trains this model.")
                 held.enter_context(lock)
         except OSError as error:

@@ -144,6 +144,7 @@ def step_complaint(columns: Columns) -> str | None:
     coarse = error > COARSE
     if not coarse.any():
         return None
+    # a step finer than that of every coarse record helps all of them
     worst, finest = 100 * error.max(where=coarse, initial=0), steps[coarse].max()
     return (
         f"{coarse.sum():,} of the {np.isfinite(error).sum():,} records whose step was checked change by more than {100 * COARSE:g} % "

@@ -163,10 +163,12 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     if path.exists() and not path.is_file():
         raise CorpusError(f"{path}: exists and is not a plain file, so it cannot be replaced; choose another name.")
     place = place_of(path)
+    # in the same folder, since a rename across file systems copies
     with temporary_beside(place) as temporary, writing(path, temporary):
         remove_left_behind_of(place)
         yield temporary
         with temporary.open("rb+") as stream:
+            # on disk before it has its name, so that a name stands for a whole file
             os.fsync(stream.fileno())
         temporary.replace(place)
         _flush(place.parent)

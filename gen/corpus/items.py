@@ -159,6 +159,7 @@ def torch_dataset(
     numbers, names = _labels(opened, label, f"{corpus}")
     (records,) = chosen_records([opened], where, split)
     chosen = tuple(known[place] for place in places)
+    # labels are read now, signals when they are asked for
     operating = {name: values[records] for name, values in operating_variables(opened).items()}
     return LabelledRecords(
         records, numbers[records], operating, names, chosen, transform, opened[SIGNAL].variable, places

@@ -88,6 +88,7 @@ def with_same_variables(corpora: Sequence[Named]) -> tuple[list[xr.Dataset], tup
 
 def _check_same(name: str, first: tuple[str, xr.Variable], other: tuple[str, xr.Variable]) -> None:
     (path, one), (other_path, two) = first, other
+    # the same name must mean the same quantity
     for what, describe in (
         ("type", lambda of: "text" if of.dtype.kind in "OSUT" else str(of.dtype.newbyteorder("="))),
         ("unit", lambda of: of.attrs.get("units")),
@@ -109,6 +110,7 @@ def _with_all(
             columns[name] = _with_attributes(corpus[name].variable, like.attrs)
             continue
         text = like.dtype.kind not in "iuf"
+        # one value for all records, repeated without memory
         value = np.array(unknown_value(like.dtype, like.attrs), object if text else like.dtype.newbyteorder("="))
         columns[name] = xr.Variable("record", np.broadcast_to(value, corpus.sizes["record"]), like.attrs)
     texts = [name for name, column in columns.items() if column.dtype.kind not in "iuf"]
@@ -145,6 +147,7 @@ def new_numbers(identities: Sequence[str]) -> dict[str, NDArray[np.int32]]:
         raise CorpusError(f"identity: {wrong!r} is no corpus with four numbers; make the corpus again.") from None
     names, corpus = np.unique([row[0] for row in rows], return_inverse=True)
     return {
+        # records of one corpus get their first numbers back
         name: values if len(names) == 1 else _dense(corpus, values)
         for name, values in zip(NUMBERS, numbers.T, strict=True)
     }

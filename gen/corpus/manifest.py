@@ -230,6 +230,7 @@ def _manifest_of_file(file: Path) -> Manifest:
     content: dict[str, Any] = {"raceway_format": FORMAT, "records": records}
     try:
         content["signals"] = json.loads(attributes["signals"])
+        # facts that are no text are JSON in an attribute
         for name in Manifest.model_fields.keys() & attributes.keys() - {"raceway_format"}:
             content[name] = attributes[name] if name in _TEXTS else json.loads(attributes[name])
     except (ValueError, TypeError, KeyError, RecursionError) as error:
@@ -295,6 +296,7 @@ def _file_problem(directory: Path, row: PartRow | None, check: Check) -> str | N
     try:
         file = plain_file(directory, INDEX_NAME if row is None else f"parts/{row.name}")
         if row is None:
+            # the index has its checksum at its end, parts have theirs in the manifest
             whole = check == "size" or has_whole_bytes(file)
         else:
             whole = file.stat().st_size == row.bytes and (check == "size" or sha256(file) == row.sha256)
@@ -318,6 +320,7 @@ def check_bytes(file: Path) -> None:
         ends, whole = stored_checksum(file) is not None, has_whole_bytes(file)
     except OSError as error:
         raise CorpusError(f"{file}: cannot be read ({error.strerror or error}); copy it again.") from None
+    # most often another kind of file, which deserves another sentence
     if not ends:
         raise CorpusError(
             f"{file}: has no checksum of Raceway at its end: it is another file, such as a feature table, or was cut off or rewritten by "

@@ -72,6 +72,7 @@ def new_corpus(
     target = Path(target).absolute()
     check_new(target)
     if is_single_file(target):
+        # a single file is joined from parts beside it, which then go
         parts = target.with_name(f"{target.name}.parts")
         with temporary_beside(parts) as folder, writing(target, folder):
             remove_left_behind_of(parts)

@@ -171,6 +171,7 @@ def read_publication(facts: Mapping[str, Any]) -> Publication:
     try:
         return Publication.model_validate(facts)
     except ValidationError as error:
+        # one sentence about the first flaw
         problem = error.errors()[0]
         place = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in problem["loc"]).lstrip(".")
         if problem["type"] == "extra_forbidden":

@@ -68,6 +68,7 @@ def called(model: Any, values: Sequence[Any], named: Mapping[str, Any]) -> Any:
     """Distribution from the arguments of its call; ValueError with a sentence if they are wrong."""
     kind, names = model.model_fields["kind"].annotation.__args__[0], model.arguments
     form = f"{kind}({', '.join(names)})"
+    # choice(7, 8, 9) and choice((7, 8, 9)) are the same
     if names == ("values",) and values and not isinstance(values[0], tuple | list):
         values = [tuple(values)]
     if len(values) > len(names):

@@ -170,6 +170,7 @@ class Section(BaseModel):
         """Copy of the section with some other values, which are not checked; that of pydantic takes four times as long."""
         copy, new = object.__new__(type(self)), update or {}
         values, given = {**self.__dict__, **new}, self.__pydantic_fields_set__
+        # values in SI units that were kept belong to the old numbers
         values.pop("_si", None)
         for name, value in (
             ("__dict__", values),

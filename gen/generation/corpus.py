@@ -250,8 +250,10 @@ def _kept(recipe: Recipe, folder: Path, part: int) -> Outcome | None:
     if row is None:
         return None
     attributes, _ = file_facts(path)
+    # a part with the name of this one may be of another size of the corpus
     numbers = stored_columns(path)["recording"]
     expected = recipe.records_of_part(part)
+    # the same recipe, sources and libraries give the same bytes
     same = all(attributes.get(name) == text for name, text in facts_as_attributes(made_by(recipe)).items())
     if not same or not (expected.start <= numbers.min() and numbers.max() < expected.stop):
         return None
@@ -265,6 +267,7 @@ def _finish(target: Path, folder: Path, text: bytes, outcomes: list[Outcome], fa
         raise CorpusError(f"{target}: no record could be simulated; {outcomes[0].failures[0]}")
     failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
     facts = facts | {"publication": facts["publication"].dated(), "failures": failures}
+    # recipe first, manifest last: a folder without a manifest of finished parts is unfinished
     whole = target == folder
     with writing(folder):
         write_durably(text, folder / RECIPE_NAME)

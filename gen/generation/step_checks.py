@@ -20,6 +20,7 @@ def step_errors(recipe: Recipe, numbers: range, records: Sequence[Measured]) -> 
     """Relative rms change between some records of a part and the same at half the step, NaN for the other records, shape (record,)."""
     axis, runs = timeline(recipe), [record.run for record in records]
     groups, faults = [run.integrations[0].group for run in runs], [record.scenario.fault for record in records]
+    # all together, so that they fill the lanes of the kernel
     halved = {
         place: Integration(runs[place].given, 2 * runs[place].oversampling)
         for place in checked_places(recipe, numbers, faults, groups)
@@ -28,6 +29,7 @@ def step_errors(recipe: Recipe, numbers: range, records: Sequence[Measured]) -> 
     errors = np.full(len(records), np.nan)
     for place, integration in halved.items():
         fine = acceleration_of(integration)[:, axis.kept]
+        # of the bodies, before paths and background hide it
         change = runs[place].acceleration[:, axis.kept] - fine
         errors[place] = np.sqrt(np.sum(change**2, dtype=np.float64) / np.sum(fine**2, dtype=np.float64))
     return errors

@@ -213,6 +213,7 @@ def endless(recipe: Recipe) -> Recipe:
         )
     if recipe.origin is not None:
         raise RecipeError("origin: is that of one record, and a stream has no end; leave it out, or use gen.generate.")
+    # values of a grid are taken in turn by number, and end
     for place, section in sections_with_places(recipe):
         for key, quantity in quantities(section).items():
             if isinstance(quantity, Grid):
@@ -228,6 +229,7 @@ def records_from(
     """Records from the number ``first`` on, in rising order, a part at a time: every ``shards``-th part, beginning with ``shard``."""
     parts, warned = range(first // recipe.storage.records_per_part, recipe.n_parts)[shard::shards], False
     with closing(run(partial(make_part, recipe), map(recipe.records_of_part, parts), workers)) as made:
+        # a part at a time, so that memory does not grow with the stream
         for part in made:
             failures = failures_of(part)
             if not part.sizes["record"]:

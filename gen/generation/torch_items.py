@@ -25,6 +25,7 @@ class TorchStream(IterableDataset[tuple[Any, ...]]):
         worker = get_worker_info()
         place, count = (0, 1) if worker is None else (worker.id, worker.num_workers)
         if distributed.is_available() and distributed.is_initialized():
+            # workers of the loader within ranks of the training
             place, count = distributed.get_rank() * count + place, distributed.get_world_size() * count
         for records in self.shard(shard=place, shards=count):
             if self.label not in records:

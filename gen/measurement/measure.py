@@ -110,6 +110,7 @@ def _passes(runs: Sequence[Run]) -> Iterator[list[list[Run]]]:
     groups = defaultdict[Any, list[Run]](list)
     for run in runs:
         pair = run.scenario.origin.pair
+        # records of a group share their gains, so they are measured together
         groups[pair if pair >= 0 else run].append(run)
     together: list[list[Run]] = []
     for group in groups.values():
@@ -133,10 +134,12 @@ def _level(scenario: Scenario, parts: Parts, sees: Judge, further: Sequence[floa
     key = "healthy" if scenario.fault == "healthy" else "faulty"
     tried = [drawn[key], *further]
     gains = [gains_of(parts.products, ratio, drawn["rms"]) for ratio in tried]
+    # the first level at which the fault can be seen
     chosen = next((n for n, some in enumerate(gains) if len(tried) == 1 or sees(some)), 0)
     if scenario.origin.pair < 0:
         return level.model_copy(update={f"{key}_db": tried[chosen]}), chosen, gains[chosen]
     bearing, background = gains[chosen]
+    # the other records of the group get these gains, whatever their own ratio
     level = PhysicalLevel.model_construct(kind="physical", gain=bearing, background_m_s2=background / bearing)
     return level, chosen, (bearing, bearing * level.si()["background"])
 

@@ -59,7 +59,9 @@ def _behind_paths(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[NDArr
     signals = list[NDArray[Any]]()
     for run in runs:
         whole, sound = run.acceleration, run.twin and acceleration_of(run.twin)
+        # the twin, and what the fault adds to it
         signals.append(whole[None] if sound is None else np.stack([sound, whole - sound]))
+    # a path without resonances is a factor, and needs no transform
     resonant = [place for place, rig in enumerate(rigs) if rig.direct is None]
     if resonant:
         n, ends = rigs[0].n, np.cumsum([len(signals[place]) for place in resonant])[:-1]

@@ -39,6 +39,7 @@ def find_recipe(recipe: Path | str) -> Path:
         return shipped[str(recipe)]
     if path.is_dir():
         raise RecipeError(f"{recipe}: is a folder; give a recipe file, or the name of one of {', '.join(shipped)}.")
+    # help with a misspelt name
     near = difflib.get_close_matches(str(recipe), shipped, 1)
     guess = f"did you mean {near[0]}?" if near else "raceway recipes lists the names."
     raise RecipeError(f"{recipe}: neither a file nor one of the recipes {', '.join(shipped)}; {guess}")

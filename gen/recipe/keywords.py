@@ -89,6 +89,7 @@ def _set(data: dict[str, Any], name: str, value: Any) -> None:
         raise RecipeError(f"{name}: is given twice, also in {'.'.join(sections)}; give it once.")
     section[name] = value
     if kinds:
+        # a key that one kind alone has chooses this kind
         section.setdefault("kind", _usual_kind(sections, kinds))
 
 

@@ -48,6 +48,7 @@ def _strongest(bearing: CatalogueBearing | GeometryBearing, reach: Mapping[str, 
     fewest, most = (round(end) for end in reach["n_balls"])
     pitch, largest = (to_si(reach[key][1], "mm") for key in ("pitch_diameter_mm", "ball_diameter_mm"))
     low, high = reach["contact_angle_deg"]
+    # the static rating falls with the contact angle
     angle = to_si(0.0 if low <= 0 <= high else min(abs(low), abs(high)), "deg")
     shortest, longest = (to_si(end, "mm") for end in reach["roller_length_mm"])
     candidates: list[Bearing] = []

@@ -157,6 +157,7 @@ class GeometryBearing(Section):
                 f"ball_diameter_mm: can be {low:.3g} to {high:.3g} of pitch_diameter_mm, and {SMALLEST_BALL:g} to {LARGEST_BALL:g} is "
                 f"allowed; a range that fits is uniform(0.15, 0.28) * pitch_diameter_mm."
             )
+        # whether drawn balls fit shows when they are drawn
         if self.n_balls.support()[0] == self.n_balls.support()[1] and low == high:
             check_room(round(self.n_balls.support()[0]), high * pitch.support()[0], pitch.support()[0])
         return self

@@ -47,6 +47,7 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     if recipe.corpus.fault_choice == "in_turn":
         entries = recipe.faults
         return [fault_class(entries[number % len(entries)]) for number in range(rig * count, (rig + 1) * count)]
+    # systematic sampling: every rig has nearly the shares of the recipe, and all rigs together have them
     offsets = _offsets(recipe.seed, rig)
     healthy = count * shares.pop("healthy", 0.0)
     n_healthy = math.floor(healthy + _ROUNDING)
@@ -104,6 +105,7 @@ def first_records(recipe: Recipe) -> dict[str, int]:
     first_of: dict[str, int] = {}
     for fault, specimen in sorted(first_specimens(recipe).items(), key=lambda item: item[1]):
         first = recipe.records_of(specimen).start
+        # the first record of a damaged specimen is the one before its damage
         if before_damage and fault != "healthy":
             first_of.setdefault("healthy", first)
             first += 1

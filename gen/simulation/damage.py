@@ -88,6 +88,7 @@ def cached_drop(profile: int, offset: float, half: float, arc: float, ball: floa
 def _paths(
     spall: Spall, floor: float, ball: float, races: tuple[float, ...], place: tuple[int, int, int]
 ) -> tuple[FloatArray, ...]:
+    # a table of the path, since a wide contact will be averaged over it
     at = spall_positions(spall.width)
     if spall.profile not in ("geometric", "trace"):
         arc = ball if spall.site == "ball" else abs(races[0])
@@ -97,6 +98,7 @@ def _paths(
     depths = np.full(len(at), spall.depth)
     if spall.profile == "trace":
         depths = np.interp(at, np.linspace(at[0], at[-1], len(spall.trace)), spall.trace)
+    # a rough floor belongs to the specimen: it stays from record to record
     if spall.roughness > 0:
         seed, specimen, number = place
         rough = rough_surface(spall.roughness, stream(seed, "specimen", specimen, f"roughness {number}"))

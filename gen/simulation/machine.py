@@ -100,6 +100,7 @@ def with_axial_loads(
     for place, (given, load) in enumerate(zip(inputs, loads, strict=True)):
         if isinstance(given, KernelInput) and load != 0:
             alike[given.machine.contact_exponent].append((place, given, load))
+    # balances of bearings with one contact law are solved together
     for group in alike.values():
         places, some, loads_of = zip(*group, strict=True)
         balls = ball_angles([given.bearing.n_balls for given in some], [given.turning.cage_angle for given in some])

@@ -120,6 +120,7 @@ def schedule_of(scenario: Scenario) -> FloatArray:
     times = axis.knot_times()
     factors = np.ones((len(times), 2))
     if speed is not None:
+        # speed at the middle of the step that begins at the knot, load at the knot itself
         factors[:, 0] = share_at(speed, times + 0.5 / axis.fs)
     if load is not None:
         factors[:, 1] = share_at(load, times)

@@ -52,6 +52,7 @@ def client_of(place: "Client | str | int", module: str) -> Iterator[Client]:
         with _client_at(place) as client:
             yield client
     else:
+        # processes load the modules of the task while the caller still checks
         options = {"module": module, "count": place}
         workers = {"local": {"cls": _Processes, "options": options, "group": _suffixes(place)}}
         scheduler = {"cls": Scheduler, "options": _HERE}
@@ -189,6 +190,7 @@ def result_within(client: Client, future: Future, patience: float) -> tuple[Any]
     except CancelledError:
         raise _lost(client) from None
     except TimeoutError:
+        # the task itself may have raised it
         if future.status == "error":
             raise
         return None

@@ -155,6 +155,7 @@ def benchmark(
       raceway benchmark corpus --track rig --folds 3 --estimator mine:make --submit mine.csv
       raceway benchmark corpus --track rig --folds 3 --check mine.csv
     """
+    # options that need another one are refused before anything is loaded
     if waveforms and not any(":" in name for name in estimators):
         raise click.UsageError("--waveforms is for --estimator MODULE:NAME")
     if per_turn is not None and not waveforms:
@@ -166,6 +167,7 @@ def benchmark(
     from raceway.reports.page import write_report
 
     protocol = {"track": tracks[0], "folds": folds, "seed": seed}
+    # a report, a submission, or the check of one
     match output, submit, check:
         case None, None, Path():
             _check(table_of(corpus, "off", team, analysis), check, protocol, as_json)
@@ -178,9 +180,11 @@ def benchmark(
             pass
         case _:
             raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
+    # a wrong model file is told before the features are computed
     loaded = _load(models)
     with result_folder(output):
         table = table_of(corpus, "off", team, analysis)
+        # speeds are checked or corrected on other corpora, whose labels may be wrong
         others = [table_of(test, speed, team, analysis._replace(channel=None)) for test in tests]
         scored = _score_models(loaded, [table, *others], seed)
         signals = (
@@ -193,12 +197,14 @@ def benchmark(
             "curve": learning_curve,
         }
         trainers = team.options(table.sizes["record"])["workers"]
+        # classifiers of an earlier call keep their rows
         known = read_results(output / "results.json")
         with progress("scoring", "scores") as report:
             results = run(
                 table, others, **options, known=known, folds=folds, seed=seed, workers=trainers, progress=report
             )
         results = replace(results, models=scored)
+        # records that no score counts
         for path, content in zip((corpus, *tests), (results.corpus, *results.tests), strict=True):
             notice_of_unknown(path, content.unknown)
         warn_of_severities(results, *next(iter(results.baselines.values())).tests)

@@ -120,6 +120,7 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
 
 def _show_plan(planned: "Plan") -> None:
     steps = list(planned.steps_per_sample)
+    # a large corpus is counted on a part of it
     about, about_checked = (
         "" if count == planned.records else f" (scaled up from {count:,} {done} records)"
         for count, done in ((planned.drawn, "drawn"), (planned.checked, "checked"))
@@ -185,6 +186,7 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     wanted = read_recipe(recipe, seed=options["seed"], records=options["records"])
     start = time.monotonic()
     workers = team.workers or _default_workers(wanted)
+    # after Ctrl-C: how many records are kept, and how to go on
     with if_interrupted(_kept(output, wanted)):
         made = _generate(recipe, output, workers=workers, scheduler=team.scheduler, **options)
     for failure in made.failures:
@@ -198,6 +200,7 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
         show.as_json({"corpus": made.path, **facts, "signals": made.signals._asdict(), "seconds": seconds})
     else:
         _show_generated(made, wanted)
+    # a corpus that no analysis can use is a failure for scripts
     return DONE if useless is None else FOUND_WANTING
 
 
@@ -229,6 +232,7 @@ def _show_generated(made: "Generated", wanted: "Recipe") -> None:
     failed = f"; {show.count_text(len(made.failures), 'record')} left out" if made.failures else ""
     size = f"{show.count_text(made.records, 'record')} in {show.count_text(made.parts, 'part')}"
     show.text(f"{made.path}: {size}{kept}{failed}{unusable}.")
+    # lives that ended before their last snapshot
     missing = wanted.n_records - made.records - len(made.failures)
     if wanted.life is not None and missing and made.parts == wanted.n_parts:
         show.text(f"The other {missing:,} of {wanted.n_records:,} snapshots would come after the end of a life.")
@@ -371,4 +375,5 @@ def replay(corpus: Path, record: int, output: Path | None, recipe: Path | None, 
         verdict = "identical" if again.identical else "differs; raceway info shows the versions that made the corpus"
         written = [f"written to {path}." for path in (output, recipe) if path is not None]
         show.text(f"{corpus}: record {record}: {verdict}.", *written)
+    # a record that differs is a failure for scripts
     return DONE if again.identical else FOUND_WANTING

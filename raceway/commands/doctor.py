@@ -47,6 +47,7 @@ def _findings() -> Iterator[dict[str, str]]:
     for text in requires("raceway") or ():
         needed = Requirement(text)
         marker = needed.marker
+        # extras that nobody asked for may be missing
         if marker is not None and not any(marker.evaluate({"extra": extra}) for extra in EXTRAS):
             continue
         try:

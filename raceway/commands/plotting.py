@@ -67,6 +67,7 @@ def plot(
     Lines of the fault are shaded, their sidebands dotted, lines of other faults dashed. A recording has no known fault. At a speed that
     varies, --rpm is its range; the speed is then found in the signal, and the lines are drawn over orders of the shaft.
     """
+    # without any choice: a record of each class
     if _is_corpus(source) and (record, view, healthy, band, band_by) == (None,) * 5:
         _draw_classes(source, output)
         return
@@ -79,6 +80,7 @@ def plot(
     if band_by is not None:
         shown = shown._replace(band=chosen_band(band_by, shown))
     under = None
+    # a number is a record of the same corpus, anything else a file
     if healthy is not None:
         of_corpus = _is_corpus(source) and healthy.isdecimal()
         path, number = (source, int(healthy)) if of_corpus else (Path(healthy), None)
@@ -135,6 +137,7 @@ def _shown(
         raise click.UsageError(f"{source} is a recording: give --bearing and --rpm, which tell where its lines lie")
     from raceway.importing.reading import read_recording
 
+    # what was assumed of the file is told
     recorded, _, notes = read_recording(source, reading)
     for note in notes:
         notice(f"warning: {note}")

@@ -66,6 +66,7 @@ def reference_options(command: Any) -> Any:
             help="Mark between columns of the recording, if it is a text.",
         ),
     ]
+    # click lists options from the last decorator to the first
     for option in reversed(options):
         command = option(command)
     return command
@@ -93,12 +94,14 @@ def reference_table(
         signal = read_shape(path, place, reading["reference_rate"], _OPTIONS)
         for note in signal.warnings:
             notice(f"warning: {note}")
+        # a file without a rate is taken to be recorded as the corpus was
         fs = float(table["sample_rate"].max()) if signal.fs is None else signal.fs
         if signal.fs is None:
             notice(f"{path}: does not state its sample rate; {fs:g} Hz is used, as in {corpus} (--reference-rate).")
         rpm = reading["reference_rpm"]
         rate = None if rpm is None else rpm_to_hertz(rpm)
         return recording_reference(signal.values, fs, corpus, path, rate, analysis.options()["band"])
+    # the corpus is its own reference: each rig has healthy records
     if path.resolve() == corpus.resolve():
         return table
     check_durations(corpus, path)

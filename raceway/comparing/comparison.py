@@ -154,6 +154,7 @@ def _classes(synthetic: Windows, real: tuple[Windows, ...]) -> list[str]:
         here, there = (", ".join(FAULTS[c] for c in np.flatnonzero(n)) or "none" for n in (made, recorded.sum(axis=0)))
         message = f"{synthetic.folder}: has no class that the real corpora have: {here} here, {there} there; nothing can be compared."
         raise CorpusError(message)
+    # an AUC of a few windows tells nothing
     enough = (made >= FEWEST) & (recorded >= FEWEST).any(axis=0)
     if not enough.any():
         message = (

@@ -126,6 +126,7 @@ def compute_measures(
 def _colour(x: FloatArray, fs: float, top: float) -> dict[str, FloatArray]:
     frequencies, density = power_density(x, fs)
     density[:, (frequencies < LOWEST) | (frequencies > top)] = 0.0
+    # one transform over the whole window: tones need its resolution
     _, fine = power_density(x, fs, x.shape[-1] / fs)
     step = fs / x.shape[-1]
     inside = slice(round(LOWEST / step), round(top / step))
@@ -134,6 +135,7 @@ def _colour(x: FloatArray, fs: float, top: float) -> dict[str, FloatArray]:
         "centroid": centroid(density, frequencies),
         "tonality": tonality(fine[:, inside], np.arange(fine.shape[-1])[inside] * step),
     }
+    # a narrower band has nothing above
     if top > UPPER_BAND:
         lower, upper = band_energies(density, frequencies, (0.0, UPPER_BAND, top)).T
         by_name["energy_above_3500_hz"] = 10 * np.log10(np.maximum(upper / (lower + upper), np.finfo(float).tiny))

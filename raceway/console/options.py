@@ -83,6 +83,7 @@ def gathered(name: str, kind: Any, *options: Decorator) -> Decorator:
     def decorator(command: Any) -> Any:
         @wraps(command)
         def gather(**values: Any) -> Any:
+            # what belongs together stays together in the command
             one = kind(*(values.pop(field) for field in kind._fields))
             return command(**{name: one}, **values)
 

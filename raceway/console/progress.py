@@ -66,6 +66,7 @@ def show_progress(doing: str = "done", unit: str = "") -> "Progress":
     def report(done: int, total: int) -> None:
         nonlocal last
         current, now = pace(done, total), time.monotonic()
+        # the last report is always shown
         if done == total or now - last >= between:
             last = now
             ending = f"in {show.duration(now - start)}" if done == total else current

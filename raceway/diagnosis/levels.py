@@ -48,6 +48,7 @@ def levels_of(x: FloatArray, fs: float, recording: str, channel: str, unit: str,
     mean = float(np.mean(x, dtype=float))
     centred = np.asarray(x, dtype=float) - mean
     rms, peak = float(np.std(centred)), float(np.abs(centred).max())
+    # a constant signal has no shape
     constant = rms == 0
     crest = np.nan if constant else peak / rms
     kurtosis = np.nan if constant else float(np.mean((centred / rms) ** 4))

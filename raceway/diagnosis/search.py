@@ -174,11 +174,13 @@ def find_pairs(spectra: LevelSpectra, given: Given) -> tuple[tuple[Pair, ...], t
     (low, high), rates, evidence = given.rates, grid.rates, grid.evidence
     within = (rates >= given.searched[0]) & (rates <= given.searched[1])
     error = np.log(rates / low) if low == high else np.zeros(len(rates))
+    # far from a label a speed needs better evidence
     pairs = grid.best(np.where(within, evidence - PENALTY * (error / LABEL_TOLERANCE) ** 2, -np.inf))
     if given.known:
         pairs = _corrected(grid, pairs[0], clear=len(pairs) == 1)
     names = list(grid.alike)
     own = max(evidence[names.index(pair.bearing), grid.near(pair.rate)].max() for pair in pairs)
+    # only strong combs accuse the given speed and bearing
     strong = np.where(grid.combs.max(axis=1) > STRONG_COMB, evidence, -np.inf)
     elsewhere = grid.best(strong) if strong.max() > own + CLEAR_MARGIN else []
     return tuple(pairs), tuple(elsewhere)

@@ -216,12 +216,14 @@ def score_methods(lives: Lives, tested: Lives) -> pd.DataFrame:
 def scores_of(lives: Lives, estimates: Mapping[str, FloatArray]) -> pd.DataFrame:
     """Scores of estimates of the remaining lives, as of `score_lives`."""
     at = {f"mae_{100 * share:.0f}": _places(lives, share) for share in SHARES}
+    # all places at which lives are scored
     every = np.concatenate([*at.values()])
     before, truth = ~lives.damaged & np.isfinite(lives.rul), lives.rul[every]
     rows = {}
     for name, estimate in estimates.items():
         error = estimate - lives.rul
         row = {score: float(np.abs(error[places]).mean()) for score, places in at.items()}
+        # long estimates count worse than short ones
         row["phm_2012"] = float(phm_2012(truth, estimate[every]).mean())
         row["alpha_lambda"] = float((np.abs(error[every]) <= WITHIN * truth).mean())
         row["concordance"] = concordance(lives, estimate)

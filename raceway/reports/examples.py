@@ -42,6 +42,7 @@ def draw_overview(corpus: xr.Dataset) -> Figure:
         If no record can be drawn.
     """
     chosen = [chosen_example(corpus, code)[0] for code in np.unique(corpus["fault"].values)]
+    # a class may have no record that can be drawn
     drawn = [shown for shown in chosen if shown is not None]
     if not drawn:
         raise ValueError("no record has a signal, a shaft rate and fault orders to draw.")

@@ -270,6 +270,7 @@ def _features(
     if path is None:
         return
     table = read_table(path)
+    # a table of other records would put wrong values beside each record
     if IDENTITY not in table or not np.array_equal(table[IDENTITY].values, corpus[IDENTITY].values):
         raise CorpusError(f"{path}: has other records than the corpus; compute it again with raceway features.")
     several = "channel" in table.coords

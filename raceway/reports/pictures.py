@@ -150,6 +150,7 @@ def draw_waveform(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = No
     visible = int(np.searchsorted(turned, TURNS)) / shown.fs
     for one, look in ((under, UNDER), (shown, OVER)):
         if one is not None:
+            # the weaker of both is drawn above the stronger one
             x = one.signal[: max(2, round(visible * one.fs))] - np.mean(one.signal)
             axes.plot(*thin(np.arange(x.size) / one.fs, x), linewidth=0.6, zorder=2 + 1 / (1 + np.std(x)), **look)
     axes.set(xlabel="time [s]", ylabel=f"acceleration [{shown.unit}]", xlim=(0, visible))
@@ -174,6 +175,7 @@ def draw_density(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = Non
     for one, look in ((under, UNDER), (shown, OVER)):
         if one is not None:
             frequencies, density = psd(one.signal[None], one.fs, SEGMENT)
+            # an axis of some decades, whatever a silent line has
             faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
             axes.plot(
                 from_si(frequencies, "khz"), 10 * np.log10(np.maximum(density[0], faintest)), linewidth=0.8, **look

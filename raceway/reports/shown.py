@@ -77,6 +77,7 @@ def shown_of(record: xr.Dataset, number: int, channel: int, *, named: bool = Fal
         orders=Orders(*(np.asarray(record[name].values, dtype=float) for name in Orders._fields)),
         fault=fault,
     )
+    # at a varying speed the angle of the shaft is tracked in the signal
     ends = [float(record[name]) for name in ("first_shaft_rate", "last_shaft_rate") if name in record]
     return _turning(shown, *(sorted(ends) if len(ends) == 2 else [shown.shaft_rate] * 2))
 

@@ -103,6 +103,7 @@ def plain_names(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:
         plain = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:_LONGEST_NAME]
         plain = plain if plain[:1].isalpha() else f"x{plain}"
         number, tried = 1, plain
+        # two names may become the same, and some programs know no capital letters
         while tried.lower() in used:
             number += 1
             tried = f"{plain[: _LONGEST_NAME - 8]}_{number}"

@@ -201,6 +201,7 @@ def _field(name: str, variable: xr.Variable, source: Mapping[str, Any]) -> dict[
     }
     if name == SIGNAL:
         field |= {"isArray": True, "arrayShape": ",".join(str(size) for size in variable.shape[1:])}
+    # codes whose names stand in a list of the file
     if name in ("fault", "split"):
         field["references"] = {"field": {"@id": f"{name}s/code"}}
     return field

@@ -103,6 +103,7 @@ def copy(
     paths = [Path(path) for path in ([sources] if isinstance(sources, str | Path) else sources)]
     target = Path(target)
     form = _form(target, to, codec)
+    # before anything is read
     check_new(target)
     write = _writer(form, single=target.suffix in SUFFIXES)
     with choose(paths, where=where, split=split, channels=channels, rename=rename, float32=float32) as chosen:
@@ -110,6 +111,7 @@ def copy(
         remove_left_behind_of(target.absolute())
         with _place(form, target, chosen.recipe, codec or "zlib") as place:
             write(export, place)
+            # hashes of the records are known when all are written; the target is then still temporary
             chosen.check_repeats()
     files = [target] if target.is_file() else [path for path in target.rglob("*") if path.is_file()]
     size = sum(path.stat().st_size for path in files)

@@ -45,5 +45,6 @@ class DroppedSamples(SensorFault):
         for start, hold in zip(starts, held, strict=True):
             gap = slice(start, start + size)
             filled[:, gap] = filled[:, start - 1 : start] if hold else 0.0
+            # gaps may overlap, and a sample is lost once
             lost[gap] = True
         return filled, int(np.count_nonzero(lost))

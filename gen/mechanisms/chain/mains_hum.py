@@ -36,6 +36,7 @@ class MainsHum(SensorFault):
         orders = 1 + 2 * np.arange(round(drawn["count"]) + 1)
         phases = rng.random(len(orders)) * 2 * math.pi
         frequencies = orders * drawn["frequency"] * (1 + drawn["deviation"])
+        # odd multiples fall as 1/order from the third on
         levels = drawn["rms"] * np.where(orders == 1, 1.0, 3 * decibel_to_ratio(drawn["third"]) / orders)
         hum = np.zeros(length)
         for frequency, level, phase in zip(frequencies, levels, phases, strict=True):

@@ -46,11 +46,13 @@ class Saturation(SensorFault):
         drawn = self.si()
         limit, knee = drawn["limit"], drawn["knee"] * drawn["limit"]
         if drawn["recovery"] > 0:
+            # what lies beyond the limit charges a low pass, whose output shifts the baseline
             kept = math.exp(-1 / (drawn["recovery"] * fs))
             beyond = signal - np.clip(signal, -limit, limit)
             signal = signal - recursive(1 - kept, kept, beyond)
         count = int(np.count_nonzero(np.abs(signal) >= limit + knee))
         output = np.clip(signal, -limit - knee, limit + knee)
+        # the gain falls linearly to 0 within the knee: a parabola in the output
         if knee > 0:
             over = np.maximum(np.abs(output) - (limit - knee), 0.0)
             output -= np.copysign(over**2 / (4 * knee), output)
