@@ -128,19 +128,24 @@ def generate(
     target = Path(target)
     check_place(target)
     is_file = is_single_file(target)
+    # a single file is made from parts that lie beside it until it is whole
     folder = target.with_name(f"{target.name}.parts") if is_file else target
+    # what tells whether parts of an earlier call belong to this corpus
     facts = facts_of(checked, {"seed": seed, "records": records})
     if parts is not None:
         check_parts(checked, parts, target)
     elif is_file and target.exists():
         return _finished_before(target, folder, checked, facts)
+    # workers of this machine start later, if a part is missing at all
     with nullcontext(workers) if scheduler is None else connected(scheduler, _SIMULATOR) as place, claim(folder):
         if is_file:
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
+        # a recipe of a file is kept with its comments
         text = find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode()
         facts = prepare(folder, text, facts, checked)
         every = range(checked.n_parts)
+        # parts made on other machines stay
         wanted = every if parts is None else sorted({*parts, *part_numbers(folder)})
         outcomes = _all_parts(checked, wanted, folder, place, progress, notice)
         corpus = _finish(target, folder, text, outcomes, facts)
@@ -201,6 +206,7 @@ def _all_parts(
     report = counter(progress, sum(counts.values()))
     outcomes = dict[int, Outcome]()
     # what an earlier call made comes first
+    # whole parts of an earlier call are kept
     for part in parts:
         if (kept := _kept(recipe, folder, part)) is not None:
             outcomes[part] = kept
@@ -209,6 +215,7 @@ def _all_parts(
         here = isinstance(workers, int)
         if here and (sentence := too_many(workers)) is not None:
             notice(sentence)
+        # the recipe travels to each worker once, not with each part
         task = partial(_write, recipe, folder.resolve(), sources_sha256())
         with connected(min(workers, len(missing)) if here else workers, _SIMULATOR) as place:
             if here:

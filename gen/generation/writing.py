@@ -67,8 +67,10 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
     recipes = [_recipe_of(text) if text else None for text in draws]
     signal, full_scale, unchanged = _signal(rows[SIGNAL].values, recipes)
     stored = _stored(rows, np.where(unchanged, draws, ""), signal, full_scale)
+    # only all records of one recipe make a corpus of that recipe
     recipe = _whole_recipe(rows) if unchanged.all() else None
     if recipe is None:
+        # otherwise the parts are cut by number
         parts, codec, text = np.arange(len(signal)) // _PART_RECORDS, "zlib", None
         names = dict.fromkeys(of.name for of in recipes if of is not None)
         facts = {
@@ -143,7 +145,9 @@ def _stored(
 ) -> xr.Dataset:
     """The records in the layout of the corpus (undecoded)."""
     variables = {variable.name: variable for variable in SCHEMA + LABELS + LIFE if variable.name in rows.variables}
+    # names of classes follow from their codes
     derived = {SIGNAL, "channel", "elapsed_time", *(f"{name}_name" for name in NAMED)}
+    # variables of the user's own
     for name in sorted(map(str, rows.variables.keys() - variables.keys() - derived)):
         values, attributes = rows[name], rows[name].attrs
         if values.dims != ("record",) or "long_name" not in attributes or attributes.get("role") not in ROLES:
@@ -155,6 +159,7 @@ def _stored(
         unit = attributes.get("units", "1")
         variables[name] = Variable(name, kind, unit, attributes["role"], attributes["long_name"])
     columns = {name: rows[name].values for name in variables} | {DRAWS: draws}
+    # numbers of a corpus of its own; the identity keeps the old ones
     columns |= new_numbers([str(text) for text in rows[IDENTITY].values])
     stored = make_dataset(
         signal,
