@@ -9,28 +9,25 @@ import numpy as np
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate_lanes
 from gen.physics.kernel.layout import Batch, Shape
-from gen.support.kernels import KernelCache
+from gen.support.garbage import keep_garbage
+from gen.support.kernels import is_on_disk
 
 DIMENSIONS = {"schedule": 3, "tables": 2}
 """Dimensions of the arrays of a batch that have more than one."""
 
 _kernel: Any = integrate_lanes
-_on_disk: KernelCache | None = _kernel._cache if _kernel.stats.cache_path is not None else None  # noqa: SLF001
 
 
 def is_compiled() -> bool:
     """Whether the kernel is loaded or on disk."""
-    return signature() in _kernel.overloads or (_on_disk is not None and _on_disk.has(signature()))
+    return signature() in _kernel.overloads or is_on_disk(_kernel, signature())
 
 
 def load_kernel() -> None:
-    """Load the kernel, or compile it if neither the disk nor another process has it."""
-    if signature() in _kernel.overloads:
-        return
-    if _on_disk is None:
-        _kernel.compile(signature())
-    else:
-        _on_disk.load(signature())
+    """Load the kernel, or compile it if it is not on disk."""
+    if signature() not in _kernel.overloads:
+        with keep_garbage():
+            _kernel.compile(signature())
 
 
 @functools.cache

@@ -1,104 +1,58 @@
-"""Compiled kernels on disk, for several processes: kept under the hash of their sources, and compiled again if a file is damaged.
+"""Compiled kernels on disk: numba's cache, in files that processes can write at the same time and that show whether they are damaged.
 
-Numba keeps compiled functions in a folder: that of the environment variable NUMBA_CACHE_DIR, else ``__pycache__`` beside the source, else
-one of the user. It looks for changes in the file of a function alone, not in those of the functions that it calls, and fails on a damaged
-file. While a process compiles a kernel, or adds it to the index, it holds the lock of a file in that folder. Where no such file can be
-made or locked, processes may compile the same kernel at once: slower, and harmless.
+Numba keeps compiled functions in the folder of the environment variable NUMBA_CACHE_DIR, else in ``__pycache__`` beside the source, else in
+one of the user. It looks for changes in the file of a function alone, not in those of the functions that it calls. It fails on a damaged
+file [1]_, and two processes that compile variants of a function at the same time can give both the same file [2]_. So each variant has a
+file of its own here, which begins with a hash of sources, types and content; any other file counts as missing and is replaced.
+
+.. [1] https://github.com/numba/numba/issues/10128
+.. [2] https://github.com/numba/numba/issues/4807
 """
 
 import pickle
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import suppress
 from hashlib import sha256
 from typing import Any
 
 import numba
-from filelock import FileLock
 from numba.core.caching import FunctionCache, IndexDataCacheFile
-
-from gen.support.garbage import keep_garbage
 
 _HASH_BYTES = 32
 
 
-class _WholeFiles(IndexDataCacheFile):
-    """Files that begin with a hash of sources and content; a file with another hash, or of another kernel, counts as missing."""
+class _VariantFiles(IndexDataCacheFile):
+    """One file for each variant of a function, in place of numba's index and numbered files."""
 
     def save(self, key: Any, data: Any) -> None:
-        super().save(key, (key, data))
+        content = self._dump(data)
+        with self._open_for_write(self._path(key)) as file:  # written under another name, then renamed
+            file.write(self._hash(key, content) + content)
 
     def load(self, key: Any) -> Any:
-        stored, data = super().load(key) or (None, None)
-        return data if stored == key else None
-
-    def _dump(self, obj: Any) -> bytes:
-        content = super()._dump(obj)
-        return self._hash(content) + content
-
-    def _hash(self, content: bytes) -> bytes:
-        return sha256(repr(self._source_stamp).encode() + content).digest()
-
-    def _read(self, path: str) -> Any:
-        with open(path, "rb") as file:  # noqa: PTH123 - without pathlib, as all that the pure core imports
+        with suppress(OSError), open(self._path(key), "rb") as file:  # noqa: PTH123 - the pure core imports no pathlib
             stored, content = file.read(_HASH_BYTES), file.read()
-        if stored != self._hash(content):
-            raise FileNotFoundError(f"{path}: is damaged, or of other sources")
-        return pickle.loads(content)  # noqa: S301 - this machine wrote it
+            if stored == self._hash(key, content):
+                return pickle.loads(content)  # noqa: S301 - this machine wrote it
+        return None
 
-    def _load_index(self) -> dict[Any, str]:
-        try:
-            return self._read(self._index_path)
-        except OSError:
-            return {}
+    def _path(self, key: Any) -> str:
+        return self._data_path(self._data_name(int(sha256(repr(key).encode()).hexdigest()[:16], 16)))
 
-    def _save_index(self, overloads: dict[Any, str]) -> None:
-        with self._open_for_write(self._index_path) as file:
-            file.write(self._dump(overloads))
-
-    def _load_data(self, name: str) -> Any:
-        return self._read(self._data_path(name))
+    def _hash(self, key: Any, content: bytes) -> bytes:
+        return sha256(repr((self._source_stamp, key)).encode() + content).digest()
 
 
-class KernelCache(FunctionCache):
-    """Numba's cache on disk of one function, for several processes that compile it at the same time."""
+class _KernelCache(FunctionCache):
+    """Numba's cache of one function, whose ``sources`` have a hash."""
 
     def __init__(self, dispatcher: Any, sources: str) -> None:
         super().__init__(dispatcher.py_func)
         stamp = numba.__version__, sources, self._impl.locator.get_source_stamp()
-        self._cache_file = _WholeFiles(self.cache_path, self._impl.filename_base, stamp)
-        self._dispatcher = dispatcher
-
-    def load(self, types: tuple[Any, ...]) -> None:
-        """Load the function for arguments of these types; if it is not on disk, compile it, unless another process does so already."""
-        with ExitStack() as held:
-            if not self.has(types):
-                held.enter_context(self._lock(sha256(repr(self._key(types)).encode()).hexdigest()[:16]))
-            held.enter_context(keep_garbage())
-            self._dispatcher.compile(types)  # numba looks on disk first
-
-    def has(self, types: tuple[Any, ...]) -> bool:
-        """Whether the function for arguments of these types is on disk."""
-        return self._cache_file.load(self._key(types)) is not None
+        self._cache_file = _VariantFiles(self.cache_path, self._impl.filename_base, stamp)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Save the function that was compiled; without an error if the disk is full.
-
-        Numba reads the index, adds the function and writes it back: of two processes that do so at once one would lose its function, or
-        both would write the same file.
-        """
-        with self._lock("index"), suppress(OSError):
+        with suppress(OSError):  # the disk is full: the function stays in memory
             super().save_overload(sig, data)
-
-    def _key(self, types: tuple[Any, ...]) -> Any:
-        """Types and processor, as numba identifies a compiled function."""
-        return self._index_key(types, self._dispatcher.targetctx.codegen())
-
-    @contextmanager
-    def _lock(self, name: str) -> Iterator[None]:
-        with ExitStack() as held:
-            with suppress(OSError):
-                held.enter_context(FileLock(f"{self.cache_path}/{name}.lock"))
-            yield
 
 
 def keep_on_disk(dispatcher: Any, sources: str) -> Any:
@@ -107,5 +61,10 @@ def keep_on_disk(dispatcher: Any, sources: str) -> Any:
     They stay in memory alone where no folder can be written.
     """
     with suppress(RuntimeError):  # numba found no folder
-        dispatcher._cache = KernelCache(dispatcher, sources)  # noqa: SLF001 - numba has no public way to name the cache
+        dispatcher._cache = _KernelCache(dispatcher, sources)  # noqa: SLF001 - numba has no public way to name the cache
     return dispatcher
+
+
+def is_on_disk(dispatcher: Any, types: tuple[Any, ...]) -> bool:
+    """Whether a function for arguments of these types is on disk."""
+    return dispatcher._cache.load_overload(types, dispatcher.targetctx) is not None  # noqa: SLF001

@@ -62,26 +62,26 @@ def compiled_to_disk(function: Callable[..., Any]) -> Any:
     return keep_on_disk(njit(**KERNEL)(function), hash_sources("gen/physics"))
 
 
-def _make_wide(context: Any) -> Any:  # noqa: ARG001
+def _make_wide(_typing: Any) -> Any:
     """Allow 512-bit vectors in the loops over lanes of the calling function.
 
     LLVM limits vectors to 256 bits on Intel processors of 2019 to 2024, and half of their arithmetic units would be unused.
     """
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+    def generate(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
         set.add(builder.function.attributes, '"prefer-vector-width"="512"')  # llvmlite's own add() knows no such names
         return context.get_dummy_value()
 
     return types.void(), generate
 
 
-def _make_lane_count(context: Any, n_records: Any) -> Any:  # noqa: ARG001
+def _make_lane_count(_typing: Any, _n_records: Any) -> Any:
     """Lanes of whole vectors that hold so many records, at most ``LANES``.
 
     Their number is hidden from LLVM, which otherwise unrolls a short loop over lanes before it tries to vectorise it.
     """
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         _, _, features = context.codegen().magic_tuple()
         whole, bits = ir.IntType(64), 3 if "+avx512f" in features else 2  # numbers of 64 bits in a vector: 8 or 4
         vectors = builder.lshr(builder.add(arguments[0], whole((1 << bits) - 1)), whole(bits))
@@ -92,10 +92,10 @@ def _make_lane_count(context: Any, n_records: Any) -> Any:  # noqa: ARG001
     return types.intp(types.intp), generate
 
 
-def _make_as_lane(context: Any, number: Any) -> Any:  # noqa: ARG001
+def _make_as_lane(_typing: Any, _lane: Any) -> Any:
     """A number that is a lane; LLVM does not see that in long loops, and would load vectors value by value."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+    def generate(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         _assume_below(builder, arguments[0], LANES)
         return arguments[0]
 
@@ -108,38 +108,38 @@ def _assume_below(builder: Any, number: Any, limit: int) -> None:
     builder.call(assume, [builder.icmp_unsigned("<", number, ir.Constant(ir.IntType(64), limit))])
 
 
-def _make_fma(context: Any, a: Any, b: Any, c: Any) -> Any:  # noqa: ARG001
+def _make_fma(_typing: Any, a: Any, b: Any, c: Any) -> Any:
     """``a * b + c``, rounded once; in single precision if all three are."""
     kind = types.float32 if a == b == c == types.float32 else types.float64
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+    def generate(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         return builder.fma(*arguments)
 
     return kind(kind, kind, kind), generate
 
 
-def _make_fast_divider(context: Any) -> Any:  # noqa: ARG001
+def _make_fast_divider(_typing: Any) -> Any:
     """Whether the processor computes square roots about as fast as :func:`square_root`, beside other arithmetic, as AMD's do.
 
     Eight square roots take 8 cycles on Zen 5 and up to 24 on Golden Cove. LLVM drops the code that is not used.
     """
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+    def generate(context: Any, _builder: Any, _signature: Any, _arguments: Any) -> Any:
         _, processor, _ = context.codegen().magic_tuple()  # numba's cache has kernels apart by these three
         return context.get_constant(types.boolean, processor.startswith("znver"))
 
     return types.boolean(), generate
 
 
-def _make_bits(context: Any, x: Any) -> Any:  # noqa: ARG001
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+def _make_bits(_typing: Any, _x: Any) -> Any:
+    def generate(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         return builder.bitcast(arguments[0], ir.IntType(64))
 
     return types.int64(types.float64), generate
 
 
-def _make_number(context: Any, bits: Any) -> Any:  # noqa: ARG001
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+def _make_number(_typing: Any, _of: Any) -> Any:
+    def generate(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         return builder.bitcast(arguments[0], ir.DoubleType())
 
     return types.float64(types.int64), generate

@@ -1,8 +1,4 @@
-"""Laws of compiling: once per machine, whatever happens to the processes and to the folder of the kernels."""
-
-import os
-import subprocess
-import sys
+"""Laws of compiling: once per machine, before the first record."""
 
 import numba
 import pytest
@@ -14,20 +10,6 @@ from gen.physics.kernel.decimate import decimation
 from gen.scenarios import draw_scenarios
 from gen.simulation.kernels import signature
 from tests.responses import input_of
-
-
-def test_kernels_work_where_numba_finds_no_folder():
-    code = """
-from numba.core.caching import CacheImpl
-CacheImpl._locator_classes = []
-from features.signal.rows import total
-from gen.physics.rattle import _rattle
-from gen.simulation import kernels
-print(kernels.is_compiled(), _rattle.stats.cache_path, total.stats.cache_path)
-"""
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, env=environment)
-    assert run.stdout == "False None None\n", run.stderr
 
 
 def test_the_kernel_is_compiled_for_the_types_of_the_arguments_it_is_called_with(recipe_with):
