@@ -64,16 +64,23 @@ def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset |
         If the table lacks a feature of the model or is computed from another band, features or model contain numbers too large to
         compute with, or the model or the records cannot be used with the reference.
     """
-    if isinstance(data, Waveforms) == bool(model.features):
-        takes = "features" if model.features else "waveforms"
-        title = title_of(data.labels if isinstance(data, Waveforms) else data)
-        raise CorpusError(f"{title}: {model.name} was trained on {takes}; give {takes}.")
-    # signals are of one channel, and are compared with no reference
     if isinstance(data, Waveforms):
-        each = estimator_probabilities(model, data, title_of(data.labels))
-        return predictions(each, model.classes, recording_numbers(data.labels), model.calibration)
-    # records shorter than those of the training have a model of their own
-    table, model = data, suited(model, durations_of(data))
+        return _of_waveforms(data, model)
+    return _of_table(data, model, reference)
+
+
+def _of_waveforms(data: Waveforms, model: Fitted) -> Predictions:
+    title = title_of(data.labels)
+    if model.features:
+        raise CorpusError(f"{title}: {model.name} was trained on features; give features.")
+    each = estimator_probabilities(model, data, title)
+    return predictions(each, model.classes, recording_numbers(data.labels), model.calibration)
+
+
+def _of_table(table: xr.Dataset, model: Fitted, reference: xr.Dataset | None) -> Predictions:
+    if not model.features:
+        raise CorpusError(f"{title_of(table)}: {model.name} was trained on waveforms; give waveforms.")
+    model = suited(model, durations_of(table))
     tables, used, colour = channels_of(table), model, None
     # a reference has a model of its own, of features relative to healthy records
     if reference is not None:

@@ -24,7 +24,6 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from features.baselines.names import BASELINES
 from features.baselines.own import Maker, OwnClassifier
 from features.baselines.records import FloatArray, IntArray
 from gen.corpus import FAULTS
@@ -131,7 +130,7 @@ def majority(seed: int) -> DummyClassifier:
     return DummyClassifier(strategy="most_frequent", random_state=seed)
 
 
-def envelope_rule(seed: int) -> EnvelopeRule:  # noqa: ARG001
+def envelope_rule(_seed: int) -> EnvelopeRule:
     """The untrained rule on combs of fault lines."""
     return EnvelopeRule()
 
@@ -212,7 +211,19 @@ def relative_ensemble(seed: int) -> VotingClassifier:
     return VotingClassifier(members, voting="soft", weights=[2, 1])
 
 
-ESTIMATORS: dict[str, Callable[[int], Estimator]] = {name: globals()[name] for name in BASELINES}
+ESTIMATORS: dict[str, Callable[[int], Estimator]] = {
+    maker.__name__: maker
+    for maker in (
+        majority,
+        envelope_rule,
+        logistic_regression,
+        svm,
+        random_forest,
+        extra_trees,
+        gradient_boosting,
+        ensemble,
+    )
+}
 RELATIVE_ESTIMATORS: dict[str, Callable[[int], Estimator]] = {"relative_ensemble": relative_ensemble}
 """Estimators for records relative to a reference alone; the other baselines take such records as they are."""
 

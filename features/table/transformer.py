@@ -69,7 +69,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         self.band = band
         self.speed = speed
 
-    def fit(self, X: ArrayLike, y: object = None) -> Self:  # noqa: ARG002
+    def fit(self, X: ArrayLike, y: object = None) -> Self:
         """Store the number of samples of X, shape (record, time)."""
         self._signals(X, reset=True)
         return self
@@ -108,7 +108,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         x: Any = X
         return np.asarray(validate_data(self, x, dtype=_FLOATS, ensure_all_finite=False, reset=reset))
 
-    def get_feature_names_out(self, input_features: object = None) -> np.ndarray:  # noqa: ARG002
+    def get_feature_names_out(self, input_features: object = None) -> np.ndarray:
         """Names of the features, shape (feature,)."""
         check_is_fitted(self, "n_features_in_")
         return np.array(feature_names(self.groups, checked_band(*self.band)), dtype=object)

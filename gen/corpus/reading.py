@@ -120,7 +120,7 @@ class _Records(BackendEntrypoint):
         self,
         filename_or_obj: Any,
         *,
-        drop_variables: Any = None,  # noqa: ARG002 - an argument that xarray passes
+        drop_variables: Any = None,
         parts: Sequence[Path],
         counts: Sequence[int] | None,
     ) -> xr.Dataset:

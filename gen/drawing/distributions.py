@@ -100,7 +100,7 @@ class Constant(_Distribution):
         """The value, if nothing else is given."""
         return self.value if self.model_fields_set <= {"kind", "value"} else expression_of(self)
 
-    def draw(self, u: float) -> float:  # noqa: ARG002 - the same for every quantile
+    def draw(self, u: float) -> float:
         """Return the value."""
         return self.value
 

@@ -166,7 +166,7 @@ class Section(BaseModel):
             }
         return values["_si"]
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:  # noqa: ARG002 - frozen
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Copy of the section with some other values, which are not checked; that of pydantic takes four times as long."""
         copy, new = object.__new__(type(self)), update or {}
         values, given = {**self.__dict__, **new}, self.__pydantic_fields_set__

@@ -34,27 +34,27 @@ def fault_entries(value: Any) -> Any:
     defaults, entries = value["defaults"], value["entries"]
     if not isinstance(entries, list | tuple) or not all(isinstance(entry, Mapping) for entry in entries):
         return entries
-    taken: set[str] = set()
-    filled = [_fill(dict(entry), defaults, taken) for entry in entries]
-    # a default that no entry takes is misspelt
-    unknown = next((key for key in defaults if key not in taken), None)
+    known = {key for entry in entries for fault in (entry, *_parts(entry)) for key in _keys(fault)}
+    unknown = next((key for key in defaults if key not in known), None)
     if unknown is not None:
-        known = {key for entry in entries for key in _keys(entry)}
         near = difflib.get_close_matches(str(unknown), known, 1)
         raise ValueError(
             f"defaults: {unknown} is a key of no entry" + (f"; did you mean {near[0]}?" if near else "; leave it out.")
         )
-    return filled
+    return [_filled(entry, defaults) for entry in entries]
 
 
-def _fill(entry: dict[str, Any], defaults: Mapping[str, Any], taken: set[str]) -> dict[str, Any]:
-    if isinstance(entry.get("parts"), list | tuple):
-        entry["parts"] = [
-            _fill(dict(part), defaults, taken) if isinstance(part, Mapping) else part for part in entry["parts"]
-        ]
-    own = {key: value for key, value in defaults.items() if key in _keys(entry)}
-    taken.update(own)
-    return {**own, **entry}
+def _filled(entry: Any, defaults: Mapping[str, Any]) -> Any:
+    if not isinstance(entry, Mapping):
+        return entry
+    parts = {"parts": [_filled(part, defaults) for part in entry["parts"]]} if _parts(entry) else {}
+    return {key: value for key, value in defaults.items() if key in _keys(entry)} | dict(entry) | parts
+
+
+def _parts(entry: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Faults of which an entry consists."""
+    parts = entry.get("parts")
+    return [part for part in parts if isinstance(part, Mapping)] if isinstance(parts, list | tuple) else []
 
 
 def _keys(entry: Mapping[str, Any]) -> set[str]:

@@ -29,9 +29,6 @@ def _entry(kind: type[BearingFault]) -> Any:
 
 
 _ENTRIES = tuple(map(_entry, KINDS))
-globals().update(
-    {entry.__name__: entry for entry in _ENTRIES}
-)  # where recipes that are sent to processes look for them
 OF_KIND = {kind: one for one in _ENTRIES for kind in get_args(one.model_fields["kind"].annotation)}
 """Entry of each kind."""
 
@@ -39,6 +36,14 @@ if TYPE_CHECKING:
     Fault = FaultEntry
 else:
     Fault = Annotated[functools.reduce(operator.or_, _ENTRIES), Field(discriminator="kind")]
+
+
+def __getattr__(name: str) -> Any:
+    """Entry by the name of its class, as pickle asks for it where a recipe arrives in another process."""
+    for entry in _ENTRIES:
+        if entry.__name__ == name:
+            return entry
+    raise AttributeError(name)
 
 
 def fault_class(fault: Fault) -> str:

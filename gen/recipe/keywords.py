@@ -70,9 +70,7 @@ def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | N
             data[name] = value | section
     corpus = data.setdefault("corpus", {})
     if isinstance(corpus, dict) and isinstance(data["faults"], list):
-        # in turn, so that each fault has as many records
-        corpus.setdefault("fault_choice", "in_turn")
-        _count(corpus, max(len(data["faults"]), 1), n)
+        data["corpus"] = _counted({"fault_choice": "in_turn", **corpus}, max(len(data["faults"]), 1), n)
     data.setdefault("title", _title(data))
     return Recipe(**data)
 
@@ -138,19 +136,17 @@ def _places() -> dict[str, dict[tuple[str, ...], set[str]]]:
     return places
 
 
-def _count(corpus: dict[str, Any], n_faults: int, n: int | None) -> None:
-    """Complete the counts of a corpus so that each fault has ``n`` records; wrong counts are left to the model."""
+def _counted(given: Mapping[str, Any], n_faults: int, n: int | None) -> dict[str, Any]:
+    """A corpus with all its counts, so that each fault has ``n`` records; wrong counts are left to the model."""
+    corpus: dict[str, Any] = {"records_per_specimen": 1, **given}
     rungs = corpus.get("rungs")
-    corpus.setdefault("records_per_specimen", 1)
     counts = [corpus[name] for name in _COUNTED if name in corpus]
     if any(type(count) is not int or count < 1 for count in counts) or not isinstance(rungs, list | None):
-        for name in _COUNTED:
-            corpus.setdefault(name, 1)
-        return
+        return dict.fromkeys(_COUNTED, 1) | corpus
     of_a_specimen = corpus["records_per_specimen"] * len(rungs or [1])
     # both counts are given, and nothing is left to complete
     if n is None and {"rigs", "specimens_per_rig"} <= corpus.keys():
-        return
+        return corpus
     n = of_a_specimen if n is None else n
     if type(n) is not int or n < 1:
         raise RecipeError(f"n: {n!r} is not allowed; it must be a whole number of records, 1 or more.")
@@ -167,14 +163,14 @@ def _count(corpus: dict[str, Any], n_faults: int, n: int | None) -> None:
                 f"change one of the two."
             )
         if one in corpus:
-            corpus.setdefault(other, specimens // corpus[one])
-    corpus.setdefault("rigs", 1)
-    corpus.setdefault("specimens_per_rig", specimens)
+            corpus = {other: specimens // corpus[one], **corpus}
+    corpus = {"rigs": 1, "specimens_per_rig": specimens, **corpus}
     if corpus["rigs"] * corpus["specimens_per_rig"] != specimens:
         raise RecipeError(
             f"n: {n} records of each of {n_faults} faults take {specimens} specimens, and rigs * specimens_per_rig are "
             f"{corpus['rigs'] * corpus['specimens_per_rig']}; leave one of the three out."
         )
+    return corpus
 
 
 def _title(data: Mapping[str, Any]) -> str:

@@ -44,7 +44,7 @@ class RunUp(Section):
     lasting_s: Distribution = within(0, 600, open_low=True)
     """Duration of the change."""
 
-    def course(self, duration: float) -> Profile:  # noqa: ARG002
+    def course(self, duration: float) -> Profile:
         """The drawn change, whatever the length of the record."""
         drawn = self.si()
         times = drawn["start"], drawn["start"] + drawn["lasting"]
@@ -79,7 +79,7 @@ class Table(Section):
     percent: Annotated[tuple[Share, ...], Field(min_length=1, max_length=10_000)]
     """Share of the drawn speed or load at each point."""
 
-    def course(self, duration: float) -> Profile:  # noqa: ARG002
+    def course(self, duration: float) -> Profile:
         """The points, whatever the length of the record."""
         return Profile(self.times_s, tuple(map(percent_to_share, self.percent)))
 

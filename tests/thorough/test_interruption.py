@@ -1,6 +1,5 @@
 """After any interruption finished files are kept, no file is incomplete, and the same command completes the work."""
 
-import fcntl
 import os
 import re
 import shutil

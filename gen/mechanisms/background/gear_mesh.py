@@ -50,7 +50,7 @@ class GearMesh(LockedSource):
     phase_deg: Distribution = within(0, 180, default=0.0)
     """Peak of the phase modulation once per turn of the shaft, in degrees of the mesh cycle; n times this at the nth multiple."""
 
-    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:  # noqa: ARG002
+    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
         """Vibration of the mesh. The angle of the mate at the first sample is random: other teeth meet there in each record.
 
         A multiple of the mesh above half the sample rate, which the anti-alias filter would remove, is left out.

@@ -91,7 +91,7 @@ class MachineConditions(LockedSource):
         one = self.model_copy(update={"entries": (self.entries[chosen],)})
         return super(MachineConditions, one).draw(of)
 
-    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:  # noqa: ARG002
+    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
         """Lines and bursts of the condition; their phases belong to the rig."""
         (condition,), of_rig = self.entries, stream(level="rig")
         start = 2 * math.pi * of_rig.random()

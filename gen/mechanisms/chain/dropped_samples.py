@@ -24,7 +24,7 @@ class DroppedSamples(SensorFault):
     held_percent: Distribution = within(0, 100, default=50.0)
     """Share of the gaps filled with the last sample before them; the others are filled with 0."""
 
-    def problem(self, full_scale: float | None, duration: float) -> str | None:  # noqa: ARG002
+    def problem(self, full_scale: float | None, duration: float) -> str | None:
         """A gap as long as a record."""
         longest = self.gap_s.support()[1]
         if longest < duration:

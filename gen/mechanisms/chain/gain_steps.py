@@ -24,7 +24,7 @@ class GainSteps(SensorFault):
     def disturb(
         self,
         signal: FloatArray,
-        fs: float,  # noqa: ARG002
+        fs: float,
         rng: np.random.Generator,
     ) -> Disturbed:
         """Signal times a gain, which every step multiplies; the steps are at random times."""

@@ -51,7 +51,7 @@ class LooseMount(SensorFault):
             )
         return self.model_copy(update={"loose_channels": loose, "probability": 1.0}).drawn(of) if loose else None
 
-    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:  # noqa: ARG002
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:
         """Signal of sensors that resonate and rattle."""
         from gen.physics.rattle import rattling  # compiled: a recipe is read without numba
 

@@ -26,7 +26,7 @@ class Saturation(SensorFault):
     recovery_s: Distribution = within(0, 10, default=0.0)
     """Time constant in which an overload charges the amplifier and it discharges again: a shifted baseline; 0 for no shift."""
 
-    def problem(self, full_scale: float | None, duration: float) -> str | None:  # noqa: ARG002
+    def problem(self, full_scale: float | None, duration: float) -> str | None:
         """A limit that the converter never lets the signal reach."""
         lowest = self.limit_m_s2.support()[0]
         if full_scale is None or lowest < full_scale:
@@ -36,7 +36,7 @@ class Saturation(SensorFault):
             "lower the limit."
         )
 
-    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:  # noqa: ARG002
+    def disturb(self, signal: FloatArray, fs: float, rng: np.random.Generator) -> Disturbed:
         """Signal behind the amplifier.
 
         Below the knee the gain is 1; in the knee it falls linearly with the input to 0, where the output reaches the limit. The part of

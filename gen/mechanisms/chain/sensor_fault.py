@@ -17,7 +17,7 @@ class SensorFault(Mechanism):
     One that lasts as long as an installation is drawn for the rig, one that comes and goes for the record.
     """
 
-    def problem(self, full_scale: float | None, duration: float) -> str | None:  # noqa: ARG002 - for some faults
+    def problem(self, full_scale: float | None, duration: float) -> str | None:
         """Sentence about a key that can have no effect or no place in a record, from the key on; None if there is none.
 
         ``full_scale`` is that of the converter, None without one [m s-2]; ``duration`` is that of a record [s].

@@ -46,7 +46,7 @@ class BearingFault(Section):
     def check(self, bearing: Bearing, item: str) -> None:
         """RecipeError if the drawn fault of an ``item`` does not fit its bearing."""
 
-    def spalls(self, load_angle: float) -> list[Spall]:  # noqa: ARG002 - of some kinds
+    def spalls(self, load_angle: float) -> list[Spall]:
         """Spalls of the part, those of the outer race with their angles from the x axis; ``load_angle`` is that of the load [rad]."""
         return []
 
