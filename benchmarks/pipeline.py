@@ -22,23 +22,6 @@ SHORT = Path(__file__).with_name("short.yaml")
 SIZES = (256, 768)  # records; a corpus of either size repeats as many records at half the step
 SCALES = (1000, 20_000)
 
-# VmHWM instead of ru_maxrss of getrusage, which a process inherits from its parent
-_COST = """
-import json, sys, time
-from pathlib import Path
-from gen.generation.corpus import generate
-recipe, folder, records = sys.argv[1], Path(sys.argv[2]), int(sys.argv[3])
-generate(recipe, folder / "first", records=1)
-start = time.process_time()
-made = generate(recipe, folder / "corpus", records=records)
-took = time.process_time() - start
-status = Path("/proc/self/status").read_text().split()
-size = sum(path.stat().st_size for path in made.path.rglob("*") if path.is_file())
-print(json.dumps({
-    "ms": 1e3 * took / records, "MB": int(status[status.index("VmHWM:") + 1]) / 1e3, "bytes": size / made.records,
-}))
-"""
-
 
 def rows(pairs: int = 2) -> Iterator[Line]:
     """Lines of the table."""
@@ -100,7 +83,7 @@ def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_pe
 def corpus_cost(recipe: Path, folder: Path, records: int) -> dict[str, float]:
     """CPU time [ms] and file size [bytes] per record, and peak memory [MB], of a corpus that is generated in its own process."""
     with tempfile.TemporaryDirectory(dir=folder) as own:
-        return json.loads(run_python("-c", _COST, recipe, own, records))
+        return json.loads(run_python("-m", "benchmarks.cost", recipe, own, records))
 
 
 def growth_rows(pairs: int, recipe: Path = SHORT, scales: tuple[int, int] = SCALES) -> Iterator[Line]:

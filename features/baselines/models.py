@@ -6,7 +6,7 @@ Model files contain no pickle, and loading one runs no code from it: see `featur
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self, TypeGuard, cast
@@ -219,9 +219,11 @@ class Model(Shown):
         if healthy is None:
             return self._scores(table, None, seed)
         tested, healthy, sentence = choose_reference(table, healthy, self.features)
-        return replace(self._scores(tested, healthy, seed), reference=sentence)
+        return self._scores(tested, healthy, seed, reference=sentence)
 
-    def _scores(self, data: xr.Dataset | Waveforms, reference: xr.Dataset | None, seed: int) -> Scores:
+    def _scores(
+        self, data: xr.Dataset | Waveforms, healthy: xr.Dataset | None, seed: int, reference: str = ""
+    ) -> Scores:
         model = self if isinstance(data, Waveforms) else suited(self, durations_of(data))
         if isinstance(data, Waveforms):
             records = records_of(data, ())
@@ -230,8 +232,9 @@ class Model(Shown):
             records = labelled_records(data, self.features)
             tested = data.isel(record=data["fault"].values != UNKNOWN_CODE)
             seen = seen_records(records.features.to_numpy()[:, : len(self.features)], model.digests)
-        scores = score(records, predict(tested, self, reference), seed)
-        return replace(scores, seen=seen, uncovered_widths=uncovered_widths(model.widths, records))
+        uncovered = uncovered_widths(model.widths, records)
+        told = predict(tested, self, healthy)
+        return score(records, told, seed, seen=seen, uncovered_widths=uncovered, reference=reference)
 
     def _tables(self, data: Data, reference: Data | None) -> tuple[Any, xr.Dataset | None]:
         """Feature tables of the data and of its reference, with ``bands`` if there is one; waveforms as they are."""

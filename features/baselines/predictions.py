@@ -7,7 +7,7 @@ line. Its probabilities stay, because states of the machine change the colour to
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -104,15 +104,15 @@ def predictions(
     # without features of recordings, their records vote
     whole = combine(records, recording) if of_recordings is None else _over_channels(of_recordings, calibration)
 
-    def coloured(pooled: FloatArray, numbers: IntArray) -> Predictions:
-        distance = np.zeros(len(pooled)) if colour is None else colour.distances(numbers)
-        calm = np.zeros(len(pooled), np.bool_)
-        return Predictions(classes, pooled, calibration.threshold, np.arange(len(pooled)), distance, calm)
-
-    recordings = coloured(whole, recording)
+    impulsive = np.zeros(len(whole), np.bool_)
     if impulsiveness is not None and calibration.impulsive is not None:
-        recordings = replace(recordings, impulsive=impulsiveness > calibration.impulsive)
-    return replace(coloured(records, every), recording=recording, by_recording=recordings)
+        impulsive = impulsiveness > calibration.impulsive
+    far, far_whole = np.zeros(len(records)), np.zeros(len(whole))
+    if colour is not None:
+        far, far_whole = colour.distances(every), colour.distances(recording)
+    least, calm = calibration.threshold, np.zeros(len(records), np.bool_)
+    recordings = Predictions(classes, whole, least, np.arange(len(whole)), far_whole, impulsive)
+    return Predictions(classes, records, least, recording, far, calm, recordings)
 
 
 def impulsiveness_of(means: Sequence[FloatArray], features: Sequence[str]) -> FloatArray | None:

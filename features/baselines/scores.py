@@ -9,7 +9,8 @@ from a bootstrap [1]_ over specimens, because the records of one specimen are st
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.stats import rankdata
@@ -132,7 +133,7 @@ class Scores(Shown):
         }
 
 
-def score(records: Records, predictions: Predictions, seed: int = 0) -> Scores:
+def score(records: Records, predictions: Predictions, seed: int = 0, **told: Any) -> Scores:
     """Scores by record and by recording.
 
     Parameters
@@ -143,31 +144,24 @@ def score(records: Records, predictions: Predictions, seed: int = 0) -> Scores:
         Their predictions, with the recordings of ``records``.
     seed
         Of the bootstrap.
+    **told
+        Fields of the scores that do not follow from the predictions: ``folds``, ``reference``, ``seen``, ``uncovered_widths``.
     """
     # a recording has the label of its first record
     _, first = np.unique(predictions.recording, return_index=True)
     faulty, healthy_column = records.fault != HEALTHY_CODE, np.array(predictions.classes) == HEALTHY
     detected = np.array(predictions.predicted)[faulty] != HEALTHY
-    by_record = replace(
-        _score(records.fault, records.specimen, predictions, seed),
-        detection=detection(detected, records.width[faulty], records.specimen[faulty]),
-        roc=roc(faulty, -predictions.probabilities[:, healthy_column].sum(axis=1), records.specimen, seed),
-    )
-    whole = predictions.by_recording
-    # each record is a recording of its own
-    if whole is None:
-        return by_record
-    healthy = np.array(whole.answers) == HEALTHY
-    share = _share(records.fault[first][healthy] != HEALTHY_CODE)
-    by_recording = _score(records.fault[first], records.specimen[first], whole, seed)
-    return replace(
-        by_record,
-        faulty_among_healthy=share,
-        by_recording=replace(by_recording, faulty_among_healthy=share),
-    )
+    told["detection"] = detection(detected, records.width[faulty], records.specimen[faulty])
+    told["roc"] = roc(faulty, -predictions.probabilities[:, healthy_column].sum(axis=1), records.specimen, seed)
+    if (whole := predictions.by_recording) is not None:
+        healthy = np.array(whole.answers) == HEALTHY
+        share = _share(records.fault[first][healthy] != HEALTHY_CODE)
+        of_whole = _score(records.fault[first], records.specimen[first], whole, seed, faulty_among_healthy=share)
+        told |= {"faulty_among_healthy": share, "by_recording": of_whole}
+    return _score(records.fault, records.specimen, predictions, seed, **told)
 
 
-def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: int) -> Scores:
+def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: int, **told: Any) -> Scores:
     probabilities, model_classes = predictions.probabilities, np.array([FAULTS.index(c) for c in predictions.classes])
     predicted = model_classes[probabilities.argmax(axis=1)]
     present, right, answered = np.unique(fault), predicted == fault, predictions.answered
@@ -187,6 +181,7 @@ def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: 
         reliability=bins,
         coverage=float(answered.mean()),
         answered_accuracy=_share(right[answered]),
+        **told,
     )
 
 

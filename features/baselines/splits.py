@@ -5,7 +5,7 @@ well a classifier recognises specimens, and its score can be 1.00 even if the la
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -61,8 +61,8 @@ def cross_validate(
     """
     records = records_of(data, DEFAULT_GROUPS)
     labels, splits = grouped_case(records, track, folds, seed)
-    scores = score_splits(records, labels, estimator, splits, seed)
-    return replace(scores, uncovered_widths=uncovered_in_splits(records, splits))
+    uncovered = uncovered_in_splits(records, splits)
+    return score_splits(records, labels, estimator, splits, seed, uncovered_widths=uncovered)
 
 
 def controls(
@@ -118,9 +118,9 @@ def permuted_labels(records: Records, seed: int) -> IntArray:
 
 
 def score_splits(
-    records: Records, labels: IntArray, estimator: str | Maker, splits: Sequence[Split], seed: int
+    records: Records, labels: IntArray, estimator: str | Maker, splits: Sequence[Split], seed: int, **told: Any
 ) -> Scores:
-    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once."""
+    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once; ``told`` as in `score`."""
     classes = np.unique(labels)
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []
@@ -135,8 +135,7 @@ def score_splits(
     chosen = records._replace(fault=labels).at(tested)
     _, recording = np.unique(chosen.recording, return_inverse=True)
     together = _pool(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)
-    pooled = score(chosen, together, seed)
-    return replace(pooled, folds=tuple(folds))
+    return score(chosen, together, seed, folds=tuple(folds), **told)
 
 
 def _pool(

@@ -162,12 +162,12 @@ def _measured(run: Run, parts: Parts, sees: Judge, level: Any, level_try: int, g
         rounding = 1 / (per_unit * math.sqrt(12))
         signal, clipped = _to_counts(signal, per_unit)
     snr = bearing_over_background(parts.products, gains, rounding) if signal.any() else math.nan
-    record = Measured(run, scenario, signal, labels, clipped, snr)
+    judged: tuple[Any, ...]
     if run.twin is not None:
-        # from the products of the parts, so that no signal is made without the fault
-        level_of_fault, share = fault_over_rest(parts.products, gains, rounding)
-        return record._replace(fault_snr=level_of_fault, fault_share=share, detectable=int(sees(gains)))
-    return record._replace(fault_share=0.0, detectable=0) if scenario.fault == "healthy" else record
+        judged = *fault_over_rest(parts.products, gains, rounding), int(sees(gains))
+    else:
+        judged = (math.nan, 0.0, 0) if scenario.fault == "healthy" else ()
+    return Measured(run, scenario, signal, labels, clipped, snr, *judged)
 
 
 def counts_per_unit(recipe: Recipe) -> float | None:
