@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from scipy.fft import irfft
 
-from benchmarks.envelope_bands import NARROWEST, ORDER, Signal, record_combs
+from benchmarks.envelope_bands import NARROWEST, Signal, record_combs
 from benchmarks.speed import real_corpora
 from benchmarks.transfer import BEST, GROUPS, RECIPE, corpora, figures
 from features import feature_table, signal
@@ -68,8 +68,6 @@ ADDITIONS: Mapping[str, Addition] = {
     "combs in the band of `comb_bands`": comb_band,
     "combs in the band of the kurtogram": kurtogram_band,
     "lines of the enhanced envelope spectrum": enhanced_lines,
-    "combs after `prediction_residual`": lambda x, *rates: fixed_band(signal.prediction_residual(x, ORDER), *rates),
-    "combs after `separate_random`": lambda x, *rates: fixed_band(signal.separate_random(x, FS).random, *rates),
     "noise (control)": lambda _x, fr, rates: np.random.default_rng(int(1e6 * fr.sum())).standard_normal(rates.shape),
 }
 

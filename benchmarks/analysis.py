@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy import integrate, interpolate, linalg
+from scipy import integrate, interpolate
 from scipy import signal as sp
 from scipy.fft import irfft, rfft
 
@@ -46,22 +46,6 @@ def velocity_rms(x: Array) -> Array:
     return np.sqrt(np.trapezoid(density / (2 * np.pi * f) ** 2, f))
 
 
-def random_part(x: Array) -> Array:
-    gain = np.sqrt(sp.coherence(x[:-2000], x[2000:], FS, nperseg=2000)[1])
-    return x - sp.istft(sp.stft(x, FS, nperseg=2000)[2] * gain[:, None], FS)[1][: len(x)]
-
-
-def residual(x: Array) -> Array:
-    r = sp.correlate(x, x, method="fft")[len(x) - 1 : len(x) + ORDER]
-    return sp.lfilter(np.array([1.0, *-linalg.solve_toeplitz(r[:-1], r[1:])]), np.ones(1), x)
-
-
-def sharpened(x: Array) -> Array:
-    windows = np.lib.stride_tricks.sliding_window_view(x, LENGTH)
-    train = (np.arange(len(windows)) % round(FS / FAULT_RATE) == 0).astype(x.dtype)
-    return windows @ linalg.solve(windows.T @ windows, windows.T @ train, assume_a="pos")
-
-
 def cases(samples: int) -> dict[str, tuple[tuple, str, Work]]:
     """By function: its arguments after the records, and the functions of SciPy with their work on one record."""
     t, cyclic, rate = np.arange(samples) / FS, (FS, HIGHEST), np.array([FAULT_RATE])
@@ -83,10 +67,7 @@ def cases(samples: int) -> dict[str, tuple[tuple, str, Work]]:
         "order_spectrum": ((PER_TURN,), "rfft, four times padded", lambda x: abs(rfft(x * hann, 4 * samples))),
         "velocity": ((FS,), "butter, sosfiltfilt, cumulative_trapezoid", velocity),
         "velocity_rms": ((FS, SHAFT_RATE), "welch", velocity_rms),
-        "separate_random": ((FS,), "coherence, stft, istft", random_part),
-        "prediction_residual": ((ORDER,), "correlate, solve_toeplitz, lfilter", residual),
         "cepstrum": ((), "irfft(log(abs(rfft(x))))", lambda x: irfft(np.log(abs(rfft(x))), samples)),
-        "sharpen": ((FS, rate, LENGTH), "solve, one phase of the train", sharpened),
         "psd": ((FS,), "welch", lambda x: sp.welch(x, FS, nperseg=round(FS / 4))),
     }
 

@@ -1,4 +1,4 @@
-"""How often the strongest comb of a real recording is that of its fault, by band and by separation method.
+"""How often the strongest comb of a real recording is that of its fault, by band and by whitening.
 
 ``python -m benchmarks.envelope_bands REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them.
 A comb is the mean level of the lines of outer race, inner race or balls at three harmonics over the floor of the envelope spectrum, at the
@@ -15,7 +15,7 @@ import numpy as np
 from scipy.fft import irfft
 
 from benchmarks.speed import Recording, real_corpora, recordings
-from features.signal import comb_bands, kurtogram, prediction_residual, separate_random
+from features.signal import comb_bands, kurtogram
 from features.signal.demodulation import ZERO_PADDING, analytic_band, envelope_spectrum, log_level
 from features.signal.lines import combs
 from features.signal.spectra import fourier_coefficients, whiten_by_psd, whiten_cepstrally
@@ -26,7 +26,6 @@ FAMILIES = ("outer", "inner", "ball")
 CLEAR = 1.0  # nepers
 NARROWEST = 600.0  # Hz, of a band of the kurtogram: a line and three harmonics must fit
 WINDOW_SECONDS = 1.0
-ORDER = 100  # of the linear prediction
 
 Signal = np.ndarray
 Cell = tuple[str, str]
@@ -37,15 +36,12 @@ def whitened(x: Signal, fs: float, method: Callable) -> Signal:
     return np.asarray(irfft(method(fourier_coefficients(x, fs, fs / 2)), n=x.shape[-1], norm="forward"))
 
 
-SEPARATIONS: Mapping[str, Callable[[Signal, float], Signal]] = {
+WHITENINGS: Mapping[str, Callable[[Signal, float], Signal]] = {
     "as recorded": lambda x, _: x,
     "whitened by its spectrum": lambda x, fs: whitened(
         x, fs, lambda c: whiten_by_psd(c, round(WHITENING_WIDTH * x.shape[-1] / fs))
     ),
     "cepstral pre-whitening": lambda x, fs: whitened(x, fs, whiten_cepstrally),
-    "discrete/random separation": lambda x, fs: separate_random(x, fs).random,
-    "linear prediction": lambda x, _: prediction_residual(x, ORDER),
-    "separation, then prediction": lambda x, fs: prediction_residual(separate_random(x, fs).random, ORDER),
 }
 
 
@@ -76,14 +72,14 @@ def comb_levels(recording: Recording) -> Iterator[tuple[Cell, list[float]]]:
     rates = rate * np.array([bpfo, bpfi, 2 * bsf])
     whole = recording.x.reshape(1, -1).astype(np.float32)
     length = min(round(WINDOW_SECONDS * fs), whole.shape[-1])
-    for separation, separate in SEPARATIONS.items():
-        x = separate(whole, fs)[0, : whole.shape[-1] // length * length].reshape(-1, length)
+    for whitening, whiten in WHITENINGS.items():
+        x = whiten(whole, fs)[0, : whole.shape[-1] // length * length].reshape(-1, length)
         every = np.ones(len(x))
         for band, edges in chosen_bands(x, fs, rates).items():
             levels = [
                 record_combs(x, fs, *pair, rate * every) for pair in zip(edges, rates[:, None] * every, strict=True)
             ]
-            yield (separation, band), [float(of_windows.mean()) for of_windows in levels]
+            yield (whitening, band), [float(of_windows.mean()) for of_windows in levels]
 
 
 def main() -> None:
@@ -102,12 +98,12 @@ def main() -> None:
                         right.setdefault(title, []).append(found)
                         right["all"].append(found)
     print(
-        "| set | recordings | separation | fixed band, % | kurtogram, % | comb band, % |\n|---|---:|---|---:|---:|---:|"
+        "| set | recordings | whitening | fixed band, % | kurtogram, % | comb band, % |\n|---|---:|---|---:|---:|---:|"
     )
     for title, found in right.items():
-        for separation in SEPARATIONS:
-            rates = [100 * np.mean([one[separation, band] for one in found]) for band in ("fixed", "kurtogram", "comb")]
-            print(f"| {title} | {len(found)} | {separation} | {' | '.join(f'{rate:.1f}' for rate in rates)} |")
+        for whitening in WHITENINGS:
+            rates = [100 * np.mean([one[whitening, band] for one in found]) for band in ("fixed", "kurtogram", "comb")]
+            print(f"| {title} | {len(found)} | {whitening} | {' | '.join(f'{rate:.1f}' for rate in rates)} |")
 
 
 if __name__ == "__main__":

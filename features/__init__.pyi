@@ -1,6 +1,5 @@
 from .auditing import audit_splits as audit_splits
 from .baselines import Model as Model
-from .table.line_bands import fault_bands as fault_bands, fault_metrics as fault_metrics
 from .table.network_input import envelope_orders as envelope_orders
 from .ranking import rank_features as rank_features
 from .table.speed import shaft_speed as shaft_speed

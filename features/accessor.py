@@ -17,8 +17,7 @@ from features.signal.impulsive import kurtogram, spectral_kurtosis
 from features.signal.motion import HIGH_PASS, displacement, velocity
 from features.signal.orders import order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
-from features.signal.separation import cepstrum, prediction_residual, separate_random
-from features.signal.spectra import psd
+from features.signal.spectra import cepstrum, psd
 from features.table.band import DEFAULT_BAND
 from gen.corpus import class_counts, unit_counts
 from gen.support.shown import Shown
@@ -139,14 +138,6 @@ class SignalAccessor:
     def displacement(self, high_pass: float = HIGH_PASS) -> xr.DataArray:
         """Displacement from accelerations, as of `features.signal.displacement`."""
         return self._along("displacement", "{0} s2", lambda x: displacement(x, self.fs, high_pass))
-
-    def without_tones(self) -> xr.DataArray:
-        """The random part of `features.signal.separate_random`."""
-        return self._along("random_part", "{0}", lambda x: separate_random(x, self.fs).random)
-
-    def prediction_residual(self, order: int = 100) -> xr.DataArray:
-        """What the past of a signal does not predict, as of `features.signal.prediction_residual`."""
-        return self._along("prediction_residual", "{0}", lambda x: prediction_residual(x, order))
 
     def order_spectrum(self, angle: xr.DataArray, per_turn: int = 64) -> xr.DataArray:
         """Amplitude spectrum over ``order`` of the signals at equal angles of the shaft; it is never lazy.

@@ -7,10 +7,10 @@ module       responsibility
 ============ ======================================================================
 arguments    arguments of the public functions: records, numbers and bands, or a sentence
 rows         compilation of loops over records, sums in a fixed order, windows
-spectra      power spectra, Fourier coefficients, whitening
+spectra      power spectra, cepstra, Fourier coefficients, whitening
 demodulation analytic signals of bands, envelope spectra and their floor
 orders       signals at equal angles of the shaft in place of equal times, their spectra and averages
-motion       velocity and displacement, and the zones of their level
+motion       velocity and displacement, and their level
 lines        levels of fault lines and combs at orders of the shaft
 speed        shaft speed that fits fault lines and shaft harmonics together
 tracking     course of the shaft speed of a run-up, where it can be believed
@@ -18,7 +18,6 @@ modulation   phase wander, sidebands and cyclostationarity of a line of an envel
 colour       roll-off, centroid and tonality of a power spectrum
 shape        impulsiveness, slow fluctuation, statistics of the waveform
 cyclic       spectral coherence, enhanced envelope spectrum, and their thresholds
-separation   tones, transfer paths and impacts of a record, apart from one another
 envelopes    envelope spectrum of a band of records
 impulsive    kurtogram, spectral kurtosis, band in which a fault line stands out
 ============ ======================================================================

@@ -1,6 +1,5 @@
 from .motion import (
     displacement as displacement,
-    iso_zone as iso_zone,
     velocity as velocity,
     velocity_rms as velocity_rms,
 )
@@ -10,7 +9,6 @@ from .orders import (
     order_map as order_map,
     order_spectrum as order_spectrum,
     resample_to_angle as resample_to_angle,
-    synchronous_average as synchronous_average,
 )
 from .tracking import SpeedCourse as SpeedCourse, track_speed as track_speed
 from .cyclic import (
@@ -25,12 +23,4 @@ from .impulsive import (
     kurtogram as kurtogram,
     spectral_kurtosis as spectral_kurtosis,
 )
-from .separation import (
-    Separation as Separation,
-    cepstrum as cepstrum,
-    lifter as lifter,
-    prediction_residual as prediction_residual,
-    separate_random as separate_random,
-    sharpen as sharpen,
-)
-from .spectra import psd as psd, whiten_cepstrally as whiten_cepstrally
+from .spectra import cepstrum as cepstrum, psd as psd, whiten_cepstrally as whiten_cepstrally

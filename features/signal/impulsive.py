@@ -75,8 +75,7 @@ def kurtogram(x: ArrayLike, fs: float, *, narrowest: float = 0.0) -> BandTree:
     Parameters
     ----------
     x
-        Records, shape (record, time). A kurtogram of records without strong tones, such as those of
-        `features.signal.separation.prediction_residual`, is less often misled.
+        Records, shape (record, time).
     fs
         Sample rate [Hz].
     narrowest

@@ -1,9 +1,8 @@
-"""Velocity and displacement of an acceleration, and the zone of ISO 20816-3 that a machine is in.
+"""Velocity and displacement of an acceleration, and the rms velocity that ISO 20816-3 judges.
 
 A signal is integrated in the frequency domain: its Fourier coefficients are divided by ``2 pi i frequency``, once for
 each integration [1]_. Division raises slow drift without limit, so a high-pass is part of the operation. The rms of the
-velocity that ISO 20816 judges is taken from the power spectral density through the filter of [3]_, and compared with the
-zones of [2]_.
+velocity that ISO 20816 [2]_ judges is taken from the power spectral density through the filter of [3]_.
 
 .. [1] R. B. Randall, *Vibration-based Condition Monitoring*, 2nd ed., Wiley, 2021, section 3.2.
 .. [2] ISO 20816-3, *Mechanical vibration - Measurement and evaluation of machine vibration - Part 3: Industrial machinery
@@ -14,14 +13,11 @@ zones of [2]_.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Literal
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.fft import irfft, next_fast_len, rfft
 
-from features.signal.arguments import as_numbers, as_records, check_positive, like, of_each
+from features.signal.arguments import as_records, check_positive, like, of_each
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 
@@ -29,15 +25,6 @@ HIGH_PASS = 10.0  # Hz
 SLOWEST, SLOW, FASTEST = 2.0, 10.0, 500.0  # Hz: 120, 600 and 30,000 r/min
 VELOCITY_BAND, SLOW_VELOCITY_BAND = (10.0, 1000.0), (2.0, 1000.0)  # Hz, the second below 600 r/min
 VELOCITY_PERIODS = 10.0  # of the lower end of the band, in a window of its spectrum and in the shortest signal
-
-ZONES = "ABCD"
-ZONE_LIMITS: Mapping[tuple[int, str], tuple[float, float, float]] = {
-    (1, "rigid"): (2.3, 4.5, 7.1),
-    (1, "flexible"): (3.5, 7.1, 11.0),
-    (2, "rigid"): (1.4, 2.8, 4.5),
-    (2, "flexible"): (2.3, 4.5, 7.1),
-}
-"""Highest rms velocity of zones A, B and C [mm/s] by group of machines and support [2]_."""
 
 
 def velocity(x: ArrayLike, fs: float, high_pass: float = HIGH_PASS) -> FloatArray:
@@ -124,38 +111,3 @@ def _velocity_rms(x: FloatArray, fs: float, low: float, high: float) -> FloatArr
     above = frequencies[1:]
     gain = 1 / ((1 + (low / above) ** 6) * (1 + (above / high) ** 6) * (2 * np.pi * above) ** 2)
     return np.sqrt(np.sum(density[:, 1:] * gain, axis=1) * frequencies[1])
-
-
-def iso_zone(
-    velocity_rms_mm_s: ArrayLike, group: Literal[1, 2], support: Literal["rigid", "flexible"] = "rigid"
-) -> NDArray[np.str_]:
-    """Zone of ISO 20816-3, ``A`` (as new) to ``D`` (may cause damage), of the shape of the argument.
-
-    The velocity is that of a bearing housing in steady operation; the zone of a machine is that of its highest bearing and
-    direction. docs/features.md says what the zones do not cover.
-
-    >>> iso_zone([1.0, 2.3, 5.0, 9.0], group=1).tolist()
-    ['A', 'A', 'C', 'D']
-
-    Parameters
-    ----------
-    velocity_rms_mm_s
-        Rms of the velocity in the band of the standard [mm/s], as ``1e3 * velocity_rms(x, fs, shaft_rate)``.
-    group
-        1 for machines above 300 kW, and motors with a shaft height of 315 mm or more; 2 for those of 15 to 300 kW, and
-        motors of 160 to 315 mm.
-    support
-        Of the machine in the direction of the measurement, ``rigid`` if its lowest natural frequency is at least a quarter
-        above the shaft rate.
-
-    Raises
-    ------
-    ValueError
-        For a group or support that the standard does not have, or a velocity that is negative or missing.
-    """
-    if (group, support) not in ZONE_LIMITS:
-        raise ValueError(f"group {group!r}, support {support!r}: give group 1 or 2, and support rigid or flexible.")
-    velocities = as_numbers(velocity_rms_mm_s, "velocity_rms_mm_s")
-    if (velocities < 0).any():
-        raise ValueError(f"velocity_rms_mm_s: {velocities.min():g} is negative; give the rms of a velocity.")
-    return np.array(list(ZONES))[np.searchsorted(ZONE_LIMITS[group, support], velocities, side="left")]

@@ -1,16 +1,14 @@
 """Computed order tracking: signals sampled at equal angles of the shaft instead of at equal times.
 
-``shaft rates or tacho -> angle of every sample -> samples at equal angles -> order spectrum, average, map``
+``shaft rates or tacho -> angle of every sample -> samples at equal angles -> order spectrum, map``
 
 The time at which the shaft has turned by a given angle is interpolated from the angles of the samples, and the signal is
 taken there by interpolation with a windowed sinc function [1]_. The function is also the anti-alias filter: its cut-off
 is half the lower one of the two sample rates, at every instant. A line at order k of the shaft then lies at order k at
-any speed. Everything that repeats with the shaft is in the synchronous average; the rest is its residual [2]_.
+any speed.
 
 .. [1] K. R. Fyfe, E. D. S. Munck, "Analysis of computed order tracking", *Mechanical Systems and Signal Processing*
        11 (2) (1997) 187-205.
-.. [2] P. D. McFadden, "A revised model for the extraction of periodic waveforms by time domain averaging", *Mechanical
-       Systems and Signal Processing* 1 (1) (1987) 83-95.
 """
 
 from __future__ import annotations
@@ -31,18 +29,6 @@ BETA = 8.0  # of the Kaiser window: orders above half the samples per turn are 8
 PASS_SHARE = 0.92  # -6 dB point over half the lower sample rate; flat within 0.1 % up to 0.84 of it
 TABLE_STEPS = 512  # table values from one zero crossing to the next; linear between them, which errs by 5e-6
 REARMED = 0.1  # of the range of a tacho, by which it must fall below the threshold before it counts again
-
-
-class SynchronousAverage(NamedTuple):
-    """Part of resampled signals that repeats with the shaft, and the rest, in the unit of the signals."""
-
-    average: FloatArray
-    """Mean over all whole periods, shape (record, angle), one period long."""
-    residual: FloatArray
-    """Signals without the periodic repetition of their average, shape (record, angle)."""
-
-    def __repr__(self) -> str:
-        return brief(self)
 
 
 class OrderMap(NamedTuple):
@@ -208,37 +194,6 @@ def order_spectrum(y: ArrayLike, per_turn: int) -> tuple[FloatArray, FloatArray]
     check_whole(per_turn=per_turn)
     orders, amplitude = amplitude_spectrum(as_records(y, "y"), per_turn)
     return orders, like(y, amplitude)
-
-
-def synchronous_average(y: ArrayLike, per_turn: int, turns: int = 1) -> SynchronousAverage:
-    """Mean of resampled signals over periods of ``turns`` turns, and the signals without it.
-
-    Noise is weaker in the average by the root of the number of periods. A part that does not repeat with the period is
-    in the residual, such as lines of a bearing. Give the turns of a whole mesh of a gear to average several shafts.
-
-    Parameters
-    ----------
-    y
-        Signals at equal angles, shape (record, angle), as from `resample_to_angle`.
-    per_turn
-        Samples per turn.
-    turns
-        Length of the period [turns].
-
-    Raises
-    ------
-    ValueError
-        If the signals are shorter than a period.
-    """
-    check_whole(per_turn=per_turn, turns=turns)
-    signals, length = as_records(y, "y"), per_turn * turns
-    samples = signals.shape[1]
-    periods = samples // length
-    if periods < 1:
-        raise ValueError(f"y: {samples / per_turn:.3g} turns are less than a period of {turns}; give a longer signal.")
-    average = signals[:, : periods * length].reshape(-1, periods, length).mean(axis=1)
-    repeated = np.tile(average, periods + 1)[:, :samples]
-    return SynchronousAverage(like(y, average), like(y, signals - repeated))
 
 
 def order_map(y: ArrayLike, per_turn: int, turns: int = 16) -> OrderMap:

@@ -1,4 +1,4 @@
-"""Power spectra of vibration records, their Fourier coefficients, and three ways to whiten these.
+"""Power spectra and cepstra of vibration records, their Fourier coefficients, and three ways to whiten these.
 
 Records are rows, and no row depends on the others. Cepstral pre-whitening is that of [1]_, linear prediction that of [2]_.
 
@@ -46,6 +46,14 @@ def psd(x: ArrayLike, fs: float, segment: float = 0.25) -> tuple[FloatArray, Flo
     check_positive(fs=fs, segment=segment)
     frequencies, density = power_density(as_records(x), fs, segment)
     return frequencies, like(x, density)
+
+
+def cepstrum(x: ArrayLike) -> FloatArray:
+    """Real cepstrum, shape (record, time): value k belongs to the quefrency of k samples, and to the same from the end."""
+    records = as_records(x)
+    modulus = np.sqrt(squared_modulus(np.asarray(rfft(records, axis=-1))))
+    logarithm = np.log(np.maximum(modulus, np.finfo(modulus.dtype).tiny))
+    return like(x, np.asarray(irfft(logarithm, n=records.shape[-1], axis=-1)))
 
 
 def power_density(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, FloatArray]:

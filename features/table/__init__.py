@@ -11,7 +11,6 @@ durations        durations of records, and the model that suits them [pure]
 definitions      name, unit, meaning, formula and range of every feature [pure]
 indicators       the feature vector of records, in four groups [pure]
 speed            shaft speed of a recording, from its windows [pure]
-line_bands       bands of the fault lines of a bearing, and what a spectrum has in them
 recording_speeds shaft speed of every recording of a corpus, and warnings of wrong labels
 corpora          corpus -> feature table, part by part
 recordings       feature table of one recording that lies in no corpus

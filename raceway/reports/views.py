@@ -15,7 +15,7 @@ from features.signal.cyclic import spectral_coherence
 from features.signal.impulsive import comb_bands, kurtogram
 from features.signal.orders import order_map, order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
-from features.signal.separation import cepstrum
+from features.signal.spectra import cepstrum
 from features.table.band import Band
 from gen.corpus.fault_classes import FUNDAMENTALS, LOOKS, SHAFT
 from raceway.reports.maps import BRIGHTEST_DB, FAINTEST, draw_coherence, draw_grid, level_over_median, plot

@@ -19,8 +19,6 @@ METHODS = {
     "cepstrum": {},
     "velocity": {},
     "displacement": {},
-    "without_tones": {},
-    "prediction_residual": {},
 }
 
 

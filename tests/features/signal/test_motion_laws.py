@@ -1,11 +1,11 @@
-"""Laws of integration: a sine over its angular frequency, in the pass band alone, and the zones of ISO 20816-3."""
+"""Laws of integration: a sine over its angular frequency, in the pass band alone."""
 
 import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
 from scipy.signal import butter, sosfilt
 
-from features.signal import displacement, iso_zone, velocity, velocity_rms
+from features.signal import displacement, velocity, velocity_rms
 
 FS = 12_000.0
 MIDDLE = slice(round(FS), round(-FS))
@@ -60,21 +60,6 @@ def test_a_signal_without_the_band_and_a_machine_beyond_the_standard_have_no_vel
     assert np.isnan(velocity_rms(np.ones((1, 6000)), 2000.0, 25.0)).all()
     np.testing.assert_array_equal(np.isnan(velocity_rms(x, FS, [9.9, 10.0])), [True, False])
     np.testing.assert_array_equal(np.isnan(velocity_rms(x, FS, [1.9, 501.0])), [True, True])
-
-
-def test_zones_end_at_their_limits_and_depend_on_group_and_support():
-    assert iso_zone([[2.3, 2.31], [7.1, 7.11]], 1).tolist() == [["A", "B"], ["C", "D"]]
-    assert iso_zone([0.0, 1.4, 3.0], 2).tolist() == ["A", "A", "C"]
-    assert iso_zone(3.0, 2, "flexible") == iso_zone(3.0, 1) == "B"
-    with pytest.raises(ValueError, match="give group 1 or 2"):
-        iso_zone(1.0, 3)
-    with pytest.raises(ValueError, match="-1 is negative"):
-        iso_zone([1.0, -1.0], 1)
-
-
-def test_the_velocity_of_a_signal_that_has_none_has_no_zone():
-    with pytest.raises(ValueError, match="velocity_rms_mm_s: 2 of 2 values are not finite"):
-        iso_zone(1e3 * velocity_rms(np.ones((2, 6000)), FS, 25.0), 1)
 
 
 def test_a_high_pass_beyond_the_signal_is_refused():

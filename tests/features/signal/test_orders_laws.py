@@ -11,7 +11,6 @@ from features.signal import (
     order_map,
     order_spectrum,
     resample_to_angle,
-    synchronous_average,
     track_speed,
 )
 from features.signal.orders import resample_to_orders
@@ -130,19 +129,6 @@ def test_both_ways_to_resample_agree_at_a_constant_speed_and_the_first_sample_is
     np.testing.assert_allclose(constant[0, EDGE + quarter : -EDGE], y[0, EDGE : -EDGE - quarter], atol=1e-5)
     with pytest.raises(ValueError, match="angle: that of record 0 does not ascend"):
         resample_to_angle(x, angle[:, ::-1], PER_TURN)
-
-
-def test_a_synchronous_average_keeps_what_repeats_and_its_residual_the_rest():
-    rng, turns = np.random.default_rng(3), 400
-    angle = 2 * np.pi * np.arange(PER_TURN * turns + 50) / PER_TURN
-    gear, noise = np.cos(11 * angle) + 0.5 * np.sin(angle), rng.standard_normal((2, len(angle)))
-    average, residual = synchronous_average(gear + noise, PER_TURN)
-    np.testing.assert_allclose(average, np.tile(gear[:PER_TURN], (2, 1)), atol=5 / np.sqrt(turns))
-    np.testing.assert_allclose(np.std(residual, axis=1), 1, rtol=0.02)
-    slower = synchronous_average(np.cos(angle / 3)[None], PER_TURN, turns=3)
-    assert np.abs(slower.residual).max() < 1e-9 < 0.9 < np.abs(slower.average).max()
-    with pytest.raises(ValueError, match="400 turns are less than a period"):
-        synchronous_average(gear[None], PER_TURN, turns=402)
 
 
 def test_lines_stand_still_in_an_order_map_and_move_with_the_speed_in_none_of_its_windows():

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import uniform_filter1d
-from scipy.signal import welch
+from scipy.signal import lfilter, welch
 
 from features.signal.demodulation import (
     analytic_band,
@@ -15,7 +15,16 @@ from features.signal.demodulation import (
     squared_envelope_spectrum,
     weight_by_hann,
 )
-from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd, whiten_cepstrally
+from features.signal.spectra import (
+    band_energies,
+    cepstrum,
+    fourier_coefficients,
+    prediction_filters,
+    psd,
+    sine_windowed,
+    whiten_by_psd,
+    whiten_cepstrally,
+)
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -182,3 +191,17 @@ def test_a_record_does_not_depend_on_the_records_beside_it(seed):
         return running_median(spectrum, widths[rows], 500)
 
     np.testing.assert_array_equal(floors(slice(0, 5))[3], floors(slice(3, 4))[0])
+
+
+def test_the_cepstrum_of_an_echo_has_half_its_strength_at_its_delay():
+    x, delay = np.random.default_rng(4).standard_normal((1, 8192)), 200
+    echoed = x + 0.5 * np.roll(x, delay, axis=-1)
+    assert np.argmax(np.abs(cepstrum(echoed)[0, 100:4000])) == delay - 100
+    np.testing.assert_allclose(cepstrum(echoed)[0, delay] - cepstrum(x)[0, delay], 0.25, rtol=1e-3)
+
+
+def test_the_prediction_filter_of_an_autoregressive_process_is_its_own():
+    own = np.poly(0.97 * np.exp(1j * np.array([0.4, -0.4, 1.3, -1.3]))).real
+    x = lfilter([1.0], own, np.random.default_rng(1).standard_normal((2, 100_000)))
+    filters = prediction_filters(sine_windowed(x, 131_072), 131_072, 4)
+    np.testing.assert_allclose(filters, np.tile(own, (2, 1)), atol=0.02)
