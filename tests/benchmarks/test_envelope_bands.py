@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.signal import lfilter
 
-from benchmarks.envelope_bands import FAMILIES, SEPARATIONS, comb_levels
+from benchmarks.envelope_bands import FAMILIES, WHITENINGS, comb_levels
 from benchmarks.speed import Recording
 
 
@@ -14,5 +14,5 @@ def test_every_cell_of_the_table_has_the_comb_of_the_fault_on_top():
     x = lfilter([1.0], np.poly(0.95 * np.exp(2j * np.pi * 3000 / fs * np.array([1, -1]))).real, x)
     x += 0.1 * np.random.default_rng(1).standard_normal(24_000)
     found = dict(comb_levels(Recording(x.reshape(4, -1), fs, rate, np.nan, orders, "inner")))
-    assert len(found) == 3 * len(SEPARATIONS)
+    assert len(found) == 3 * len(WHITENINGS)
     assert {FAMILIES[int(np.argmax(values))] for values in found.values()} == {"inner"}
