@@ -13,12 +13,12 @@ import pandas as pd
 import xarray as xr
 from sklearn import inspection, model_selection
 from sklearn.base import BaseEstimator, ClassifierMixin
-from sklearn.metrics import recall_score
 from threadpoolctl import threadpool_limits
 
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import Maker
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
+from features.baselines.scores import mean_recall
 from features.baselines.splits import grouped_case
 from features.baselines.tracks import Split
 from features.table.waveforms import Waveforms
@@ -132,4 +132,4 @@ def _by_specimen(records: Records, train: IntArray, seed: int) -> IntArray:
 
 def _balanced_accuracy(classifier: NumberedRecords, X: IntArray, y: IntArray) -> float:
     """Mean share of the records of each class that are told right."""
-    return float(recall_score(y, classifier.predict(X), labels=np.unique(y), average="macro"))
+    return mean_recall(y, classifier.predict(X))

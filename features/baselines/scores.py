@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.stats import rankdata
+from sklearn.metrics import confusion_matrix, f1_score, recall_score, roc_auc_score
 
 from features.baselines.calibration import SMALLEST
 from features.baselines.detection import INTERVAL, Roc, WidthBin, detection, roc
@@ -165,10 +165,12 @@ def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: 
     probabilities, model_classes = predictions.probabilities, np.array([FAULTS.index(c) for c in predictions.classes])
     predicted = model_classes[probabilities.argmax(axis=1)]
     present, right, answered = np.unique(fault), predicted == fault, predictions.answered
-    matrix = confusion_matrix(fault, predicted, present, model_classes)
+    matrix = confusion_matrix(fault, predicted, labels=range(len(FAULTS)))[np.ix_(present, model_classes)]
     bins = reliability_bins(probabilities.max(axis=1), right)
     return Scores(
-        *figures(matrix, present, model_classes),
+        mean_recall(fault, predicted),
+        float(f1_score(fault, predicted, labels=present, average="macro", zero_division=0)),
+        float(right.mean()),
         classes=tuple(FAULTS[c] for c in present),
         model_classes=predictions.classes,
         confusion=tuple(tuple(row) for row in matrix.tolist()),
@@ -205,21 +207,13 @@ def balanced_log_loss(fault: IntArray, probabilities: FloatArray, model_classes:
 
 
 def area(fault: IntArray, probabilities: FloatArray, model_classes: IntArray) -> float | None:
-    """Mean over the classes present of the area under the curve of one class against the rest; None with one class.
-
-    The area is the share of pairs of a record of the class and another record in which the first has the higher
-    probability of the class; ties count half.
-    """
+    """Mean over the classes present of the area under the curve of one class against the rest; None with one class."""
     present = np.unique(fault)
     if len(present) < 2:
         return None
-    areas = []
-    for c in present:
-        mine = fault == c
-        ranks = rankdata(probabilities[:, model_classes == c].sum(axis=1))[mine].sum()
-        count = int(mine.sum())
-        areas.append((ranks - count * (count + 1) / 2) / (count * (len(fault) - count)))
-    return float(np.mean(areas))
+    return float(
+        np.mean([roc_auc_score(fault == c, probabilities[:, model_classes == c].sum(axis=1)) for c in present])
+    )
 
 
 def reliability_bins(largest: FloatArray, right: np.ndarray) -> tuple[Bin, ...]:
@@ -237,21 +231,9 @@ def expected_calibration_error(bins: Sequence[Bin]) -> float:
     return sum(bin_.records * abs(bin_.probability - bin_.accuracy) for bin_ in bins) / records
 
 
-def confusion_matrix(fault: IntArray, predicted: IntArray, rows: IntArray, columns: IntArray) -> IntArray:
-    """Number of records by true class, of ``rows``, and predicted class, of ``columns``, both ascending."""
-    matrix = np.zeros((len(rows), len(columns)), dtype=np.intp)
-    np.add.at(matrix, (np.searchsorted(rows, fault), np.searchsorted(columns, predicted)), 1)
-    return matrix
-
-
-def figures(matrix: IntArray, rows: IntArray, columns: IntArray) -> tuple[float, float, float]:
-    """Mean recall, mean F1 and accuracy over the classes of ``rows``; a class that is never predicted has F1 = 0."""
-    same = rows[:, None] == columns
-    hits = (matrix * same).sum(axis=1)
-    predicted = same @ matrix.sum(axis=0)
-    tested = matrix.sum(axis=1)
-    f1 = 2 * hits / (tested + predicted)
-    return float(np.mean(hits / tested)), float(np.mean(f1)), float(hits.sum() / tested.sum())
+def mean_recall(fault: IntArray, predicted: IntArray) -> float:
+    """Mean recall of the classes present, the balanced accuracy; other classes may be predicted."""
+    return float(recall_score(fault, predicted, labels=np.unique(fault), average="macro", zero_division=0))
 
 
 def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> Interval | None:

@@ -16,7 +16,7 @@ from features.baselines.names import UNTRAINED, Track
 from features.baselines.own import Maker
 from features.baselines.predictions import Predictions, fault_names, predictions
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
-from features.baselines.scores import Scores, confusion_matrix, figures, score
+from features.baselines.scores import Scores, mean_recall, score
 from features.baselines.severities import uncovered_in_splits
 from features.baselines.tracks import Split, check_taught, grouped_splits, track_splits
 from features.table.waveforms import Waveforms
@@ -129,7 +129,7 @@ def score_splits(
         # a fold may lack a class, which then has the probability 0
         probabilities[np.ix_(test, fold.classes_)] = of_tested
         classes = np.union1d(classes, fold.classes_)
-        folds.append(_balanced_accuracy(labels[test], probabilities[test]))
+        folds.append(mean_recall(labels[test], probabilities[test].argmax(axis=1)))
     tested = np.sort(np.concatenate([test for _, test in splits]))
     # of all folds together: single folds may lack classes
     chosen = records._replace(fault=labels).at(tested)
@@ -149,9 +149,3 @@ def _pool(
     truth = np.searchsorted(classes, labels)
     calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(probabilities, truth)
     return predictions(probabilities, fault_names(classes), recording, calibration)
-
-
-def _balanced_accuracy(fault: IntArray, probabilities: FloatArray) -> float:
-    present, every = np.unique(fault), np.arange(len(FAULTS))
-    matrix = confusion_matrix(fault, probabilities.argmax(axis=1), present, every)
-    return figures(matrix, present, every)[0]
