@@ -5,8 +5,8 @@ because names need no table of codes and scikit-learn takes them. `OwnClassifier
 """
 
 import copy
-import importlib
 import inspect
+import pkgutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -195,41 +195,18 @@ def load_maker(address: str) -> Maker:
     EstimatorError
         If there is no such module or name, its code fails, or it makes no classifier.
     """
-    file, _, name = address.partition(":")
-    module_name = file.removesuffix(".py")
-    # a script of the current folder is found first, as by python itself
     here = str(Path.cwd())
     if here not in sys.path:
         sys.path.insert(0, here)
     try:
-        module = importlib.import_module(module_name)
-    except ModuleNotFoundError as error:
-        # the module is there, and something that it imports is missing
-        if error.name is None or not f"{module_name}.".startswith(f"{error.name}."):
-            raise _import_error(address, module_name, error) from error
+        maker: Maker = pkgutil.resolve_name(address.replace(".py:", ":"))
+    except (Exception, SystemExit) as error:  # also of the code of the module
         raise EstimatorError(
-            f"{address}: no module {error.name} in this folder or among the installed packages; correct the name before the colon."
+            f"{address}: cannot be imported ({_brief(error)}); give MODULE:NAME of a module in this folder or an installed package. "
+            "RACEWAY_TRACEBACK=1 shows where."
         ) from error
-    except (Exception, SystemExit) as error:
-        raise _import_error(address, module_name, error) from error
-    if not hasattr(module, name):
-        # help with a misspelt name
-        held = [
-            own
-            for own, value in vars(module).items()
-            if callable(value) and getattr(value, "__module__", None) == module_name
-        ]
-        raise EstimatorError(
-            f"{address}: {module_name} has no {name}; it has {', '.join(held) or 'no class or function'}."
-        )
-    maker: Maker = getattr(module, name)
-    # fails now, with its address, and not after the features are computed
     new_classifier(maker, 0, address)
     return maker
-
-
-def _import_error(address: str, module: str, error: BaseException) -> EstimatorError:
-    return EstimatorError(f"{address}: {module} cannot be imported ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where.")
 
 
 def _brief(error: BaseException) -> str:
