@@ -169,7 +169,7 @@ def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: 
     bins = reliability_bins(probabilities.max(axis=1), right)
     return Scores(
         mean_recall(fault, predicted),
-        float(f1_score(fault, predicted, labels=present, average="macro", zero_division=0)),
+        float(f1_score(fault, predicted, labels=present, average="macro")),
         float(right.mean()),
         classes=tuple(FAULTS[c] for c in present),
         model_classes=predictions.classes,
@@ -233,7 +233,7 @@ def expected_calibration_error(bins: Sequence[Bin]) -> float:
 
 def mean_recall(fault: IntArray, predicted: IntArray) -> float:
     """Mean recall of the classes present, the balanced accuracy; other classes may be predicted."""
-    return float(recall_score(fault, predicted, labels=np.unique(fault), average="macro", zero_division=0))
+    return float(recall_score(fault, predicted, labels=np.unique(fault), average="macro"))
 
 
 def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> Interval | None:

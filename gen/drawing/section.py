@@ -156,15 +156,17 @@ class Section(BaseModel):
 
     def si(self) -> dict[str, Any]:
         """Drawn values in SI units by the key without its unit, an array for a key that was drawn for each item; levels stay in dB."""
-        values: Any = self.__dict__
-        if "_si" not in values:
-            values["_si"] = {
-                name: value * factor if isinstance(value, float) else np.array(value) * factor
-                for key in bounds_of(type(self))
-                if not is_distribution(value := values[key])
-                for name, factor in (split_unit(key),)
-            }
-        return values["_si"]
+        return self._si
+
+    @functools.cached_property
+    def _si(self) -> dict[str, Any]:
+        values = self.__dict__
+        return {
+            name: value * factor if isinstance(value, float) else np.array(value) * factor
+            for key in bounds_of(type(self))
+            if not is_distribution(value := values[key])
+            for name, factor in (split_unit(key),)
+        }
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Copy of the section with some other values, which are not checked; that of pydantic takes four times as long."""
