@@ -21,8 +21,9 @@ import xarray as xr
 from benchmarks.speed import real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import UNSURE
+from features.fault_classes import CLASSES
 from features.table.indicators import Orders
-from gen.corpus.fault_classes import CLASSES, HEALTHY
+from gen.corpus.fault_classes import HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.support.units import rpm_to_hertz

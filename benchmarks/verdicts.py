@@ -18,8 +18,9 @@ import numpy as np
 from benchmarks.speed import Recording, real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
+from features.fault_classes import CLASSES
 from features.table.indicators import Orders
-from gen.corpus.fault_classes import CLASSES, HEALTHY
+from gen.corpus.fault_classes import HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from raceway.diagnosis import ANY_RATE, Diagnosis, Given, diagnose_recording

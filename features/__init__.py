@@ -4,16 +4,17 @@ It uses the format of a corpus and not the simulator, so that recordings of real
 
 ``corpus -> feature_table -> Model -> scores``
 
-========= ===================================================================================
-module    responsibility
-========= ===================================================================================
-signal    spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
-table     records -> feature table: bands, definitions, indicators, files
-accessor  the functions of `signal` on xarray
-auditing  splits of real recordings that can leak
-baselines classifiers on a feature table, scored by specimen or rig beside their controls
-ranking   features by what a classifier loses without them
-========= ===================================================================================
+============= ===================================================================================
+module        responsibility
+============= ===================================================================================
+signal        spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
+fault_classes lines, features and words of each fault class
+table         records -> feature table: bands, definitions, indicators, files
+accessor      the functions of `signal` on xarray
+auditing      splits of real recordings that can leak
+baselines     classifiers on a feature table, scored by specimen or rig beside their controls
+ranking       features by what a classifier loses without them
+============= ===================================================================================
 """
 
 import lazy_loader

@@ -1,9 +1,7 @@
 """The group of all commands, and the entry point ``raceway``."""
 
-import inspect
 import logging
 import os
-import re
 import resource
 import sys
 from collections.abc import Mapping, Sequence
@@ -21,6 +19,7 @@ from raceway.commands import (
 )
 from raceway.comparing import compare_command
 from raceway.console.ending import BAD_INPUT, NoReader, exit_code
+from raceway.console.plugin_commands import PluginGroup, keep_examples
 from raceway.console.signals import listen_for_signals
 from raceway.diagnosis import diagnose_command
 from raceway.importing import import_commands
@@ -71,13 +70,21 @@ ROAD = """\
 """
 
 
-class Raceway(click.Group):
+def _of_plugin(name: str) -> click.Command:
+    from gen.support.plugins import plugin  # not at the top: help needs nothing of gen
+
+    return plugin("commands", name, click.Command)
+
+
+class Raceway(PluginGroup):
     """The group of all commands; :mod:`raceway.console.ending` gives the exit code."""
 
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands in their groups."""
-        widest = max(len(command.name or "") for commands in GROUPS.values() for command in commands)
-        for title, commands in GROUPS.items():
+        added = tuple(filter(None, (self.get_command(ctx, name) for name in self.added())))
+        groups = {**GROUPS, "Plug-ins": added} if added else GROUPS
+        widest = max(len(command.name or "") for commands in groups.values() for command in commands)
+        for title, commands in groups.items():
             with formatter.section(title):
                 limit = formatter.width - 6 - widest
                 formatter.write_dl(
@@ -102,6 +109,8 @@ class Raceway(click.Group):
 
 @click.group(
     cls=Raceway,
+    plugins="raceway.commands",
+    make=_of_plugin,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
@@ -141,13 +150,6 @@ def cli(ctx: click.Context, limits: tuple[str, ...], quiet: bool) -> None:  # no
         os.environ[VARIABLE] = ",".join(filter(None, (os.environ.get(VARIABLE), *limits)))  # workers inherit it
     if ctx.invoked_subcommand is None:
         click.echo(f"{ROAD}\nEach command has examples: raceway generate --help. All commands: raceway --help.")
-
-
-def keep_examples(command: click.Command) -> None:
-    """Keep the line breaks of indented paragraphs of the help; click would remove them."""
-    command.help = re.sub(r"\n\n(?= )", "\n\n\b\n", inspect.cleandoc(command.help or ""))
-    for inner in getattr(command, "commands", {}).values():
-        keep_examples(inner)
 
 
 for commands in GROUPS.values():

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from features.baselines import ESTIMATORS, Model, estimators
-from gen.corpus.fault_classes import EVIDENCE
+from features.fault_classes import EVIDENCE
 
 NAMES = (*EVIDENCE, "raw_kurtosis")
 

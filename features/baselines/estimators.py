@@ -26,8 +26,9 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 
 from features.baselines.own import Maker, OwnClassifier
 from features.baselines.records import FloatArray, IntArray
+from features.fault_classes import CLASSES, COMBS, EVIDENCE
 from gen.corpus import FAULTS
-from gen.corpus.fault_classes import CLASSES, COMBS, EVIDENCE, HEALTHY
+from gen.corpus.fault_classes import HEALTHY
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -69,7 +70,7 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
         Raises
         ------
         ValueError
-            If a feature of ``gen.corpus.fault_classes.EVIDENCE`` is not among the columns.
+            If a feature of ``features.fault_classes.EVIDENCE`` is not among the columns.
         """
         missing = set(EVIDENCE) - set(getattr(X, "columns", ()))
         if missing:
@@ -98,7 +99,7 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
 def rule_levels(features: "DataFrame", threshold: float) -> dict[str, FloatArray]:
     """Level of each class, shape (record,); the rule predicts the class with the highest level.
 
-    The level of a class is the mean of the features of its row in `gen.corpus.fault_classes`; a missing feature counts
+    The level of a class is the mean of the features of its row in `features.fault_classes`; a missing feature counts
     as -inf, and so does a class whose row has no features: the rule never predicts it. Three classes differ:
 
     - Healthy: the threshold.

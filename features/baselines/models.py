@@ -45,9 +45,10 @@ from features.table.corpora import feature_table
 from features.table.definitions import GROUPS
 from features.table.durations import durations_of, suited
 from features.table.waveforms import Waveforms
-from gen.corpus import UNKNOWN_CODE, check_result, corpus_name
+from gen.corpus import FAULTS, UNKNOWN_CODE, check_result, corpus_name
 from gen.support.errors import CorpusError
 from gen.support.executor import Workers, connected
+from gen.support.plugins import missing_distributions, plugin_versions
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
 
@@ -91,7 +92,7 @@ class Model(Shown):
     digests
         One 64-bit digest per training record, shape (record,), to detect a test on training records.
     versions
-        Of the libraries it was trained with.
+        Of the libraries and plug-ins it was trained with.
     calibration
         Temperature of its probabilities and thresholds of its answers.
     relative
@@ -278,7 +279,7 @@ class Model(Shown):
         Raises
         ------
         CorpusError
-            If the file is missing, damaged, larger than the limit, or no model of this version.
+            If the file is missing, damaged, larger than the limit, or no model of this version, or a plug-in that it needs is missing.
         """
         content = read_model_file(Path(path))
         if not isinstance(content, dict) or content.pop("raceway_model", None) != FORMAT:
@@ -290,6 +291,11 @@ class Model(Shown):
         """Model of the fields in a model file."""
         if not isinstance(content, Mapping) or set(content) != {*_STORED, *_PARTS}:
             raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
+        missing = [*missing_distributions(content["versions"]), *({*content["classes"]} - {*FAULTS})]
+        if missing:
+            raise CorpusError(
+                f"{path}: was trained with {', '.join(missing)}, which is not here; install the plug-in, or train it again."
+            )
         own = {name: value for name, value in content.items() if name != "name"}
         parts = {name: None if own[name] is None else cls._of(path, own[name]) for name in _PARTS}
         return cls(content["name"], **{**own, **parts, "calibration": Calibration(**content["calibration"])})
@@ -318,6 +324,7 @@ def _fit(model: Model, data: xr.Dataset | Waveforms, workers: Workers, done: Cal
     model.widths = covered_widths(records)
     model.digests = record_digests(records.features.to_numpy() if model.features else records.features)
     model.versions = {library: version(library) for library in _LIBRARIES}
+    model.versions |= plugin_versions("features", model.groups) | plugin_versions("classes", model.classes)
 
 
 def _content(model: Model) -> dict[str, Any]:

@@ -9,6 +9,7 @@ task is one block of records, so the features do not depend on the number of wor
 all blocks before that of the features estimates them, since the records of a recording may lie in several blocks.
 """
 
+import json
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from functools import partial
@@ -35,6 +36,7 @@ from features.table.recording_speeds import (
 )
 from gen.corpus import DRAWS, RecordBlock, corpus_name, open_corpus, read_channel, record_blocks
 from gen.support.executor import Workers, connected, run
+from gen.support.plugins import plugin_versions
 from gen.support.progress import Progress, counter
 
 if TYPE_CHECKING:
@@ -132,6 +134,8 @@ def feature_table(
                 missing += int(np.isnan(rows).any(axis=1).sum())
     features = ("record", "feature"), values, {"long_name": "features of the signal"}
     read |= {"records_with_missing_features": missing}
+    if added := plugin_versions("features", groups):
+        read["versions"] = json.dumps(json.loads(table.attrs.get("versions", "{}")) | added)
     return table.assign(features=features).assign_coords(coordinates).assign_attrs(read)
 
 

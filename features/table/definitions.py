@@ -8,7 +8,7 @@ band of a view. ``L(f) = ln(A(f) / floor(f))``: A is the amplitude spectrum of t
 running median over 3 fr, at least 30 Hz.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import combinations, pairwise
 from math import inf
@@ -18,6 +18,7 @@ import numpy as np
 
 from features.signal.lines import FAMILIES, FITTED_TOLERANCE
 from features.table.band import DEFAULT_BAND, Band
+from gen.support.plugins import plugin, plugins
 
 ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
 
@@ -38,8 +39,8 @@ class Feature(NamedTuple):
     formula: str
     group: str
     unit: str
-    parameters: str
-    source: str
+    parameters: str = ""
+    source: str = ""
     least: float = -inf
     most: float = inf
 
@@ -192,7 +193,22 @@ _OF_EVERY_BAND = {
     "shape": (*_in_views(SHAPES), *RAW),
     "time": tuple(feature._replace(name=f"time_{feature.name}") for feature in TIMES),
 }
-GROUPS = ("lines", "shape", "bands", "time")
+BUILT_IN = ("lines", "shape", "bands", "time")
+GROUPS = (*BUILT_IN, *plugins("features"))
+
+
+class FeatureGroup(NamedTuple):
+    """A group of features of a plug-in."""
+
+    features: tuple[Feature, ...]
+    """In the order of the values."""
+    compute: Callable[..., np.ndarray]
+    """Values, shape (record, feature), of signals without their mean, shape (record, time), sample rate, shaft rates, orders and band."""
+
+
+def added_group(group: str) -> FeatureGroup:
+    """Group of a plug-in."""
+    return plugin("features", group, FeatureGroup)
 
 
 def define_features(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> tuple[Feature, ...]:
@@ -207,7 +223,13 @@ def define_features(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -
     if unknown or isinstance(groups, str):
         message = f"groups: {groups!r} is not a list of feature groups; choose from {', '.join(GROUPS)}."
         raise ValueError(message)
-    return tuple(feature for group in groups for feature in _OF_EVERY_BAND.get(group) or _energies(band))
+    return tuple(feature for group in groups for feature in _features_of(group, band))
+
+
+def _features_of(group: str, band: Band) -> Iterable[Feature]:
+    if group not in BUILT_IN:
+        return (feature._replace(group=group) for feature in added_group(group).features)
+    return _OF_EVERY_BAND.get(group) or _energies(band)
 
 
 def measured_quantity(feature: str) -> str:

@@ -11,6 +11,7 @@ import xarray as xr
 
 from features.table.channels import channels_of
 from gen.corpus import LIBRARY_LOCK, check_result, whole_or_not_at_all
+from gen.corpus.schema import with_own_codes
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
@@ -81,7 +82,7 @@ def read_table(path: Path | str) -> xr.Dataset:
     if table.attrs.pop(DIGEST, None) != _digest(table):
         message = f"{path}: altered, its content does not match its digest; write it again with raceway features."
         raise CorpusError(message)
-    return table
+    return with_own_codes(table, path)
 
 
 def _digest(table: xr.Dataset) -> str:

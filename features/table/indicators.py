@@ -27,7 +27,7 @@ from features.signal.rows import ComplexArray, FloatArray, centre, squared_modul
 from features.signal.shape import envelope_shape, moments, peaks, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd, whiten_cepstrally
 from features.table.band import DEFAULT_BAND, Band
-from features.table.definitions import ENERGY_ORDERS, GROUPS, SHAPES, define_features
+from features.table.definitions import ENERGY_ORDERS, GROUPS, SHAPES, added_group, define_features
 
 __all__ = ["Orders", "feature_names", "indicators"]
 
@@ -116,7 +116,12 @@ def _features(
     by_group: dict[str, FloatArray] = {}
     for group in groups:
         if group not in by_group:  # one function may compute several groups
-            by_group |= GROUP_FEATURES[group](x, fs, shaft_rate, orders, band)
+            compute = GROUP_FEATURES.get(group)
+            by_group |= (
+                compute(x, fs, shaft_rate, orders, band)
+                if compute is not None
+                else {group: added_group(group).compute(x, fs, shaft_rate, orders, band)}
+            )
     return np.concatenate([by_group[group] for group in groups], axis=-1)
 
 

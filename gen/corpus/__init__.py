@@ -4,7 +4,7 @@
 module        responsibility
 ============= =============================================================
 codecs        codecs of stored signals
-fault_classes the fault classes: colour, lines and telling features of each
+fault_classes names of the fault classes, and their codes
 schema        dimensions, variables, units and roles
 simulated     further variables that readers know
 hdf5          lock of the HDF5 library, refusal of links to other files

@@ -10,10 +10,11 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.layout import is_bare_dimension, is_text, plain_attributes
+from gen.corpus.fault_classes import own_codes
+from gen.corpus.layout import attributes_of, is_bare_dimension, is_text, plain_attributes
 from gen.corpus.open_files import close, open_source, source_of
 from gen.corpus.part import inflate
-from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, operating_problems, stored_unit
+from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, class_names, operating_problems, stored_unit
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
@@ -103,6 +104,9 @@ def read_columns(
     with open_source(source) as file:
         wanted = [*names, *({*where_present} & {*map(bytes.decode, file.handle.id)})]
         columns = {name: _numbers(file.dataset(name), name, count, range(count)) for name in wanted}
+        if "fault" in columns:
+            classes = class_names(plain_attributes(file.dataset("fault"), "fault"))
+            columns["fault"] = own_codes(columns["fault"], classes, path, attributes_of(file.handle))
     close([source])
     return columns
 

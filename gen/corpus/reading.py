@@ -27,7 +27,7 @@ from gen.corpus.layout import (
     plain_attributes,
 )
 from gen.corpus.open_files import OpenFile, Source, close, open_source, source_of
-from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
+from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, with_own_codes
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
@@ -139,7 +139,7 @@ class _Records(BackendEntrypoint):
         texts = [name for name, variable in variables.items() if variable.ndim == 2]
         described = xr.decode_cf(xr.Dataset(variables, attrs=facts), decode_times=False).set_coords(texts)
         lazy = indexing.LazilyIndexedArray(signal)
-        records = described.assign(
+        records = with_own_codes(described, source.path).assign(
             {SIGNAL: xr.Variable(SIGNAL_DIMS, lazy, attributes, {"dtype": packing.dtype, **encoding})}
         )
         records.set_close(partial(close, (source, *sources)))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gen.corpus.fault_classes import FAULT_NAMES
+from gen.corpus.fault_classes import FAULT_NAMES, own_codes
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
@@ -163,6 +163,28 @@ def class_names(attributes: Mapping[Any, Any]) -> dict[int, str]:
     """
     codes = [int(code) for code in np.atleast_1d(attributes.get("flag_values", []))]
     return dict(zip(codes, str(attributes.get("flag_meanings", "")).split(), strict=False))
+
+
+def with_own_codes(records: "xr.Dataset", place: object) -> "xr.Dataset":
+    """Records or features of a file with the codes of ``fault`` in this process; they are read now if those of the file are others.
+
+    Raises
+    ------
+    CorpusError
+        If a record is of a class that this process does not have.
+    """
+    fault = records.variables.get("fault")
+    if fault is None or fault.dtype.kind != "i" or not {"flag_values", "flag_meanings"} <= fault.attrs.keys():
+        return records
+    try:
+        names = class_names(fault.attrs)
+    except (ValueError, OverflowError):
+        return records  # refused by the check of the format
+    if names == FAULT_NAMES:
+        return records
+    (variable,) = (variable for variable in SCHEMA if variable.name == "fault")
+    codes = own_codes(fault.values, names, place, records.attrs)
+    return records.assign(fault=(fault.dims, codes, fault.attrs | variable_attributes(variable)))
 
 
 def add_class_names(records: "xr.Dataset") -> None:

@@ -42,6 +42,7 @@ from gen.generation.target import check_parts, check_same, claim, part_numbers, 
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.executor import Workers, connected, run, too_many
+from gen.support.plugins import plugin_versions
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
 
@@ -215,8 +216,7 @@ def _all_parts(
         here = isinstance(workers, int)
         if here and (sentence := too_many(workers)) is not None:
             notice(sentence)
-        # the recipe travels to each worker once, not with each part
-        task = partial(_write, recipe, folder.resolve(), sources_sha256())
+        task = partial(_write, recipe, folder.resolve(), _code())
         with connected(min(workers, len(missing)) if here else workers, _SIMULATOR) as place:
             if here:
                 from gen.generation.compilation import compile_kernels  # loaded while the processes start
@@ -229,7 +229,13 @@ def _all_parts(
     return [outcomes[part] for part in parts]
 
 
-def _write(recipe: Recipe, folder: Path, sources: str, part: int) -> Outcome:
+def _code() -> str:
+    """Sources and plug-ins of this process that make records."""
+    plugins = (f"{name} {number}" for name, number in plugin_versions("mechanisms").items())
+    return ", ".join((sources_sha256()[:12], *plugins))
+
+
+def _write(recipe: Recipe, folder: Path, code: str, part: int) -> Outcome:
     """Make and write one part; dask may repeat the task, which then writes the same bytes.
 
     Raises
@@ -237,10 +243,10 @@ def _write(recipe: Recipe, folder: Path, sources: str, part: int) -> Outcome:
     ClusterError
         If this process has other sources than the one that asks for the part.
     """
-    if sources_sha256() != sources:
+    if _code() != code:
         raise ClusterError(
-            f"worker {platform.node()}: has other sources of raceway ({sources_sha256()[:12]}) than this process ({sources[:12]}); install "
-            f"the same version on every worker."
+            f"worker {platform.node()}: has other sources of raceway ({_code()}) than this process ({code}); install the same version on "
+            "every worker."
         )
     from gen.generation.parts import make_part  # the simulator, which takes a second and a half to load
 

@@ -14,6 +14,7 @@ import xarray as xr
 from gen.corpus import facts_as_attributes, part_name
 from gen.generation.sources import sources_sha256
 from gen.recipe import Recipe, recipe_hash
+from gen.support.plugins import plugin_versions
 
 
 def failures_of(part: xr.Dataset) -> tuple[str, ...]:
@@ -48,5 +49,6 @@ def made_by(recipe: Recipe) -> dict[str, Any]:
 
 @functools.cache
 def library_versions() -> dict[str, str]:
-    """Versions of the libraries that determine the bytes of a part."""
-    return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
+    """Versions of the libraries and plug-ins that determine the bytes of a part; all mechanisms and classes stand in each."""
+    libraries = {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
+    return libraries | plugin_versions("classes") | plugin_versions("mechanisms")

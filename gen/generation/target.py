@@ -106,7 +106,7 @@ def check_same(place: Path, manifest: Manifest, facts: dict[str, Any]) -> None:
     # other libraries can round otherwise
     began = manifest.versions | {"sources": (manifest.sources_sha256 or "unknown")[:12]}
     now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
-    other = [name for name in now if began.get(name) != now[name]]
+    other = [name for name in now | began if began.get(name) != now.get(name)]
     if other:
         was, installed = (", ".join(f"{name} {of.get(name, 'none')}" for name in other) for of in (began, now))
         raise CorpusError(

@@ -3,9 +3,18 @@
 from typing import Any
 
 from gen.corpus.schema import Variable
+from gen.mechanisms.background.machine_conditions import CONDITIONS
 from gen.mechanisms.background.section import LOCKED, locked_of
 from gen.mechanisms.chain.measuring_chain import CHAIN
-from gen.mechanisms.faults import KINDS
+from gen.mechanisms.faults.kinds import KINDS
+from gen.support.errors import RacewayError
+from gen.support.plugins import plugin, plugins
+
+for _name in plugins("mechanisms"):
+    if plugin("mechanisms", _name, type) not in (*KINDS, *LOCKED, *CHAIN, *CONDITIONS):
+        raise RacewayError(
+            f"raceway.mechanisms: {_name} is no BearingFault, LockedSource, SensorFault or MachineCondition, so it would do nothing."
+        )
 
 LABELS: tuple[Variable, ...] = tuple(
     {label.name: label for mechanism in (*KINDS, *LOCKED, *CHAIN) for label in mechanism.labels}.values()

@@ -1,7 +1,7 @@
 """What a mechanism of a recipe is: a section that some rigs or records have, with its key, its effect and its labels."""
 
 from collections.abc import Iterable, Iterator
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,8 +9,10 @@ from pydantic import Field
 
 from gen.corpus.schema import Variable
 from gen.drawing import Probability, Section, composed
+from gen.support.plugins import plugin, plugins
 
 FloatArray = NDArray[np.floating]
+Base = TypeVar("Base")
 
 
 class Mechanism(Section):
@@ -26,6 +28,12 @@ class Mechanism(Section):
     @staticmethod
     def compile() -> None:
         """Compile what the mechanism needs, or fetch it from numba's cache on disk."""
+
+
+def with_plugins(base: type[Base], built_in: tuple[type[Base], ...]) -> tuple[type[Base], ...]:
+    """Classes that are built in, and those of plug-ins with the same base."""
+    added = (plugin("mechanisms", name, type) for name in plugins("mechanisms"))
+    return *built_in, *(mechanism for mechanism in added if issubclass(mechanism, base))
 
 
 def section_with(name: str, module: str, base: type[Section], mechanisms: Iterable[type[Mechanism]]) -> Any:

@@ -8,9 +8,10 @@ from pydantic import Field
 
 from gen.corpus import FAULTS
 from gen.drawing import Weight, composed
-from gen.mechanisms.faults import KINDS
 from gen.mechanisms.faults.bearing_fault import BearingFault
+from gen.mechanisms.faults.kinds import KINDS
 from gen.recipe.changes import LevelChanges, OperationChanges
+from gen.support.errors import RecipeError
 
 
 class FaultEntry(BearingFault):
@@ -31,6 +32,12 @@ def _entry(kind: type[BearingFault]) -> Any:
 _ENTRIES = tuple(map(_entry, KINDS))
 OF_KIND = {kind: one for one in _ENTRIES for kind in get_args(one.model_fields["kind"].annotation)}
 """Entry of each kind."""
+
+for _kind, _model in OF_KIND.items():
+    if _kind not in FAULTS and "site" not in {*_model.model_fields, *_model.__class_vars__}:
+        raise RecipeError(
+            f"fault kind {_kind}: is no class and has no site; its plug-in must add it to raceway.classes, or give it one."
+        )
 
 if TYPE_CHECKING:
     Fault = FaultEntry

@@ -5,7 +5,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gen.corpus.fault_classes import CLASSES
 from gen.corpus.schema import Variable
 from gen.corpus.simulated import with_values
 from gen.physics.inputs import Spall
@@ -19,8 +18,9 @@ from gen.simulation.timeline import timeline
 
 def lines_of_faults(run: Run) -> tuple[float, ...]:
     """Orders at which the faults of a record repeat; none for a worn race, which hits nothing [1]."""
-    lines = dict.fromkeys(CLASSES[part.kind].lines[0] for part in run.scenario.components if part.kind in CLASSES)
-    return tuple(line.multiple * getattr(run.motion.means[1], line.base) for line in lines)
+    components = run.scenario.components
+    lines = dict.fromkeys(fault.lines[fault.part] for fault in components if fault.part in fault.lines)
+    return tuple(multiple * getattr(run.motion.means[1], order) for order, multiple in lines)
 
 
 def _duration(run: Run) -> float:

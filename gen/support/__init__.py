@@ -6,6 +6,7 @@ module         responsibility
 errors         one exception class per stage; each carries one sentence
 garbage        cheaper making of many objects
 sources        hash of source files
+plugins        what other distributions add by entry points
 kernels        compiled kernels on disk, made again if they are damaged or of other sources
 progress       progress of a long call
 shown          what an object shows in print and in a notebook

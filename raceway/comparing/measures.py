@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import irfft
 
+from features.fault_classes import CLASSES, COMBS
 from features.signal.colour import centroid, roll_off, tonality
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.impulsive import band_kurtosis, equal_bands
@@ -21,7 +22,6 @@ from features.signal.shape import envelope_shape, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd
 from features.table.band import DEFAULT_BAND
 from features.table.indicators import FLOOR_WIDTH, Orders
-from gen.corpus.fault_classes import CLASSES, COMBS
 
 LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their amplifiers differ
 UPPER_BAND = 3500.0  # Hz
@@ -199,8 +199,7 @@ class _Envelopes(NamedTuple):
 def _lines(envelope: _Envelopes, shaft_rate: FloatArray, orders: Orders, fault: str) -> dict[str, FloatArray]:
     """Measures of the line of a class with a line of its own."""
     fundamental = CLASSES[fault].lines[0]
-    order = fundamental.multiple * np.asarray(getattr(orders, fundamental.base))
-    # real lines lie beside their nominal place
+    order = fundamental.order(orders)
     line = highest_place(envelope.level, order * shaft_rate / envelope.step, SEARCHED)
     rows = np.arange(len(line))
     level = DB_PER_NEPER * envelope.level[rows, line]

@@ -12,10 +12,10 @@ import numpy as np
 from features.signal.rows import FloatArray
 from features.table.indicators import Orders
 from gen.corpus import FAULTS, make_result_folder, write_numbers, write_text_durably
-from gen.corpus.fault_classes import CLASSES
 from raceway.comparing.comparison import SHARES, Comparison
 from raceway.comparing.measures import MEASURES, NAMES, Measure
 from raceway.comparing.windows import Windows, typical_window
+from raceway.reports.colours import FAULT_COLOURS
 from raceway.reports.pictures import DrawnRecord, picture
 from raceway.reports.sides import draw_distributions, draw_sides
 from raceway.reports.templates import template, three_digits
@@ -73,7 +73,7 @@ def _part(comparison: Comparison, fault: str) -> dict[str, Any]:
     shown = {numbers[w.name]: _shown(w, fault, letters[w.name], comparison) for w in sets}
     return {
         "fault": fault,
-        "colour": CLASSES[fault].colour,
+        "colour": FAULT_COLOURS[fault],
         "counts": [(windows.name, len(_of_class(windows, fault))) for windows in sets],
         "rows": [_row(comparison, fault, measure) for measure in measures],
         "sides": picture(draw_sides(shown, comparison.common.top), "svg"),

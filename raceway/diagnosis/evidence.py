@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from features.fault_classes import SHAFT, FaultClass, families
 from features.table.indicators import Orders
-from gen.corpus.fault_classes import CLASSES, SHAFT, FaultClass
 from raceway.diagnosis.spectrum import TOP_ORDER, BandSpectrum
 
 FALSE_ALARM = 0.01  # probability that noise has a first line in a recording, and that it adds a further line to one
@@ -86,33 +86,30 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     """
     # lines of the shaft are in every machine
     free = [~_near_shaft(spectrum, shaft_rate) for spectrum in spectra]
-    families = [row for row in CLASSES.values() if row.evidence]
-    # the bound holds for the whole search, so it counts all places that are looked at
+    sought = [*families()]
     trials = TRIALS_PER_BIN * sum(
         free_bins[slice(*place)].sum()
-        for row in families
+        for row in sought
         for spectrum, free_bins in zip(spectra, free, strict=True)
         for place in _search_bins(row, spectrum, shaft_rate, orders)
     )
     lines: list[Line] = []
     least = LEAST_LEVEL
-    # the strongest family first; its lines are then taken out, so that they count for no other
-    while families and trials:
-        first_lines = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in families]
+    while sought and trials:
+        first_lines = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in sought]
         held = [
             _family(row, spectra[number], free[number], fundamental, shaft_rate, orders)
             if ratio and not _higher_at_half(row, spectra[number], free[number], fundamental, ratio)
             else []
-            for row, (ratio, number, fundamental) in zip(families, first_lines, strict=True)
+            for row, (ratio, number, fundamental) in zip(sought, first_lines, strict=True)
         ]
         sums = [
             sum(line.level for line in family if line.side in ("", row.side))
-            for row, family in zip(families, held, strict=True)
+            for row, family in zip(sought, held, strict=True)
         ]
         strongest = int(np.argmax(sums))
         ratio, _, fundamental = first_lines[strongest]
-        row, family = families.pop(strongest), held[strongest]
-        # each further family must be as strong as noise allows and not far below the strongest
+        row, family = sought.pop(strongest), held[strongest]
         level = 10 * float(np.log10(max(ratio, 1.0)))
         if not family or level < least or (not row.comb and sum(not line.side for line in family) < CAGE_LINES):
             continue
@@ -138,11 +135,6 @@ def line_facts(line: Line) -> dict[str, object]:
     }
 
 
-def _fundamental_order(row: FaultClass, orders: Orders) -> float:
-    line = row.lines[0]
-    return line.multiple * float(getattr(orders, line.base))
-
-
 def side_of(row: FaultClass, orders: Orders) -> float:
     """Distance of the sidebands of a class, in orders."""
     return 1.0 if row.side == SHAFT.base else float(getattr(orders, row.side))
@@ -157,7 +149,7 @@ def _search_bins(
 ) -> Iterator[tuple[int, int]]:
     """Bins in which the first line of a family is searched, harmonic by harmonic."""
     for harmonic in range(1, FIRST_HARMONICS + 1):
-        frequency = harmonic * _fundamental_order(row, orders) * shaft_rate
+        frequency = harmonic * float(row.lines[0].order(orders)) * shaft_rate
         yield spectrum.bins(frequency, TOLERANCE * frequency)
 
 

@@ -8,17 +8,19 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from features.fault_classes import CLASSES, SHAFT, families
 from features.signal.lines import Orders
 from features.signal.motion import velocity_band
 from features.signal.rows import FloatArray
 from features.table.band import DEFAULT_BAND, Band
 from gen.corpus import check_result, write_text_durably
-from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT
+from gen.corpus.fault_classes import HEALTHY
 from gen.support.units import from_si
 from raceway.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels
 from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
 from raceway.diagnosis.wording import probability_in_words
 from raceway.importing.recorded import Recorded
+from raceway.reports.colours import FAULT_COLOURS
 from raceway.reports.pictures import (
     FAINT,
     INK,
@@ -70,14 +72,14 @@ def write_diagnosis(
     page = template("diagnosis.html.jinja", "raceway.diagnosis").render(
         name=name,
         diagnosis=diagnosis,
-        colour=CLASSES[diagnosis.verdict].colour if diagnosis.verdict in CLASSES else FAINT,
+        colour=FAULT_COLOURS.get(diagnosis.verdict, FAINT),
         bars=_bars(diagnosis.probabilities),
         picture=picture(draw_diagnosis(diagnosis, recording, next(iter(healthy), None)), "svg") if drawn else b"",
         healthy=len(healthy),
         levels=[_level_row(one, several=len(recording.signals) > 1) for one in diagnosis.levels],
         unit=recording.unit,
         band=velocity_band(diagnosis.shaft_rate),
-        colours={fault: row.colour for fault, row in CLASSES.items()},
+        colours=FAULT_COLOURS,
         least=LEAST_LEVEL,
         false_alarm=FALSE_ALARM,
         duration=len(next(iter(recording.used.signals.values()))) / recording.fs,
@@ -93,7 +95,7 @@ def write_diagnosis(
 def _bars(probabilities: Mapping[str, float]) -> list[tuple[str, float, str, str]]:
     """Class, probability, its text, and colour."""
     ranked = sorted(probabilities.items(), key=lambda item: -item[1])
-    return [(fault, share, probability_in_words(share), CLASSES[fault].colour) for fault, share in ranked]
+    return [(fault, share, probability_in_words(share), FAULT_COLOURS[fault]) for fault, share in ranked]
 
 
 def _level_row(levels: Levels, *, several: bool) -> tuple[str, list[str]]:
@@ -150,12 +152,15 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
     visible = order <= top
     names: dict[str, float] = {SHAFT.label: 1.0}
     for fault, lines in families.items():
-        row = CLASSES[fault]
         for number, line in enumerate(lines):
             axes.axvline(
-                line, color=row.colour, linewidth=1.0, alpha=0.65, linestyle="-" if number == 0 else (0, (3, 3))
+                line,
+                color=FAULT_COLOURS[fault],
+                linewidth=1.0,
+                alpha=0.65,
+                linestyle="-" if number == 0 else (0, (3, 3)),
             )
-        names[row.lines[0].label] = lines[0]
+        names[CLASSES[fault].lines[0].label] = lines[0]
     axes.axvline(1.0, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
     axes.plot(order[visible], level[visible], color=INK, linewidth=0.7)
     axes.axhline(LEAST_LEVEL, color=FAINT, linewidth=0.7, linestyle=(0, (4, 3)))
@@ -164,7 +169,7 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
     marked = [line for line in diagnosis.evidence if (line.band, line.channel) == shown and line.order <= top]
     for line in marked:
         marker = "o" if not line.side else "s"
-        axes.plot(line.order, line.level, marker, color=CLASSES[line.fault].colour, markersize=4 if line.side else 6)
+        axes.plot(line.order, line.level, marker, color=FAULT_COLOURS[line.fault], markersize=4 if line.side else 6)
     highest = max(float(level[visible].max(initial=LEAST_LEVEL)), LEAST_LEVEL)
     axes.set(
         xlabel="order of the shaft",
@@ -179,11 +184,7 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
 
 def _families(orders: Orders) -> dict[str, list[float]]:
     """Orders of the first harmonics of each family, by its class."""
-    nominal = {name: float(value) for name, value in orders._asdict().items()}
-    fundamental = {
-        row.name: row.lines[0].multiple * nominal[row.lines[0].base] for row in CLASSES.values() if row.evidence
-    }
     return {
-        fault: [order * n for n in range(1, DRAWN_HARMONICS + 1 if CLASSES[fault].comb else 2)]
-        for fault, order in fundamental.items()
+        row.name: [float(row.lines[0].order(orders)) * n for n in range(1, DRAWN_HARMONICS + 1 if row.comb else 2)]
+        for row in families()
     }

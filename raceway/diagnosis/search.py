@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from features.fault_classes import CLASSES
 from features.signal.demodulation import ZERO_PADDING
 from features.signal.lines import families
 from features.signal.rows import FloatArray, centre
@@ -34,7 +35,6 @@ from features.signal.speed import TOLERANCE as LABEL_TOLERANCE
 from features.table.band import DEFAULT_BAND
 from features.table.indicators import SHORTEST, Orders
 from features.table.speed import LONGEST, level_spectra
-from gen.corpus.fault_classes import CLASSES
 from raceway.diagnosis.evidence import SHAFT_DRIFT, TOLERANCE, Line, side_of
 
 ANY_RATE = (5.0, 100.0)  # Hz, of a shaft whose speed is not known

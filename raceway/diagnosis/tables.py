@@ -92,14 +92,14 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
         If one of the two exists and was not made by Raceway, or the disk refuses it.
     """
     from gen.corpus import check_result, make_result_folder, write_text_durably
-    from gen.corpus.fault_classes import CLASSES
+    from raceway.reports.colours import FAULT_COLOURS
     from raceway.reports.templates import template
 
     page = template("diagnoses.html.jinja", "raceway.diagnosis").render(
         name=name,
         rows=rows,
         counts=Counter(row.verdict for row in rows),
-        colours={fault: row.colour for fault, row in CLASSES.items()},
+        colours=FAULT_COLOURS,
         list=LIST,
     )
     make_result_folder(pages)

@@ -20,7 +20,8 @@ A class is answered if the classifier is sure of it and the lines do not tell an
 from collections.abc import Mapping, Sequence
 
 from features.baselines.predictions import DAMAGED, UNSURE
-from gen.corpus.fault_classes import CLASSES, HEALTHY, SHAFT, SIDES
+from features.fault_classes import CLASSES, SHAFT, SIDES
+from gen.corpus.fault_classes import HEALTHY
 from raceway.diagnosis.evidence import Line
 from raceway.diagnosis.wording import by_family, family_in_words, faulty, line_of
 
@@ -70,7 +71,7 @@ def judge(
     if likely == HEALTHY:
         level = OBVIOUS if probabilities[likely] >= SURE else PLAIN
         families = {fault: held for fault, held in families.items() if _plain(held, level)}
-    if not CLASSES[likely].evidence and bool(families) != (likely == HEALTHY):
+    if not CLASSES[likely].is_family and bool(families) != (likely == HEALTHY):
         return likely, ""
     if not families:
         return UNSURE, f"the classifier says {likely}, but no {line_of(likely)} line stands out"

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Mapping, Sequence
 
+from features.fault_classes import CLASSES, SIDES, families
 from features.signal.speed import DISAGREEMENT
-from gen.corpus.fault_classes import CLASSES, HEALTHY, SIDES
+from gen.corpus.fault_classes import HEALTHY
 from gen.support.units import from_si
 from raceway.diagnosis.evidence import LEAST_LEVEL, Line
 from raceway.diagnosis.search import STRONG_COMB, Given, Pair
@@ -52,7 +53,7 @@ def reasons(verdict: str, lines: Sequence[Line]) -> str:
 
 def line_of(fault: str) -> str:
     """Name of the line that tells a class; "fault" for a class without a line of its own."""
-    return CLASSES[fault].lines[0].label if CLASSES[fault].evidence else "fault"
+    return CLASSES[fault].lines[0].label if CLASSES[fault].is_family else "fault"
 
 
 def faulty(probabilities: Mapping[str, float]) -> float:
@@ -165,4 +166,6 @@ def listed(words: Sequence[str], last: str) -> str:
     return f"{', '.join(words[:-1])} {last} {words[-1]}" if len(words) > 1 else words[0]
 
 
-NO_LINE = f"no line of {listed([row.part for row in CLASSES.values() if row.part], 'or')} stands {LEAST_LEVEL:g} dB above the floor"
+NO_LINE = (
+    f"no line of {listed([row.part for row in families() if row.part], 'or')} stands {LEAST_LEVEL:g} dB above the floor"
+)

@@ -6,7 +6,7 @@ Files are read one after the other, and their records are written part by part.
 import hashlib
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from gen.corpus import NewCorpus, Publication, Variable, check_new, identity, make_dataset, new_corpus
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
+from gen.support.plugins import plugin_versions
 from gen.support.progress import Progress, counter
 from raceway.importing.files import UnusableError
 from raceway.importing.recordings import Candidate, Record, cut, read_recording
@@ -49,6 +50,15 @@ class Import(NamedTuple):
     records: int
     skipped: tuple[str, ...]
     warnings: tuple[str, ...]
+
+
+class Importer(NamedTuple):
+    """Importer of a plug-in."""
+
+    help: str
+    """Of its command ``raceway import NAME``."""
+    convert: Callable[..., Import]
+    """Called with the folder of the recordings, the new corpus, and by keyword ``window`` [s] and ``progress``, as `import_mfpt` is."""
 
 
 class _Log(NamedTuple):
@@ -117,7 +127,13 @@ def import_recordings(
         if not corpus.rows:
             raise CorpusError(_nothing_usable(collection.importer, log.skipped))
         recordings, left_out, changes = log.recordings.total(), tuple(log.skipped), tuple(log.warnings)
-        corpus.facts |= {"recordings": recordings, "skipped": left_out, "warnings": changes}
+        versions = plugin_versions("importers", (collection.importer,)) | plugin_versions("classes", log.recordings)
+        corpus.facts |= {
+            "versions": versions or None,
+            "recordings": recordings,
+            "skipped": left_out,
+            "warnings": changes,
+        }
     return Import(output, recordings, log.records.total(), left_out, changes)
 
 

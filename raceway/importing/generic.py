@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from gen.corpus.fault_classes import LOOKS
+from features.fault_classes import ALL_CLASSES
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from gen.support.units import rpm_to_hertz, to_si
@@ -186,7 +186,7 @@ def _join(files: Sequence[Labels], folder: Path) -> tuple[list[FloatArray], floa
 
 
 def _recording(labels: Labels, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:
-    spalls = LOOKS[labels.fault].n_spalls
+    spalls = ALL_CLASSES[labels.fault].n_spalls
     unknown = math.nan if spalls else 0.0
     return Recording(
         number=number,

@@ -7,6 +7,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import A_PATH, json_option, target_option
+from raceway.console.plugin_commands import PluginGroup
 from raceway.console.progress import notice, progress
 
 if TYPE_CHECKING:
@@ -29,7 +30,25 @@ def _keys(_context: click.Context, _option: click.Parameter, texts: tuple[str, .
     return dict(text.split("=", 1) for text in texts)
 
 
-@click.group("import")
+def _of_plugin(name: str) -> click.Command:
+    """Command of the importer of a plug-in."""
+    from gen.support.plugins import plugin  # not at the top: help needs nothing of gen
+    from raceway.importing.assemble import Importer
+
+    importer = plugin("importers", name, Importer)
+
+    @click.command(name, help=importer.help)
+    @_source
+    @_output
+    @_window
+    @json_option
+    def convert(source: Path, output: Path, window: float, as_json: bool) -> None:
+        _run(lambda report: importer.convert(source, output, window=window, progress=report), as_json)
+
+    return convert
+
+
+@click.group("import", cls=PluginGroup, plugins="raceway.importers", make=_of_plugin)
 def import_() -> None:
     """Convert real recordings into the corpus format.
 

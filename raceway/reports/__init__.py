@@ -3,6 +3,7 @@
 =============== ==================================================================
 module          responsibility
 =============== ==================================================================
+colours         colours of the fault classes
 pictures        drawings of one record, and the style of all
 shown           what is drawn: a record, or a recording of the user
 maps            drawings of kurtograms, order maps and coherence

@@ -5,10 +5,11 @@ import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from features.fault_classes import ALL_CLASSES, COMBS
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULT_NAMES
-from gen.corpus.fault_classes import COMBS, LOOKS
 from gen.support.units import from_si
+from raceway.reports.colours import FAULT_COLOURS
 from raceway.reports.pictures import (
     STYLE,
     WIDTH,
@@ -50,7 +51,7 @@ def draw_overview(corpus: xr.Dataset) -> Figure:
     for (waveform, envelope), shown in zip(figure.subplots(len(drawn), 2, squeeze=False), drawn, strict=True):
         draw_waveform(waveform, shown)
         draw_envelope_spectrum(envelope, shown)
-        waveform.set_title(shown.title, color=LOOKS[shown.fault].colour, fontweight="bold")
+        waveform.set_title(shown.title, color=FAULT_COLOURS[shown.fault], fontweight="bold")
         envelope.set_title("")
     return figure
 
@@ -90,5 +91,5 @@ def _line_level(shown: DrawnRecord) -> float:
     names = feature_names(("lines",))
     orders = Orders(*(order.reshape(1) for order in shown.orders))
     values, _ = indicators(shown.signal[None], shown.fs, np.array([shown.shaft_rate]), orders, ("lines",))
-    columns = [names.index(name) for name in LOOKS[shown.fault].evidence or COMBS.values()]
+    columns = [names.index(name) for name in ALL_CLASSES[shown.fault].evidence or COMBS.values()]
     return float(np.nan_to_num(values[0, columns], nan=-np.inf).max())

@@ -21,6 +21,7 @@ import numpy as np
 import xarray as xr
 from scipy.signal import resample
 
+from features.fault_classes import ALL_CLASSES, COMBS, SHAFT, fundamentals
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 from features.table.band import DEFAULT_BAND, Band, checked_band
@@ -40,12 +41,12 @@ from gen.corpus import (
 )
 from gen.corpus.choice import per_record
 from gen.corpus.facts import extent
-from gen.corpus.fault_classes import COMBS, FUNDAMENTALS, LOOKS, SHAFT
 from gen.support.errors import CorpusError
 from gen.support.executor import run
 from gen.support.progress import Progress, counter
 from gen.support.shown import visible
 from gen.support.units import keys_of, range_text, shown_unit
+from raceway.reports.colours import FAULT_COLOURS
 from raceway.reports.maps import BRIGHTEST_DB
 from raceway.reports.pictures import (
     SEGMENT,
@@ -333,10 +334,10 @@ def _parts(
         "cells": CELLS,
         "sound_rate": SOUND_RATE,
         "tolerance": TOLERANCE,
-        "compared": [SHAFT, *FUNDAMENTALS],
+        "compared": [SHAFT, *fundamentals()],
         "classes": {
-            name: {"colour": look.colour, "lines": look.lines, "side": look.side if look.comb else None}
-            for name, look in LOOKS.items()
+            name: {"colour": FAULT_COLOURS[name], "lines": row.lines, "side": row.side if row.comb else None}
+            for name, row in ALL_CLASSES.items()
         },
         "quantities": [_told(one) for one in known],
     }

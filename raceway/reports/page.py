@@ -28,9 +28,10 @@ from gen.corpus import (
     write_text_durably,
 )
 from gen.corpus.choice import per_record
-from gen.corpus.fault_classes import HEALTHY, LOOKS
+from gen.corpus.fault_classes import HEALTHY
 from gen.corpus.schema import stored_unit
 from gen.support.units import READABLE, shown_unit
+from raceway.reports.colours import FAULT_COLOURS
 from raceway.reports.curves import draw_curve, draw_detection, draw_reliability, draw_roc
 from raceway.reports.examples import draw_examples
 from raceway.reports.pictures import picture
@@ -87,7 +88,7 @@ def _content(corpus: xr.Dataset) -> dict[str, Any]:
         "duration": duration,
         "fs": float(corpus["sample_rate"][0]),
         "classes": [
-            (fault, LOOKS[fault].colour, unit_counts(columns), split_counts(columns["split"]))
+            (fault, FAULT_COLOURS[fault], unit_counts(columns), split_counts(columns["split"]))
             for fault, columns in by_class(corpus, (*UNITS, "split")).items()
         ],
         "splits": SPLITS,

@@ -1,6 +1,6 @@
 """Pictures of a record, drawn from plain arrays, and the style of all pictures.
 
-All colours, those of `gen.corpus.fault_classes` included, are from the palette of Okabe and Ito [1]_, which
+All colours, those of `raceway.reports.colours` included, are from the palette of Okabe and Ito [1]_, which
 colour-blind readers can distinguish. Pictures contain numbers and class names, and no text of a corpus.
 
 .. [1] M. Okabe, K. Ito, "Color Universal Design: how to make figures and presentations that are friendly to colorblind
@@ -17,6 +17,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from features.fault_classes import ALL_CLASSES, SHAFT, fundamentals
 from features.signal.demodulation import amplitude_spectrum, analytic_band
 from features.signal.orders import order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray, squared_modulus
@@ -24,9 +25,10 @@ from features.signal.spectra import fourier_coefficients, psd, whiten_by_psd
 from features.table.band import DEFAULT_BAND, Band
 from features.table.indicators import WHITENING_WIDTH, Orders
 from gen.corpus import GENERATOR, check_result, write_durably
-from gen.corpus.fault_classes import FUNDAMENTALS, HEALTHY, LOOKS, SHAFT
+from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
+from raceway.reports.colours import FAULT_COLOURS
 
 PictureFormat = Literal["png", "svg", "pdf"]
 FORMATS: Mapping[str, PictureFormat] = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
@@ -52,7 +54,7 @@ STYLE: Any = {
     "svg.hashsalt": "raceway",
 }
 OVER: Any = {"color": INK, "label": "this recording"}
-UNDER: Any = {"color": LOOKS[HEALTHY].colour, "label": "healthy recording"}
+UNDER: Any = {"color": FAULT_COLOURS[HEALTHY], "label": "healthy recording"}
 WIDTH = 6.2  # inches: text stays readable on a phone
 
 TURNS = 8  # shaft revolutions in the waveform
@@ -134,7 +136,7 @@ def write_picture(figure: Figure, path: Path) -> None:
 def draw_record(shown: DrawnRecord, under: DrawnRecord | None = None) -> Figure:
     """Waveform, power spectral density, and squared envelope spectrum with the fault lines, one above the other."""
     figure = Figure(figsize=(WIDTH, 5.8), layout="constrained")
-    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=FAULT_COLOURS[shown.fault])
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
     for draw, axes in ((draw_waveform, waveform), (draw_density, density), (draw_envelope_spectrum, envelope)):
         draw(axes, shown, under)
@@ -206,19 +208,19 @@ def draw_cursors(axes: Axes, shown: DrawnRecord) -> float:
     own, others = mark_lines(axes, shown)
     top = highest_drawn_order(own, others)
     axes.set(xlabel="order of the shaft", xlim=(0, top))
-    name_lines(axes, own, others, LOOKS[shown.fault].colour, top)
+    name_lines(axes, own, others, FAULT_COLOURS[shown.fault], top)
     return top
 
 
 def mark_lines(axes: Axes, shown: DrawnRecord) -> tuple[dict[str, float], dict[str, float]]:
     """Lines of the fault over orders, shaded, with their sidebands dotted, and those of others dashed; both as `fault_lines`."""
     own, others = fault_lines(shown.orders, shown.fault)
-    look = LOOKS[shown.fault]
-    side = 1.0 if look.side == SHAFT.base else float(getattr(shown.orders, look.side))
+    row, colour = ALL_CLASSES[shown.fault], FAULT_COLOURS[shown.fault]
+    side = float(getattr(shown.orders, row.side, SHAFT.multiple))
     for line in own.values():
-        axes.axvspan(line * (1 - TOLERANCE), line * (1 + TOLERANCE), color=look.colour, alpha=0.2, linewidth=0)
-        for beside in (line - side, line + side) if look.comb else ():
-            axes.axvline(beside, color=look.colour, linewidth=0.6, linestyle=(0, (1, 2)))
+        axes.axvspan(line * (1 - TOLERANCE), line * (1 + TOLERANCE), color=colour, alpha=0.2, linewidth=0)
+        for beside in (line - side, line + side) if row.comb else ():
+            axes.axvline(beside, color=colour, linewidth=0.6, linestyle=(0, (1, 2)))
     for line in others.values():
         axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
     return own, others
@@ -231,7 +233,7 @@ def highest_drawn_order(own: Mapping[str, float], others: Mapping[str, float]) -
     that fundamental, because harmonics of other classes would compress the lines of the fault.
     """
     lines = {**own, **others}
-    highest = max(lines[line.label] for line in FUNDAMENTALS)
+    highest = max(lines[line.label] for line in fundamentals())
     return (1.1 if own and max(own.values()) < highest else 3.15) * highest
 
 
@@ -264,9 +266,10 @@ def _squared_envelope_of_band(shown: DrawnRecord) -> tuple[FloatArray, float]:
 
 def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str, float]]:
     """Orders of the lines of a fault class, and of the fundamental lines of the others and the shaft, by label."""
-    nominal = {"shaft": 1.0} | {base: float(order) for base, order in orders._asdict().items()}
-    own = {line.label: line.multiple * nominal[line.base] for line in LOOKS[fault].lines}
-    compared = {line.label: line.multiple * nominal[line.base] for line in (SHAFT, *FUNDAMENTALS)}
+    own, compared = (
+        {line.label: float(line.order(orders)) for line in lines}
+        for lines in (ALL_CLASSES[fault].lines, (SHAFT, *fundamentals()))
+    )
     return own, {label: order for label, order in compared.items() if label not in own}
 
 

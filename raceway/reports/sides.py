@@ -27,7 +27,7 @@ from raceway.reports.pictures import (
     thin,
 )
 
-COLOURS = (VERMILION, BLUE, "#009E73", "#CC79A7", "#E69F00", "#56B4E9")  # of the sets, as of the classes
+FAULT_COLOURS = (VERMILION, BLUE, "#009E73", "#CC79A7", "#E69F00", "#56B4E9")  # of the sets, as of the classes
 COLUMN = 2.6  # inches, width of one set
 FAINTEST_DB = -60.0
 HIGHEST_ORDER = 17.0  # end of the axis of an envelope spectrum
@@ -64,7 +64,7 @@ def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
 
 
 def _colour(number: int) -> str:
-    return COLOURS[number % len(COLOURS)]
+    return FAULT_COLOURS[number % len(FAULT_COLOURS)]
 
 
 def _draw_turns(axes: Axes, shown: DrawnRecord) -> None:

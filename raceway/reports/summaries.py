@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULT_NAMES
-from gen.corpus.fault_classes import LOOKS
+from raceway.reports.colours import FAULT_COLOURS
 from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def _draw_rigs(axes: Axes, fault: IntArray, rig: IntArray, present: IntArray) ->
     bottom = np.zeros(len(rigs))
     for c in present:
         count = np.bincount(number[fault == c], minlength=len(rigs))
-        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=LOOKS[FAULT_NAMES[c]].colour, label=FAULT_NAMES[c])
+        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=FAULT_COLOURS[FAULT_NAMES[c]], label=FAULT_NAMES[c])
         bottom += count
     step = -(-len(rigs) // 10)
     axes.set_xticks(np.arange(0, len(rigs), step), [str(name) for name in rigs[::step]])
@@ -78,7 +78,7 @@ def _draw_distribution(axes: Axes, fault: IntArray, values: FloatArray, present:
         bins=edges.tolist(),
         stacked=True,
         histtype="stepfilled",
-        color=[LOOKS[FAULT_NAMES[c]].colour for c in present],
+        color=[FAULT_COLOURS[FAULT_NAMES[c]] for c in present],
     )
     axes.locator_params(axis="x", nbins=5)
     if wide:

@@ -11,13 +11,14 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from features.fault_classes import SHAFT, fundamentals
 from features.signal.cyclic import spectral_coherence
 from features.signal.impulsive import comb_bands, kurtogram
 from features.signal.orders import order_map, order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
 from features.signal.spectra import cepstrum
 from features.table.band import Band
-from gen.corpus.fault_classes import FUNDAMENTALS, LOOKS, SHAFT
+from raceway.reports.colours import FAULT_COLOURS
 from raceway.reports.maps import BRIGHTEST_DB, FAINTEST, draw_coherence, draw_grid, level_over_median, plot
 from raceway.reports.pictures import (
     FAINT,
@@ -54,7 +55,7 @@ def draw_view(view: str, shown: DrawnRecord, under: DrawnRecord | None = None) -
         If the record is too short for the view.
     """
     figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
-    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=FAULT_COLOURS[shown.fault])
     axes = figure.subplots()
     VIEWS[view](axes, shown, under)
     if under is not None and view not in MAPS:
@@ -68,7 +69,7 @@ def band_by(choice: str, shown: DrawnRecord) -> Band:
     if choice == "kurtogram":
         return Band(*kurtogram(x, fs, narrowest=NARROWEST_BAND).best()[0].tolist())
     own, others = fault_lines(shown.orders, shown.fault)
-    labels = [line.label for line in FUNDAMENTALS]
+    labels = [line.label for line in fundamentals()]
     wanted = [label for label in own if label in labels] or [label for label in others if label in labels]
     trees = [comb_bands(x, fs, np.array([(own | others)[label] * shown.shaft_rate])) for label in wanted]
     best = max(trees, key=lambda tree: tree.score.max())
@@ -139,12 +140,9 @@ def _coherence(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
 def _cepstrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None:
     """Real cepstrum over revolutions: a family of lines is a peak at one revolution over its order, and at its multiples."""
     own, others = fault_lines(shown.orders, shown.fault)
-    fundamentals = {line.label for line in (SHAFT, *FUNDAMENTALS)}
-    # harmonics of a line share its peak, so fundamentals are enough
-    own, others = (
-        {name: 1 / order for name, order in lines.items() if name in fundamentals} for lines in (own, others)
-    )
-    colour = LOOKS[shown.fault].colour
+    named = {line.label for line in (SHAFT, *fundamentals())}
+    own, others = ({name: 1 / order for name, order in lines.items() if name in named} for lines in (own, others))
+    colour = FAULT_COLOURS[shown.fault]
     for lines, ink in ((own, colour), (others, FAINT)):
         for place in lines.values():
             axes.axvline(place, color=ink, linewidth=0.7, linestyle=(0, (2, 2)))

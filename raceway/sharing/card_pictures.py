@@ -26,9 +26,9 @@ from gen.corpus import (
     write_durably,
     writing,
 )
-from gen.corpus.fault_classes import LOOKS
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
+from raceway.reports.colours import FAULT_COLOURS
 from raceway.reports.examples import chosen_example
 from raceway.reports.page import quantities
 from raceway.reports.pictures import STYLE, WIDTH, DrawnRecord, draw_envelope_spectrum, draw_waveform, picture
@@ -107,7 +107,7 @@ def _write_pictures(folder: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]
 def draw_example(shown: DrawnRecord) -> Figure:
     """Waveform above the squared envelope spectrum of a record, with the lines at the nominal orders."""
     figure = Figure(figsize=(WIDTH, 4.6), layout="constrained")
-    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=FAULT_COLOURS[shown.fault])
     waveform, envelope = figure.subplots(2, 1, height_ratios=(1, 1.3))
     draw_waveform(waveform, shown)
     draw_envelope_spectrum(envelope, shown)

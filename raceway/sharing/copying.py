@@ -154,6 +154,14 @@ class Chosen:
                 fields[name] = list(dict.fromkeys(item for value in values for item in value or ()))
             elif all(value == values[0] for value in values):
                 fields[name] = values[0]
+            elif name == "versions":  # those that no two corpora disagree about
+                every = [value or {} for value in values]
+                fields[name] = {
+                    library: number
+                    for one in every
+                    for library, number in one.items()
+                    if all(other.get(library, number) == number for other in every)
+                }
         return fields
 
     def values(self, name: str) -> NDArray[Any]:

@@ -10,20 +10,24 @@ import pytest
 
 from features.baselines import estimators
 from features.baselines.estimators import EnvelopeRule
+from features.fault_classes import CLASSES, COMBS, EVIDENCE, FaultClass, NominalLine, fundamentals
 from features.signal.lines import FAMILIES
 from features.table.indicators import Orders, feature_names
 from gen.corpus import FAULTS
-from gen.corpus.fault_classes import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, LOOKS, FaultClass, NominalLine
+from gen.corpus.fault_classes import HEALTHY, UNKNOWN
 from raceway.reports import pictures
+from raceway.reports.colours import FAULT_COLOURS
 from raceway.reports.pictures import DrawnRecord, draw_record, fault_lines
 from tests.paths import ROOT
 
 ORDERS = Orders(*map(np.float64, (0.4, 3.6, 5.4, 2.35)))
+TABLE = ROOT / "features" / "fault_classes.py"
 RULE = ROOT / "features" / "baselines" / "estimators.py"  # three classes interact there: ball, cage and compound
 
 
 def test_classes_are_drawn_in_different_colours():
-    assert len({row.colour for row in LOOKS.values()}) == len(LOOKS) == len(CLASSES) + 1
+    assert FAULT_COLOURS.keys() == {*CLASSES, UNKNOWN}
+    assert len(set(FAULT_COLOURS.values())) == len(FAULT_COLOURS)
 
 
 def test_every_class_but_healthy_has_lines_that_show_it():
@@ -42,7 +46,7 @@ def test_each_class_has_its_textbook_lines_as_multiples_of_the_nominal_orders():
     bases = {"inner": "bpfi", "outer": "bpfo", "ball": "bsf", "cage": "ftf"}
     for name, base in bases.items():
         assert [(line.base, line.multiple) for line in CLASSES[name].lines] == [(base, n) for n in multiples[name]]
-    assert set(CLASSES["compound"].lines) <= set(FUNDAMENTALS)
+    assert set(CLASSES["compound"].lines) <= set(fundamentals())
     assert {line.base for row in CLASSES.values() for line in row.lines} <= {*Orders._fields, "shaft"}
 
 
@@ -55,6 +59,7 @@ def described_classes(path: Path) -> Iterator[str]:
 
 def test_no_other_module_of_features_names_a_class():
     named = {path: set(described_classes(path)) for path in (ROOT / "features").rglob("*.py")}
+    assert named.pop(TABLE) == set(FAULTS[1:])
     assert named.pop(RULE) == {"outer", "ball", "cage", "compound"}
     assert not {path: names for path, names in named.items() if names}
 
@@ -64,14 +69,14 @@ def looseness(monkeypatch):
     """One more class, in the format and in the table."""
     row = FaultClass(
         "looseness",
-        "#F0E442",
         (NominalLine("fr", "shaft", 1), NominalLine("2 fr", "shaft", 2)),
         single_lines=("whitened_fr",),
     )
     table = {**CLASSES, row.name: row}
     monkeypatch.setattr(estimators, "FAULTS", (*FAULTS, row.name))
     monkeypatch.setattr(estimators, "CLASSES", table)
-    monkeypatch.setattr(pictures, "LOOKS", table)
+    monkeypatch.setattr(pictures, "ALL_CLASSES", table)
+    monkeypatch.setattr(pictures, "FAULT_COLOURS", {**FAULT_COLOURS, row.name: "#F0E442"})
     return row
 
 
@@ -86,7 +91,7 @@ def test_a_new_class_needs_one_row_to_be_predicted_and_drawn(looseness):
 
 def test_a_class_without_features_of_its_own_is_never_predicted_by_the_rule(monkeypatch):
     monkeypatch.setattr(estimators, "FAULTS", (*FAULTS, "creep"))
-    monkeypatch.setattr(estimators, "CLASSES", {**CLASSES, "creep": FaultClass("creep", "#999999")})
+    monkeypatch.setattr(estimators, "CLASSES", {**CLASSES, "creep": FaultClass("creep")})
     frame = pd.DataFrame(np.zeros((2, len(EVIDENCE))), columns=list(EVIDENCE))
     rule = EnvelopeRule().fit(frame, np.arange(len(FAULTS) + 1))
     np.testing.assert_array_equal(rule.predict(frame), [0, 0])

@@ -8,7 +8,8 @@ noise              colour, resonances and coherence of the noise
 lines              lines at multiples of the shaft rate and at fixed frequencies
 impulses           impulses at random times and locked to the shaft
 gear_mesh          multiples of a tooth mesh with sidebands of both gears
-machine_conditions lines and bursts of machines that are not well
+machine_condition  lines and bursts of a machine that is not well
+machine_conditions conditions of a rig, and their label
 looseness          machines whose support lifts off the ground
 section            all of them, as a recipe has them and as they are drawn
 ================== ==========================================================

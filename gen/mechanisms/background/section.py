@@ -9,11 +9,11 @@ from gen.mechanisms.background.looseness import Looseness
 from gen.mechanisms.background.machine_conditions import MachineConditions
 from gen.mechanisms.background.noise import Noise
 from gen.mechanisms.background.source import BackgroundSource, LockedSource
-from gen.mechanisms.mechanism import section_with
+from gen.mechanisms.mechanism import section_with, with_plugins
 
 SOURCES: tuple[type[BackgroundSource], ...] = (Harmonics, Tones, Impulses, Knocks)
 """Sources that the measurement adds."""
-LOCKED: tuple[type[LockedSource], ...] = (GearMesh, MachineConditions, Looseness)
+LOCKED: tuple[type[LockedSource], ...] = with_plugins(LockedSource, (GearMesh, MachineConditions, Looseness))
 """Sources that follow from the angle of the shaft, in the order in which they are added."""
 
 if TYPE_CHECKING:

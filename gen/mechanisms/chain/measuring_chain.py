@@ -25,10 +25,12 @@ from gen.mechanisms.chain.loose_mount import LooseMount
 from gen.mechanisms.chain.mains_hum import MainsHum
 from gen.mechanisms.chain.saturation import Saturation
 from gen.mechanisms.chain.sensor_fault import SensorFault
-from gen.mechanisms.mechanism import FloatArray, mechanisms_of, section_with
+from gen.mechanisms.mechanism import FloatArray, mechanisms_of, section_with, with_plugins
 
-CHAIN: tuple[type[SensorFault], ...] = (LooseMount, Drift, MainsHum, EmiBursts, GainSteps, Saturation, DroppedSamples)
-"""All faults, in the order in which a signal meets them."""
+CHAIN: tuple[type[SensorFault], ...] = with_plugins(
+    SensorFault, (LooseMount, Drift, MainsHum, EmiBursts, GainSteps, Saturation, DroppedSamples)
+)
+"""All faults, in the order in which a signal meets them; those of plug-ins come last."""
 
 
 class _SensorFaults(Section):

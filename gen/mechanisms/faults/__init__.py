@@ -9,17 +9,8 @@ ball_spalls   spalls on a ball
 broken_cage   a broken cage
 worn_race     a race worn over its whole circumference
 compound      faults of several components
+kinds         all of them, those of plug-ins included
 ============= ===============================================================
 
-A further kind is one file, its row here and its place in ``KINDS``; a class of its own is one more row of ``gen.corpus.fault_classes``.
+A further kind is one file, its row here and its place in ``kinds.KINDS``.
 """
-
-from gen.mechanisms.faults.ball_spalls import BallFault
-from gen.mechanisms.faults.bearing_fault import BearingFault, Healthy
-from gen.mechanisms.faults.broken_cage import CageFault
-from gen.mechanisms.faults.compound import CompoundFault
-from gen.mechanisms.faults.race_spalls import RaceFault
-from gen.mechanisms.faults.worn_race import DistributedFault
-
-KINDS: tuple[type[BearingFault], ...] = (Healthy, RaceFault, BallFault, CageFault, DistributedFault, CompoundFault)
-"""In the order in which a recipe lists their keys."""

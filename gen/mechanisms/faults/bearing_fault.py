@@ -19,6 +19,8 @@ class BearingFault(Section):
     """Variables of the corpus that tell its size, 0 without the fault."""
     sizes: ClassVar[tuple[str, ...]] = ()
     """Keys of which a share of its severity is a share."""
+    lines: ClassVar[Mapping[str, tuple[str, int]]] = {}
+    """Nominal order at which damage of a part repeats, and its multiple; none if it hits nothing."""
 
     if TYPE_CHECKING:
         kind: Any

@@ -16,7 +16,7 @@ class CageFault(BearingFault):
         Variable("knock", "f8", "N", "label", "typical knock of a broken cage on the housing", lambda one: one.si()["knock"]),
     )  # fmt: skip
 
-    sizes = "pitch_error_deg", "knock_n"
+    sizes, lines = ("pitch_error_deg", "knock_n"), {"cage": ("ftf", 1)}
 
     kind: Literal["cage"]
     """Breaks one pocket of the cage: lines at FTF and its multiples."""

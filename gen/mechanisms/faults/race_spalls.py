@@ -1,6 +1,6 @@
 """Spalls on a race, and the keys that all spalls have."""
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -27,6 +27,11 @@ class Spalls(BearingFault):
     """Spalls of one part."""
 
     counted, sizes = "n_spalls", ("width_mm", "depth_um", "trace_um")
+    lines: ClassVar = {
+        "inner": ("bpfi", 1),
+        "outer": ("bpfo", 1),
+        "ball": ("bsf", 2),
+    }  # a ball strikes both races in each spin
 
     n_spalls: Distribution = within(1, MAX_SPALLS, default=1)
     """Number of spalls, each with its own draws; rounded to a whole number."""

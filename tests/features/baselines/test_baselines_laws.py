@@ -11,8 +11,8 @@ from features.baselines.estimators import class_probabilities
 from features.baselines.records import features_of, labelled_records
 from features.baselines.splits import control_cases, grouped_case, permuted_labels, score_splits
 from features.baselines.tracks import check_disjoint, check_taught, grouped_splits
+from features.fault_classes import CLASSES, COMBS, EVIDENCE
 from gen.corpus import FAULTS
-from gen.corpus.fault_classes import CLASSES, COMBS, EVIDENCE
 from gen.support.errors import CorpusError
 
 NAMES = (*EVIDENCE, *(f"whitened_line_{n}" for n in range(3)), "raw_kurtosis", "raw_crest_factor")

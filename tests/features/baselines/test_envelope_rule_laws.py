@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from scipy.special import softmax
 
 from features.baselines.estimators import EnvelopeRule
+from features.fault_classes import CLASSES, COMBS, EVIDENCE
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
-from gen.corpus.fault_classes import CLASSES, COMBS, EVIDENCE
 
 FS, TURNS, RECORDS = 12_000.0, 30, 20
 FTF, BPFO, BPFI, BSF = 0.3983, 3.5848, 5.4152, 2.3567

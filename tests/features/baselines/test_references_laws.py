@@ -11,11 +11,11 @@ from features import feature_table
 from features.baselines import Model, predict
 from features.baselines.reference_choice import OTHER_BEARING, check_durations, choose_reference, recording_reference
 from features.baselines.references import ENERGIES, NEAREST, SAME_SPEED, relative_names, relative_to, virtual_references
+from features.fault_classes import EVIDENCE
 from features.table.indicators import Orders
 from features.table.recording_speeds import recording_numbers
 from features.table.recordings import recording_table
 from gen.corpus import UNKNOWN_CODE
-from gen.corpus.fault_classes import EVIDENCE
 from gen.support.errors import CorpusError
 from raceway.cli import cli
 from tests.labels import import_labelled

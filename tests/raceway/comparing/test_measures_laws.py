@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import resample_poly
 
+from features.fault_classes import CLASSES
 from features.table.indicators import Orders
 from gen.corpus import FAULTS
-from gen.corpus.fault_classes import CLASSES
 from raceway.comparing.measures import MEASURES, NAMES, compute_measures, limit_band
 from tests.paths import ROOT
 from tests.pulses import LINES, ORDERS, pulse_train

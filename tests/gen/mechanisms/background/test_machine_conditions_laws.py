@@ -8,13 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.mechanisms.background.machine_conditions import (
-    MACHINE_CONDITIONS,
-    Bursts,
-    MachineCondition,
-    bursts_of,
-    lines_of,
-)
+from gen.mechanisms.background.machine_condition import Bursts, MachineCondition, bursts_of, lines_of
+from gen.mechanisms.background.machine_conditions import MACHINE_CONDITIONS
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
 from tests.measuring import drawn, lines

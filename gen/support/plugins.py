@@ -1,0 +1,68 @@
+"""Plug-ins: what other distributions add to Raceway by entry points.
+
+The names of a group are known before anything of a plug-in is imported; its object is loaded when it is first used. Groups are
+``raceway.mechanisms``, ``raceway.classes``, ``raceway.features``, ``raceway.importers`` and ``raceway.commands``.
+"""
+
+import functools
+from collections.abc import Container, Iterable, Mapping
+from importlib.metadata import Distribution, EntryPoint, entry_points
+from typing import Any
+
+from gen.support.errors import RacewayError
+
+
+@functools.cache
+def plugins(group: str) -> Mapping[str, EntryPoint]:
+    """Entry points of a group by their names, in the order of these.
+
+    Raises
+    ------
+    RacewayError
+        If two distributions have one name.
+    """
+    entries: dict[str, EntryPoint] = {}
+    for entry in sorted(entry_points(group=f"raceway.{group}"), key=lambda entry: entry.name):
+        if (other := entries.setdefault(entry.name, entry)) is not entry:
+            raise RacewayError(
+                f"{_distribution(entry)}: its {entry.name} in raceway.{group} is also in {_distribution(other)}; uninstall one of them."
+            )
+    return entries
+
+
+@functools.cache
+def plugin(group: str, name: str, of_type: type) -> Any:
+    """Object of an entry point, of a type that its group asks for.
+
+    Raises
+    ------
+    RacewayError
+        If it cannot be loaded, or is of another type.
+    """
+    entry = plugins(group)[name]
+    try:
+        loaded = entry.load()
+        reason = "" if isinstance(loaded, of_type) else f"it is no {of_type.__name__}"
+    except Exception as error:  # noqa: BLE001 - code of other people
+        loaded, reason = None, f"{type(error).__name__}: {error}"
+    if reason:
+        raise RacewayError(
+            f"{_distribution(entry)}: its {name} in raceway.{group} cannot be used ({reason}); install another version, or uninstall it."
+        )
+    return loaded
+
+
+def plugin_versions(group: str, names: Container[str] | None = None) -> dict[str, str]:
+    """Versions of the distributions with some of the names of a group, by default all."""
+    entries = plugins(group)
+    chosen = (entries[name].dist for name in entries if names is None or name in names)
+    return {dist.name: dist.version for dist in chosen if dist is not None}
+
+
+def missing_distributions(versions: Iterable[str]) -> list[str]:
+    """Those of the distributions that are not installed."""
+    return [name for name in versions if not any(Distribution.discover(name=name))]
+
+
+def _distribution(entry: EntryPoint) -> str:
+    return "a plug-in" if entry.dist is None else f"{entry.dist.name} {entry.dist.version}"
