@@ -291,7 +291,7 @@ class Model(Shown):
         """Model of the fields in a model file."""
         if not isinstance(content, Mapping) or set(content) != {*_STORED, *_PARTS}:
             raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
-        missing = [*missing_distributions(content["versions"]), *({*content["classes"]} - {*FAULTS})]
+        missing = missing_distributions(content["versions"]) or [c for c in content["classes"] if c not in FAULTS]
         if missing:
             raise CorpusError(
                 f"{path}: was trained with {', '.join(missing)}, which is not here; install the plug-in, or train it again."

@@ -37,8 +37,8 @@ class Feature(NamedTuple):
     name: str
     meaning: str
     formula: str
-    group: str
-    unit: str
+    group: str = ""
+    unit: str = "1"
     parameters: str = ""
     source: str = ""
     least: float = -inf

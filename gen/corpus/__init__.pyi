@@ -2,6 +2,7 @@ from .acdd import publication_attributes as publication_attributes
 from .blocks import (
     RecordBlock as RecordBlock,
     read_channel as read_channel,
+    read_classes as read_classes,
     read_columns as read_columns,
     read_texts as read_texts,
     read_units as read_units,

@@ -124,6 +124,12 @@ def read_units(path: Path, role: str) -> dict[str, str]:
     return units
 
 
+def read_classes(path: Path) -> dict[int, str]:
+    """Names of the fault classes by their codes in a file, which may not be those of this process."""
+    with open_source(source_of(path)) as file:
+        return class_names(plain_attributes(file.dataset("fault"), "fault"))
+
+
 def read_texts(path: Path, name: str, count: int) -> list[str]:
     """Values of a variable of a file that is text, one for each of ``count`` records or channels."""
     source = source_of(path)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from gen.corpus.fault_classes import BUILT_IN
 from gen.corpus.schema import FORMAT, ROLES, SCHEMA, SIGNAL, Variable, listed_flags
 from gen.corpus.signals import CLIPPED_SHARE
 from gen.corpus.simulated import LIFE
@@ -37,7 +38,7 @@ as JSON where they are not text. A fact without content is left out:
 |---|---|
 | `title`, `recipe` | title of the corpus, name of its recipe |
 | `recipe_sha256` | hash of the recipe, if whole parts of it are here; `raceway generate` completes such a corpus |
-| `sources_sha256`, `versions` | hash of the source files of Raceway that made the records; versions of Raceway and its libraries |
+| `sources_sha256`, `versions` | hash of the sources of Raceway that made the records; versions of Raceway, libraries and plug-ins |
 | `records` | number of records |
 | `parts_sha256` | hash over those of the parts; a single file has that of the parts that it was made of |
 | `overrides` | `seed` and `records` that replaced those of the recipe |
@@ -67,7 +68,8 @@ per record, and a `role`:
 - `provenance`: origin of the record.
 
 `fault` is 127 (`unknown`) where the class of a recording is not known. That is no class: `raceway train`, `benchmark`
-and `compare` leave such records out.
+and `compare` leave such records out. Classes of [plug-ins](plugins.md) have codes from {len(BUILT_IN)} on, and
+`flag_values` and `flag_meanings` of each file tell which.
 
 A specimen is numbered in its rig, and a recording in its specimen.
 

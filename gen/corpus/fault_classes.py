@@ -18,15 +18,15 @@ from gen.support.plugins import missing_distributions, plugins
 HEALTHY = "healthy"
 UNKNOWN, UNKNOWN_CODE = "unknown", 127  # recording whose class is not known: a value of ``fault``, not a class
 
-_BUILT_IN = (HEALTHY, "inner", "outer", "ball", "cage", "compound")
+BUILT_IN = (HEALTHY, "inner", "outer", "ball", "cage", "compound")
 
-FAULTS = (*_BUILT_IN, *plugins("classes"))
+FAULTS = (*BUILT_IN, *plugins("classes"))
 """Names of the classes; the code of a class is its place."""
 
 FAULT_NAMES: Mapping[int, str] = {**dict(enumerate(FAULTS)), UNKNOWN_CODE: UNKNOWN}
 
 for _name in plugins("classes"):
-    if not re.fullmatch("[a-z][a-z0-9_]*", _name) or _name in (*_BUILT_IN, UNKNOWN):
+    if not re.fullmatch("[a-z][a-z0-9_]*", _name) or _name in (*BUILT_IN, UNKNOWN):
         raise RacewayError(f"raceway.classes: {_name!r} is no name for a further class; uninstall its plug-in.")
 
 

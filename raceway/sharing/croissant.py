@@ -12,7 +12,7 @@ from typing import Any
 import xarray as xr
 
 from gen.corpus.acdd import content_id, license_address, publication_attributes
-from gen.corpus.fault_classes import FAULT_NAMES
+from gen.corpus.blocks import read_classes
 from gen.corpus.files import CROISSANT_NAME, sha256, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
@@ -104,7 +104,9 @@ def croissant(path: Path) -> dict[str, Any]:
                 *([] if path.is_file() else [_PARTS]),
             ],
             "recordSet": [
-                _listed_values("faults", "Fault classes.", "sc:Enumeration", FAULT_NAMES),
+                _listed_values(
+                    "faults", "Fault classes.", "sc:Enumeration", read_classes(corpus_files(path, "size")[0])
+                ),
                 _listed_values("splits", "Training, validation and test records.", "cr:Split", dict(enumerate(SPLITS))),
                 _records(
                     corpus, {"fileObject": {"@id": path.name}} if path.is_file() else {"fileSet": {"@id": "parts"}}

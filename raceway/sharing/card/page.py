@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from gen.corpus.blocks import read_classes
 from gen.corpus.fault_classes import FAULTS
 from gen.corpus.files import CARD_NAME, CARD_SUFFIX, corpus_around, place_of, write_text_durably
 from gen.corpus.index import open_corpus
@@ -80,7 +81,7 @@ def card_text(corpus: xr.Dataset, manifest: Manifest, added: additions.CardAddit
         whole=path.name if single else None,
         file=path.name if single else first.relative_to(path).as_posix(),
         zstd=needs_plugin(first),
-        faulty=listed_flags({code: name for code, name in enumerate(FAULTS) if code > 0}),
+        faulty=listed_flags({code: name for code, name in read_classes(first).items() if name in FAULTS[1:]}),
         citation=citation(title, manifest),
         bibtex=bibtex(title, manifest),
         most=MOST_SENTENCES,

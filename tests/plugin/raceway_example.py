@@ -1,0 +1,100 @@
+"""A plug-in of Raceway with one of each: fault class, fault, sensor fault, feature group, importer and command."""
+
+from pathlib import Path
+from typing import Any, ClassVar, Literal
+
+import click
+import numpy as np
+
+from features.fault_classes import BPFO, FaultClass
+from features.table.definitions import Feature, FeatureGroup
+from gen.corpus.schema import Variable
+from gen.drawing import Distribution, Probability, within
+from gen.mechanisms.chain.sensor_fault import SensorFault
+from gen.mechanisms.faults.race_spalls import Spalls
+from gen.physics.catalogue import CATALOGUE
+from raceway.importing.assemble import Collection, Import, Importer, import_recordings
+from raceway.importing.recordings import Candidate, Recording, files_below
+
+# a class: its lines, its words, and the class whose lines do not speak against it
+BRINELLED = FaultClass("brinelled", BPFO, words="Brinelled outer race", companion="outer", n_spalls=1)
+
+
+# a fault of this class: the docstring below a key is its meaning
+class Brinelled(Spalls):
+    """Dents that balls pressed into the outer race at rest."""
+
+    kind: Literal["brinelled"]
+    """Puts dents on the outer race, as far apart as the balls."""
+    site: ClassVar = "outer"
+
+    def draw(self, of: Any) -> Any:
+        """Dents of a bearing."""
+        dents = super().draw(of)
+        angles = tuple(360 / of.bearing.n_balls * number for number in range(len(dents.width_mm)))
+        return dents.model_copy(update={"angle_deg": angles})
+
+
+# a fault of the measuring chain, with a label
+class StuckBits(SensorFault):
+    """A converter whose lowest bits do not change."""
+
+    place, drawn_per = "stuck_bits", "rig"
+    labels = (Variable("stuck_step", "f8", "m s-2", "latent", "step of a converter with stuck bits, 0 if it has none"),)
+
+    probability: Probability
+    """Share of the rigs with such a converter."""
+    step_m_s2: Distribution = within(0, 1000, open_low=True)
+    """Distance of the values that are left."""
+
+    def disturb(self, signal: np.ndarray, fs: float, rng: np.random.Generator) -> tuple[np.ndarray, float]:
+        """Signal in steps, then the value of the label."""
+        step = self.si()["step"]
+        return np.round(signal / step) * step, step
+
+
+# a group of features
+def crossings(x: np.ndarray, fs: float, shaft_rate: np.ndarray, orders: Any, band: Any) -> np.ndarray:
+    """Values, shape (record, feature), of signals of shape (record, time)."""
+    changes = np.diff(np.signbit(x), axis=-1).mean(axis=-1)
+    return np.stack([changes, changes * fs / shaft_rate], axis=-1)
+
+
+CROSSINGS = FeatureGroup(
+    (
+        Feature("crossings", "share of samples at which the sign changes", "mean |s(i+1) - s(i)|", least=0, most=1),
+        Feature("crossings_per_turn", "changes of the sign in a turn", "crossings fs / fr", least=0),
+    ),
+    crossings,
+)
+
+
+# an importer of CLASS-BEARING-RPM.npy: accelerations [m/s2] at 12 kHz
+def _read(path: Path, number: int) -> Recording:
+    fault, bearing, rpm = path.stem.split("-")
+    return Recording(number, number, 0, CATALOGUE[bearing], float(rpm) / 60, fault, np.load(path))
+
+
+def import_plain(source: Path, output: Path, *, window: float = 0.5, progress: Any = None) -> Import:
+    """Records of a folder."""
+    facts = Collection("plain", "Plain recordings", "someone", 12_000.0, ("sensor",))
+    files = [
+        Candidate(path.name, lambda path=path, number=number: _read(path, number))
+        for number, path in enumerate(files_below(source, ".npy"))
+    ]
+    return import_recordings(facts, files, output, window=window, progress=progress)
+
+
+PLAIN = Importer("Recordings CLASS-BEARING-RPM.npy at 12 kHz.", import_plain)
+
+
+# a command
+@click.command()
+@click.argument("corpus", type=click.Path(path_type=Path))
+def peaks(corpus: Path) -> None:
+    """Print the highest acceleration of each class."""
+    from gen import open_corpus  # not at the top: help loads this module
+
+    with open_corpus(corpus) as records:
+        for fault, highest in records["acceleration"].groupby(records["fault_name"]):
+            click.echo(f"{fault} {float(abs(highest).max()):.0f} m/s2")

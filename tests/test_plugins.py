@@ -1,0 +1,167 @@
+"""Plug-ins: the example in ``tests/plugin`` is installed into a folder and used through the command line."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from tests.page_examples import blocks
+from tests.paths import ROOT
+
+SOURCE = ROOT / "tests" / "plugin"
+RECIPE = """\
+name: dented
+title: Dented bearings
+seed: 2
+corpus: {rigs: 3, specimens_per_rig: 3, records_per_specimen: 2}
+storage: {records_per_part: 18}
+recording: {sample_rate_hz: 12000, duration_s: 0.2, settle_s: 0.05, converter: {kind: float32}}
+bearing: "6205"
+operation: {shaft_rpm: 'uniform(1500, 1800)', load_n: 600}
+faults:
+  - {kind: healthy}
+  - {kind: inner, width_mm: 0.8}
+  - {kind: brinelled, width_mm: 0.8, n_spalls: 3}
+sensor_faults: {stuck_bits: {probability: 1, step_m_s2: 0.01}}
+"""
+RUN = """
+import contextlib, io, json, sys
+from raceway.cli import cli
+ends = []
+for line in json.load(sys.stdin):
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+        try: cli.main(line.split(), prog_name="raceway")
+        except SystemExit as end: ends.append((end.code, out.getvalue() or err.getvalue()))
+print(json.dumps(ends))
+"""
+
+
+def run(folder, lines, *plugins):
+    """Exit code and text of each of some commands, one after the other in a process that finds the plug-ins."""
+    path = os.pathsep.join(map(str, (*plugins, *sys.path)))
+    done = subprocess.run(
+        [sys.executable, "-c", RUN], input=json.dumps(lines), cwd=folder, env={**os.environ, "PYTHONPATH": path},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+def distribution(folder, name, group, entry):
+    """Installed distribution that has nothing but one entry point."""
+    facts = folder / f"{name}-1.0.dist-info"
+    facts.mkdir(parents=True)
+    (facts / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    (facts / "entry_points.txt").write_text(f"[raceway.{group}]\n{entry}\n")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """Folder in which the example is installed as pip does it."""
+    folder = tmp_path_factory.mktemp("plugin")
+    shutil.copytree(SOURCE, folder / "source")
+    target = ["--target", folder / "lib", folder / "source"]
+    subprocess.run(
+        [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-build-isolation", *target], check=True
+    )
+    return folder / "lib"
+
+
+@pytest.fixture(scope="module")
+def made(installed, tmp_path_factory):
+    """Folder with what commands made with the plug-in, and what they printed."""
+    folder = tmp_path_factory.mktemp("made")
+    (folder / "dented.yaml").write_text(RECIPE)
+    (folder / "recorded").mkdir()
+    rng = np.random.default_rng(0)
+    for fault in ("healthy", "brinelled"):
+        np.save(folder / "recorded" / f"{fault}-6205-1700.npy", rng.standard_normal(6000))
+    lines = [
+        "--help",
+        "recipes --keys sensor_faults.stuck",
+        "generate dented.yaml -o corpus",
+        "validate corpus",
+        "info corpus --json",
+        "replay corpus --record 5",
+        "features corpus -o features.nc",
+        "train corpus -o model.skops",
+        "evaluate corpus --model model.skops",
+        "benchmark corpus -o report --estimator envelope_rule --folds 2",
+        "explore corpus -o explore.html",
+        "import plain recorded -o imported --window 0.2",
+        "diagnose recorded/brinelled-6205-1700.npy --rate 12000 --bearing 6205 --rpm 1700 --unit m/s2 --model model.skops -o page.html",
+        "copy imported corpus -o corpora.nc --where fault=='brinelled'",
+        "info corpora.nc --json",
+        "peaks corpus",
+    ]
+    ends = dict(zip(lines, run(folder, lines, installed), strict=True))
+    assert {line: end for line, end in ends.items() if end[0] not in (0, None)} == {}
+    return folder, {line: text for line, (_, text) in ends.items()}
+
+
+def test_a_fault_class_of_a_plugin_goes_all_the_way_to_scores_and_pages(made):
+    folder, said = made
+    assert "stuck_bits" in said["recipes --keys sensor_faults.stuck"]
+    assert "identical" in said["replay corpus --record 5"]
+    facts = json.loads(said["info corpus --json"])
+    assert facts["classes"] == {"healthy": 6, "inner": 6, "brinelled": 6}
+    assert facts["versions"]["raceway-example"] == "0.1"
+    assert "\nbrinelled               0      0          6" in said["evaluate corpus --model model.skops"]
+    for page in ("report/report.html", "corpus/README.md", "page.html"):
+        assert "brinelled" in (folder / page).read_text()
+
+
+def test_commands_and_importers_of_a_plugin_are_listed_and_run(made):
+    _, said = made
+    assert "Plug-ins:\n  peaks" in said["--help"]
+    assert "imported: 4 records of 2 recordings" in said["import plain recorded -o imported --window 0.2"]
+    joined = json.loads(said["info corpora.nc --json"])
+    assert (joined["classes"], joined["versions"]["raceway-example"]) == ({"brinelled": 8}, "0.1")
+    assert said["peaks corpus"].count("m/s2") == 3
+
+
+def test_without_the_plugin_a_sentence_names_it(made):
+    folder, _ = made
+    lines = ["info corpus", "info imported", "validate corpus", "evaluate corpus --model model.skops"]
+    for code, text in run(folder, lines):
+        assert code in (1, 2)
+        assert "raceway-example" in text
+        assert text.count("\n") == 1
+
+
+def test_codes_of_classes_are_those_of_the_file(made, installed, tmp_path):
+    """A class that comes before the one in the file moves the code of this one in the process."""
+    folder, said = made
+    other = distribution(tmp_path, "other", "classes", "abraded = raceway_example:BRINELLED")
+    lines = [
+        "info corpus --json",
+        "validate corpus",
+        "evaluate corpus --model model.skops",
+        "generate dented.yaml -o corpus",
+    ]
+    info, sound, scores, completed = run(folder, lines, installed, other)
+    assert json.loads(info[1])["classes"] == json.loads(said[lines[0]])["classes"]
+    assert (sound[1], scores[1]) == (said["validate corpus"], said[lines[2]])
+    assert "other none; other 1.0 is installed" in completed[1]
+
+
+def test_a_plugin_that_cannot_be_loaded_is_named_and_the_others_work(tmp_path):
+    broken = distribution(tmp_path, "broken", "commands", "lost = no_such_module:command")
+    (_, listed), (code, called) = run(tmp_path, ["--help", "lost"], broken)
+    sentence = "broken 1.0: its lost in raceway.commands cannot be used"
+    assert f"Plug-ins:\n  lost       {sentence}" in listed
+    assert (code, called) == (
+        2,
+        f"{sentence} (ModuleNotFoundError: No module named 'no_such_module'); install another version, or uninstall it.\n",
+    )
+
+
+def test_the_page_shows_the_example():
+    source = (SOURCE / "raceway_example.py").read_text() + (SOURCE / "pyproject.toml").read_text()
+    shown = blocks("plugins.md") + blocks("plugins.md", "toml")
+    assert len(shown) == 6
+    assert [block for block in shown if block not in source] == []
