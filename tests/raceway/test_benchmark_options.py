@@ -76,7 +76,7 @@ def test_rows_of_earlier_calls_stay_in_the_folder(told, tiny_corpus, tmp_path, m
     [
         (("--estimator", "forest"), "'forest' is none of majority, envelope_rule"),
         (("--estimator", ":make"), "':make' is none of majority, envelope_rule"),
-        (("--estimator", "own_none:make"), "own_none:make: no module own_none in this folder"),
+        (("--estimator", "own_none:make"), "own_none:make: cannot be imported (ModuleNotFoundError"),
         (("--waveforms",), "--waveforms is for --estimator MODULE:NAME"),
         (("--estimator", "own_module:make", "--per-turn", 9), "--per-turn is for --waveforms"),
     ],
