@@ -109,7 +109,7 @@ smaller one, other than 0, cannot hold the rings together:
     operation:
       shaft_rpm: uniform(900, 1800, per=rig, scatter_percent=2)
 
-The common value is pseudo-random with every `corpus.sampling`; a grid counts the rigs or specimens.
+A grid counts the rigs or specimens.
 
 **A list** gives the values of a key that is drawn for each of several items, one for each: resonances and tones that
 were measured on a machine, or the spalls of a race. The count must be as long:
@@ -124,15 +124,11 @@ with care: a classifier can learn the load instead of the fault.
 
 ## Pairs and ladders
 
-With `corpus.rungs` every record of a faulty specimen is repeated at each of these shares of its severity. The records
-of a group are neighbours, share the label `pair` and differ in `rung`, the place in the list; both are -1 for the
-records of healthy specimens. A record at rung 0 has the class `healthy`. All records of a group are of one specimen, so
-no split divides them.
-
-The weights of `faults` are shares of the records: as rung 0 gives healthy records already, there are fewer healthy
-specimens. The severity is the width and depth of every spall, the rms of wear, and the pitch error and knock of a cage.
-With `level.kind: snr` the records of a group have the same drawn level; for a level that grows with the fault use
-`level.kind: physical`.
+With `corpus.rungs` every record of a faulty specimen is repeated at each of these shares of its severity: of width and
+depth of every spall, the rms of wear, and the pitch error and knock of a cage. The records of a group are neighbours,
+share the label `pair` and differ in `rung`, the place in the list; both are -1 for the records of healthy specimens. A
+record at rung 0 has the class `healthy`. The weights of `faults` are shares of the records: as rung 0 gives healthy
+records already, there are fewer healthy specimens. For a level that grows with the fault use `level.kind: physical`.
 """
 
 _KEYS = """A key belongs to the values of `kind` in its row, or to all if the row has none. A bracket includes the end of a
@@ -155,15 +151,23 @@ def readme() -> str:
     for section, own in sections.items():
         about = [*textwrap.wrap(meanings[section], 120, break_on_hyphens=False), ""] if section in meanings else []
         lines += [f"### {section or 'Top level'}", "", *about]
-        lines += ["| key | kind | unit | allowed | default | meaning |", "|---|---|---|---|---|---|"]
-        lines += [_row(key) for key in own]
-        lines += [""]
+        lines += [*_table(own), ""]
     return "\n".join(lines)
 
 
-def _row(key: Key) -> str:
-    name = key.key.rpartition(".")[2]
-    return f"| `{name}` | {', '.join(key.kinds)} | {key.unit} | {key.allowed} | {key.default} | {key.meaning} |"
+def _table(keys: list[Key]) -> list[str]:
+    columns = {
+        "key": [f"`{key.key.rpartition('.')[2]}`" for key in keys],
+        "kind": [", ".join(key.kinds) for key in keys],
+        "unit": [key.unit for key in keys],
+        "allowed": [key.allowed for key in keys],
+        "default": [key.default for key in keys],
+        "meaning": [key.meaning for key in keys],
+    }
+    # many sections have no kinds or no units
+    columns = {name: cells for name, cells in columns.items() if any(cells)}
+    head, *rows = (f"| {' | '.join(cells)} |" for cells in (columns, *zip(*columns.values(), strict=True)))
+    return [head, "|" + "---|" * len(columns), *rows]
 
 
 PAGES = {
