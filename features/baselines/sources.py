@@ -6,6 +6,7 @@ _MAKES_SCORES = (
     "gen/corpus",
     "gen/support",
     "features/signal",
+    "features/fault_classes.py",
     "features/table",
     "features/baselines",
 )
