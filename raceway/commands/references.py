@@ -9,7 +9,7 @@ import click
 from raceway.console.corpus_table import table_of
 from raceway.console.options import A_PATH, Analysis, Decorator, Team
 from raceway.console.progress import notice
-from raceway.importing.reading_options import MARKS, mark_of
+from raceway.importing.reading_options import DECIMAL_MARKS, MARKS, mark_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from features.table.recording_speeds import Speed
 
 
-_OPTIONS = {key: f"--reference-{key}" for key in ("column", "variable", "rate", "delimiter")}
+_OPTIONS = {key: f"--reference-{key}" for key in ("column", "variable", "rate", "delimiter", "decimal")}
 
 
 def _number_or_name(_context: click.Context, _option: click.Parameter, text: str | None) -> int | str | None:
@@ -64,6 +64,11 @@ def reference_options(command: Any) -> Any:
             type=click.Choice([*MARKS]),
             callback=mark_of,
             help="Mark between columns of the recording, if it is a text.",
+        ),
+        click.option(
+            "--reference-decimal",
+            type=click.Choice(DECIMAL_MARKS),
+            help="Decimal mark of the recording, if it is a text.",
         ),
     ]
     # click lists options from the last decorator to the first

@@ -18,11 +18,11 @@ reading         recordings of the user: files of a folder, channels of each
 reading_options options of commands that say how recordings are read
 conversion      from the unit of a file to m/s^2
 matlab          one variable of a MATLAB file
-text            tables in text: encoding, mark between columns, fields
-sheets          tables in Excel files
-table           header, rows and notes of a table, whatever file it is in
+text            texts: encoding, lines, mark between columns, fields
+sheets          sheets of Excel files, as tables in text
+table           header, rows and notes of a table, parsed once by pandas
 header          names, units and sample rate in the header of a table
-numerals        forms of numbers, and the one that suits a column
+numerals        numbers in text, and the decimal mark that suits them
 axes            columns that hold the axes of one sensor
 columns         choice of a column, and the sample rate that times tell
 files           NumPy and WAV files; errors of libraries as sentences

@@ -1,24 +1,23 @@
 """Choice of a column in a table, and the sample rate that a column of times tells."""
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from raceway.importing.axes import axes_of
 from raceway.importing.conversion import Unit
 from raceway.importing.files import ContradictionError, FloatArray, NoneChosenError, UnusableError
 from raceway.importing.header import SECONDS, Header, key_of, known_unit
+from raceway.importing.table import Table
 
 SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
 _SAME_RATE = 0.01  # relative
 _COARSE = 1e-3  # of the rate, relative
 _JITTER = 0.05  # of a step
-_FEW = 0.01  # of the steps
+_FEW, _MANY = 0.01, 0.1  # of the steps
 _MOST_NAMED = 12
-_MOST_COLUMNS, LEAST_LENGTH = 64, 8  # of a table without names, whose longer axis is time
 
 
 class Values(NamedTuple):
@@ -87,88 +86,54 @@ class Values(NamedTuple):
         return "m/s2", ["it states no unit, and m/s2 is assumed"] if self.absolute else []
 
 
-def columns_to_load(header: Header, column: int | str | None, numeric: Sequence[int], even: Sequence[int]) -> list[int]:
-    """Columns that may hold the signal or times.
-
-    ``numeric`` columns hold numbers, which in ``even`` ones rise evenly at first, as times and counters do.
+def signal_of(table: Table, column: int | str | None) -> Values:
+    """Values of the chosen column, or of the only one that holds no times.
 
     Raises
     ------
     UnusableError
-        If there is no such column, or several and none is chosen.
+        If there is none or several, if its numbers are flawed or have two readings, or if times are not evenly spaced, or frequencies.
     """
+    header, columns = table.header, table.columns
+    times = [n for n, values in columns.items() if header.is_of_time(n) or is_even(values) or has_gaps(values)]
     if column is None:
-        signals = [n for n in numeric if n not in even and not header.is_of_time(n)]
+        signals = [n for n in columns if n not in times]
+    else:
+        signals = header.places(column)
         if len(signals) > 1:
-            raise _none_chosen(header, numeric, signals)
-        return [*numeric]
-    places = header.places(column)
-    if len(places) > 1:
-        message = f"has several columns {column} ({_listed(header, places)}); choose one by its number"
-        raise UnusableError(message, "column")
-    if not places or places[0] not in numeric:
-        message = f"has the columns {_listed(header, numeric)}, and no numbers in {column}; choose one"
-        raise UnusableError(message, "column")
-    return [places[0], *(n for n in numeric if n != places[0] and (n in even or header.is_of_time(n)))]
-
-
-def signal_of(header: Header, column: int | str | None, loaded: Mapping[int, FloatArray]) -> Values:
-    """Values of the chosen column, the first of those that are loaded, or of the only one that holds no times.
-
-    Raises
-    ------
-    UnusableError
-        If there is none or several, or if times are not evenly spaced, or frequencies.
-    """
-    times = [n for n, values in loaded.items() if is_even(values) or header.is_of_time(n)]
-    signals = [n for n in loaded if n not in times] if column is None else [*loaded][:1]
+            message = f"has several columns {column} ({_listed(header, signals)}); choose one by its number"
+            raise UnusableError(message, "column")
+        if not signals or signals[0] not in columns:
+            message = f"has the columns {_listed(header, [*columns])}, and no numbers in {column}; choose one"
+            raise UnusableError(message, "column")
     if len(signals) > 1:
-        raise _none_chosen(header, [*loaded], signals)
+        message = f"has {len(columns)} columns ({_listed(header, [*columns])}) and none is chosen; choose one"
+        raise NoneChosenError(message, "column", tuple(map(header.key, axes_of(header, signals))))
     if not signals or signals[0] in times:
         message = f"has times or a counter in column {_listed(header, signals or times)}, and no signal; choose another"
         raise UnusableError(message, "column")
+    used = [*signals, *times]
+    flaw = next((table.flaws[n] for n in used if n in table.flaws), None)
+    if flaw is not None:
+        raise flaw
+    if {table.marks[n] for n in used if n in table.marks} == {".,"}:
+        message = "has numbers that can be read in two ways, such as 1.234; give the decimal mark"
+        raise UnusableError(message, "decimal")
     rates = [(rate, "header") for rate in header.rates]
     for place in times:
         name = header.name(place)
         if header.is_of_spectrum(place):
             raise UnusableError(f"has frequencies in column {name}; export the waveform, not its spectrum")
-        if not is_even(loaded[place]):
+        if not is_even(columns[place]):
             raise UnusableError(f"has times in column {name} that are not evenly spaced; export it at one sample rate")
         unit = SECONDS.get(key_of(header.unit_of(place)))
-        rate = unit and _rate_of(loaded[place] * unit)
+        rate = unit and _rate_of(columns[place] * unit)
         rates += [(rate, f"times in column {name}")] if rate else []
     own = header.unit_of(signals[0])
     named = f"column {header.name(signals[0])}" if own else header.unit
-    return Values(loaded[signals[0]], tuple(rates), unit=own or header.unit, named=named)
-
-
-def _none_chosen(header: Header, columns: Sequence[int], signals: Sequence[int]) -> NoneChosenError:
-    message = f"has {len(columns)} columns ({_listed(header, columns)}) and none is chosen; choose one"
-    return NoneChosenError(message, "column", tuple(map(header.key, axes_of(header, signals))))
-
-
-def table_signal(table: NDArray[Any], column: int | str | None) -> Values:
-    """Signal in a table without names, whose longer axis is time."""
-    columns = as_columns(table)
-    places = columns_to_load(Header(), column, range(len(columns)), range(len(columns)))
-    return signal_of(Header(), column, {n: columns[n].astype(np.float64, copy=False) for n in places})
-
-
-def as_columns(values: NDArray[Any]) -> NDArray[Any]:
-    """Table with its longer axis last.
-
-    Raises
-    ------
-    UnusableError
-        If the values are not real numbers, or not a table of which one axis is plainly that of time.
-    """
-    shorter, longer = (1, values.size) if values.ndim == 1 else sorted(values.shape) if values.ndim == 2 else (0, 0)
-    plain = shorter == 1 or (0 < shorter <= _MOST_COLUMNS and longer >= LEAST_LENGTH * shorter)
-    if values.dtype.kind not in "iuf" or values.size == 0 or not plain:
-        message = f"holds {values.dtype} of shape {values.shape}, not one column of real numbers, or a few long ones"
-        raise UnusableError(message)
-    columns = np.atleast_2d(values)
-    return columns.T if columns.shape[0] > columns.shape[1] else columns
+    return Values(
+        columns[signals[0]], tuple(rates), table.playback, own or header.unit, named, table.absolute, table.notes
+    )
 
 
 def is_even(values: FloatArray) -> bool:
@@ -186,6 +151,21 @@ def is_even(values: FloatArray) -> bool:
         return False
     line = np.linspace(values[0], values[-1], values.size)
     return float(np.abs(values - line).max()) <= max(_resolution(values), _JITTER * (line[1] - line[0]))
+
+
+def has_gaps(values: FloatArray) -> bool:
+    """Whether values rise by one step, and here and there by several: a counter or times where samples are lost.
+
+    >>> has_gaps(np.delete(np.arange(100), 40)), has_gaps(np.arange(100)), has_gaps(np.array([0, 1, 3, 9, 10, 17, 18, 19]))
+    (True, False, False)
+    """
+    steps = np.diff(values)
+    usual = np.median(steps) if steps.size else 0.0
+    if not usual > 0:
+        return False
+    counts = steps / usual
+    whole = np.abs(counts - np.round(counts)) < 1e-3
+    return bool(np.all(whole & (counts > 0.5)) and 0 < np.count_nonzero(counts > 1.5) < _MANY * counts.size)
 
 
 def _resolution(values: FloatArray) -> float:

@@ -20,14 +20,16 @@ _ACCELERATIONS = {"m/s2": 1.0, "mm/s2": 1e-3, "g": STANDARD_GRAVITY, "mg": 1e-3 
 
 
 class Scale(NamedTuple):
-    """Unit of the values in a file, and the sensitivity of a voltage [V per m s-2]."""
+    """Unit of the values in a file, None for the one that it states, and the sensitivity of a voltage [V per m s-2]."""
 
-    unit: Unit = "m/s2"
+    unit: Unit | None = "m/s2"
     sensitivity: float | None = None
 
     def __str__(self) -> str:
         """Words for the data card."""
         match self.unit:
+            case None:
+                return "stated in the files"
             case "m/s2":
                 return "m/s^2"
             case "mm/s2":
@@ -49,24 +51,22 @@ def volts_per_acceleration(per_g: float | None, per_m_s2: float | None) -> float
     return None if per_g is None else per_g / (1000 * STANDARD_GRAVITY)
 
 
-def unit_problem(unit: str, sensitivity: float | None) -> str | None:
+def unit_problem(unit: str | None, sensitivity: float | None) -> str | None:
     """Reason why unit and sensitivity do not belong together; None if they do."""
     if unit in VOLTAGES and sensitivity is None:
         return (
             f"the unit is {unit} and the sensitivity of the sensor is missing; give it in mV per g or in mV per m/s^2"
         )
-    if unit not in VOLTAGES and sensitivity is not None:
+    if unit not in (*VOLTAGES, None) and sensitivity is not None:
         return f"a sensitivity is given and the unit is {unit}, not V or mV; leave one of the two out"
     return None
 
 
 def accelerations(values: FloatArray, scale: Scale) -> FloatArray:
     """Values of a file in m s-2, of the same shape."""
-    if scale.unit == "m/s2":
-        return values
-    if scale.sensitivity is None:
-        return values * _ACCELERATIONS[scale.unit]
-    return values / (scale.sensitivity * 1000 / _MILLIVOLTS[scale.unit])
+    if scale.unit in _MILLIVOLTS and scale.sensitivity is not None:
+        return values / (scale.sensitivity * 1000 / _MILLIVOLTS[scale.unit])
+    return values if scale.unit == "m/s2" else values * _ACCELERATIONS[scale.unit or "m/s2"]
 
 
 def doubts(values: FloatArray, signal: FloatArray, scale: Scale, *, absolute: bool) -> list[str]:

@@ -20,11 +20,12 @@ from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from gen.support.units import HORSEPOWER, MIL, STANDARD_GRAVITY, rpm_to_hertz
 from raceway.importing.assemble import Collection, Import, import_recordings
-from raceway.importing.columns import table_signal
+from raceway.importing.columns import signal_of
 from raceway.importing.files import FloatArray, UnusableError
 from raceway.importing.matlab import read_matlab, read_number
 from raceway.importing.recordings import Candidate, Recording, files_below, name_of
 from raceway.importing.resampling import resample
+from raceway.importing.table import table_of
 
 Subset = Literal["all", "wang"]
 
@@ -183,8 +184,7 @@ def _read(path: Path, number: int, specimen: int, motor_load: int) -> Recording:
     fault, diameter, clock, _ = SPECIMENS[specimen]
     held = _HELD_AS.get(number, number)
     warnings: list[str] = []
-    signal = table_signal(read_matlab(path, f"X{held:03d}_DE_time"), None).values * STANDARD_GRAVITY
-    # some files hold the variable of another recording, as they were published
+    signal = signal_of(table_of(read_matlab(path, f"X{held:03d}_DE_time")), None).values * STANDARD_GRAVITY
     if held != number:
         warnings.append(f"holds the variable X{held:03d}_DE_time, as published for recording {number}")
     if fault == "healthy":

@@ -18,16 +18,15 @@ from gen.support.progress import Progress
 from gen.support.units import rpm_to_hertz, to_si
 from raceway.importing.assemble import Collection, Import, import_recordings
 from raceway.importing.assumptions import assumptions
-from raceway.importing.conversion import accelerations, doubts
 from raceway.importing.files import FloatArray, UnusableError
 from raceway.importing.label_tables import read_table_of_labels
 from raceway.importing.labels import Labels, SensorKeys
 from raceway.importing.recordings import Candidate, Recording
 from raceway.importing.resampling import resample
-from raceway.importing.signals import read_values
+from raceway.importing.signals import acceleration, reader
 
 _NO_RATE = 10_000.0  # Hz, if no file states one: each is then skipped with its own reason
-_OF_A_FILE = {"path", "delimiter", "channels", *SensorKeys.model_fields}
+_OF_A_FILE = {"path", "delimiter", "decimal", "channels", *SensorKeys.model_fields}
 
 
 def import_generic(
@@ -139,13 +138,8 @@ def _common_rate(recordings: Sequence[Sequence[Labels]], folder: Path) -> float:
 
 
 def _read(files: Sequence[Labels], folder: Path, fs: float, number: int, rig: int, specimen: int) -> Recording:
-    values, rate, absolute, notes = _join(files, folder)
+    signals, rate, notes = _join(files, folder)
     labels = files[0]
-    signals: list[FloatArray] = []
-    for sensor, column in zip(labels.sensors, values, strict=True):
-        signals.append(accelerations(column, sensor.scale))
-        told = doubts(column, signals[-1], sensor.scale, absolute=absolute)
-        notes += [f"channel {sensor.name}: {doubt}" if labels.channels else doubt for doubt in told]
     if len({signal.size for signal in signals}) > 1:
         sizes = " and ".join(str(signal.size) for signal in signals)
         message = f"has channels of {sizes} samples; give channels of one length"
@@ -160,29 +154,29 @@ def _read(files: Sequence[Labels], folder: Path, fs: float, number: int, rig: in
     return _recording(labels, signal, number, rig, specimen)._replace(warnings=tuple(notes))
 
 
-def _join(files: Sequence[Labels], folder: Path) -> tuple[list[FloatArray], float, bool, list[str]]:
-    """Values of each channel in the unit of the files, shape (time,), and their sample rate [Hz].
-
-    Then whether the values have a unit, and notes, which are sentences without their end.
-    """
+def _join(files: Sequence[Labels], folder: Path) -> tuple[list[FloatArray], float, list[str]]:
+    """Each channel in m s-2, shape (time,), the sample rate [Hz], and notes, which are sentences without their end."""
     parts: list[list[FloatArray]] = []
     rates: set[float] = set()
-    notes: list[str] = []
-    absolute = True
+    notes: dict[str, None] = {}
     for labels in files:
-        columns = [read_values(folder / labels.path, sensor.place) for sensor in labels.sensors]
-        rate, doubt = columns[0].rate(labels.sample_rate_hz, "sample_rate_hz")
-        for column, sensor in zip(columns, labels.sensors, strict=True):
-            doubt += [*column.notes, *column.stated_unit(sensor.scale.unit)[1]]
-        if rate is None:
-            raise UnusableError("states no sample rate; give it", "sample_rate_hz")
-        notes += [sentence for sentence in doubt if sentence not in notes]
-        rates.add(rate)
-        parts.append([values.values for values in columns])
-        absolute = absolute and columns[0].absolute
+        read = reader(folder / labels.path)
+        parts.append([])
+        for sensor in labels.sensors:
+            content = read(sensor.place)
+            if sensor.scale.unit is None and not content.unit:
+                raise UnusableError("states no unit; give it", "unit")
+            signal = acceleration(content, *sensor.scale, labels.sample_rate_hz, "sample_rate_hz")
+            if signal.fs is None:
+                raise UnusableError("states no sample rate; give it", "sample_rate_hz")
+            parts[-1].append(signal.values)
+            rates.add(signal.fs)
+            notes |= dict.fromkeys(
+                f"channel {sensor.name}: {note}" if labels.channels else note for note in signal.warnings
+            )
     if len(rates) > 1:
         raise UnusableError("is joined of files at different sample rates; give each recording a name of its own")
-    return [np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), absolute, notes
+    return [np.concatenate(channel) for channel in zip(*parts, strict=True)], rates.pop(), [*notes]
 
 
 def _recording(labels: Labels, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:

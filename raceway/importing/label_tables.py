@@ -6,6 +6,7 @@ Keys that all rows share are in the YAML file of the same name beside the table,
 """
 
 import csv
+import io
 import re
 from collections.abc import Mapping, Sequence
 from itertools import islice
@@ -21,8 +22,8 @@ from gen.support.units import unit_suffix
 from gen.support.yaml_files import parse_yaml, read_yaml
 from raceway.importing.files import UnusableError, guarded, reason_of
 from raceway.importing.labels import Labels
-from raceway.importing.numerals import Form, is_number, number_in, numbers_in, readings
-from raceway.importing.text import encoding_of, lines_of
+from raceway.importing.numerals import decimal_marks, is_number, number_in
+from raceway.importing.text import text_of
 
 _TABLES = (".csv", ".txt", ".tsv")
 _MARKS = "\t;,"
@@ -59,12 +60,11 @@ def read_table_of_labels(path: Path, common: Mapping[str, Any]) -> list[tuple[st
             message = f"{place}: {lost!r:.60} is in a column without a key in row {first}; give the key, or quote a text with commas."
             raise CorpusError(message)
         texts.append((place, {name: cell for name, cell in zip(named, cells, strict=False) if cell}))
-    numbers = [f"{text}\n" for _, keys in texts for key, text in keys.items() if key in _NUMBERS and is_number(text)]
-    # one form of numbers for the whole table: a comma in it is decimal or in thousands throughout
-    form, *others = readings(numbers) or [None]
-    form = None if others else form
+    marks = decimal_marks(
+        text for _, keys in texts for key, text in keys.items() if key in _NUMBERS and is_number(text)
+    )
     rows = [
-        (place, {key: _value(f"{place}, column {key}", key, text, form) for key, text in keys.items()})
+        (place, {key: _value(f"{place}, column {key}", key, text, marks) for key, text in keys.items()})
         for place, keys in texts
     ]
     beside = path.with_suffix(".yaml")
@@ -75,7 +75,10 @@ def _labels_of(
     rows: Sequence[_Row], shared: Mapping[str, Any], common: Mapping[str, Any], beside: Path
 ) -> list[tuple[str, Labels]]:
     """Place and labels of each row; ``shared`` keys are from the file ``beside``. A flaw of several rows is told of the first one."""
-    given = {key: _parsed(f"common key {key}", key, value) for key, value in common.items()}
+    given = {
+        key: _value(f"common key {key}", key, value) if isinstance(value, str) else value
+        for key, value in common.items()
+    }
     found: list[tuple[str, Labels]] = []
     problems: dict[str, str] = {}
     for place, own in rows:
@@ -123,12 +126,14 @@ def keys_of_yaml(path: Path) -> dict[str, Any]:
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
     """Lines of a table that are not empty, with their numbers from 1, as spreadsheets count; the first has the keys."""
     try:
-        with guarded(path, "CSV"), path.open(encoding=encoding_of(path), errors="replace", newline="") as text:
-            # the mark of the line with the keys is that of the table
-            head = next((line for line in lines_of(text) if line.strip(f" \r\n{_MARKS}")), "")
-            mark = next((mark for mark in _MARKS if mark in head), ",")
-            text.seek(0)
-            cells = ([cell.strip(" \xa0") for cell in line] for line in csv.reader(lines_of(text), delimiter=mark))
+        with guarded(path, "CSV"):
+            text = text_of(path).decode()
+            first, _, rest = text.partition("\n")
+            said = re.fullmatch("sep=(.)", first)
+            text = f"\n{rest}" if said else text  # a spreadsheet says its mark
+            head = next((line for line in text.split("\n") if line.strip(f" {_MARKS}")), "")
+            mark = said[1] if said else next((mark for mark in _MARKS if mark in head), ",")
+            cells = ([cell.strip(" \xa0") for cell in line] for line in csv.reader(io.StringIO(text), delimiter=mark))
             filled = ((number, line) for number, line in enumerate(cells, 1) if any(line))
             lines = [*islice(filled, limit("recording_files") + 2)]
     except (UnusableError, OSError) as error:
@@ -145,11 +150,11 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
     return lines
 
 
-def _value(where: str, key: str, text: str, form: Form | None) -> Any:
-    """Value of a cell; its numbers are in the one form of the table, or each has one reading."""
+def _value(where: str, key: str, text: str, marks: str = "") -> Any:
+    """Value of a cell; a number has the one decimal mark of the table, or else one reading."""
     if key not in _NUMBERS or not is_number(text):
         return _parsed(where, key, text)
-    number = number_in(text) if form is None else float(numbers_in([f"{text}\n"], form)[0])
+    number = number_in(text, marks if len(marks) == 1 else "")
     if number is None:
         raise CorpusError(
             f"{where}: {text} may be in thousands; write it without marks between them, or with four decimals."

@@ -1,6 +1,6 @@
 """Keys that describe recordings: columns of a table of labels, or common to all of its rows."""
 
-from typing import Annotated, NamedTuple, Self
+from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
@@ -22,7 +22,7 @@ from raceway.importing.label_values import (
     Rpm,
     Sensitivity,
 )
-from raceway.importing.signals import STATING_RATES, Place
+from raceway.importing.signals import WITHOUT_UNITS, Place
 
 _OF_SPALLS = ("width_mm", "depth_um", "angle_deg", "n_spalls")
 
@@ -77,6 +77,7 @@ class Labels(SensorKeys):
     sample_rate_hz: Hertz | None = None
     resample_hz: Hertz | None = None
     delimiter: Delimiter | None = None
+    decimal: Literal[".", ","] | None = None
     channel: Name = "sensor"
     channels: (
         Annotated[tuple[OneOfSeveral, ...], Field(min_length=1, max_length=64), AfterValidator(_names_differ)] | None
@@ -106,14 +107,18 @@ class Labels(SensorKeys):
         sensitivity = volts_per_acceleration(given.sensitivity_mv_per_g, given.sensitivity_mv_per_m_s2)
         column = self.column if own.column is None else own.column
         return Sensor(
-            name, Place(own.variable or self.variable, column, self.delimiter), Scale(unit or "m/s2", sensitivity)
+            name, Place(own.variable or self.variable, column, self.delimiter, self.decimal), Scale(unit, sensitivity)
         )
 
     @model_validator(mode="after")
     def _belong_together(self) -> Self:
-        if self.sample_rate_hz is None and not self.path.lower().endswith(STATING_RATES):
+        if self.sample_rate_hz is None and self.path.lower().endswith(".npy"):
             raise ValueError("sample_rate_hz: is missing; give it.")
-        if self.unit is None and not (self.channels and all(channel.unit for channel in self.channels)):
+        if (
+            self.unit is None
+            and self.path.lower().endswith(WITHOUT_UNITS)
+            and not (self.channels and all(channel.unit for channel in self.channels))
+        ):
             raise ValueError("unit: is missing; give it.")
         spall = next((key for key in _OF_SPALLS if getattr(self, key) is not None), None)
         if spall and ALL_CLASSES[self.fault].n_spalls <= 0:

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from gen.corpus.hdf5 import LIBRARY_LOCK, ForeignStorageError, own_dataset
 from raceway.importing.axes import axes_of
-from raceway.importing.columns import as_columns
 from raceway.importing.files import NoneChosenError, UnusableError, guarded
 from raceway.importing.header import Header, unit_said
+from raceway.importing.table import Table, as_columns, table_of
 
 _FEWEST = 100  # values of a signal; speeds and rates have one
 _REAL = "biuf"  # kinds of NumPy types
@@ -49,6 +49,11 @@ def read_matlab(path: Path, variable: str | None) -> NDArray[Any]:
         with LIBRARY_LOCK:
             in_hdf5 = h5py.is_hdf5(path)
         return _read_hdf5(path, variable) if in_hdf5 else _read(path, variable)
+
+
+def read_matlab_table(path: Path, variable: str | None) -> Table:
+    """Table in a variable."""
+    return table_of(read_matlab(path, variable))
 
 
 def read_number(path: Path, variable: str | None) -> float:

@@ -16,11 +16,12 @@ from gen.physics.catalogue import CATALOGUE
 from gen.support.progress import Progress
 from gen.support.units import POUND_FORCE, STANDARD_GRAVITY
 from raceway.importing.assemble import Collection, Import, import_recordings
-from raceway.importing.columns import table_signal
+from raceway.importing.columns import signal_of
 from raceway.importing.files import UnusableError
 from raceway.importing.matlab import read_matlab, read_number
 from raceway.importing.recordings import Candidate, Recording, files_below, name_of
 from raceway.importing.resampling import resample
+from raceway.importing.table import table_of
 
 FS = 48_828.0
 
@@ -81,7 +82,7 @@ def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Pr
 
 
 def _read(path: Path, fault: str, number: int) -> Recording:
-    signal = table_signal(read_matlab(path, "bearing.gs"), None).values * STANDARD_GRAVITY
+    signal = signal_of(table_of(read_matlab(path, "bearing.gs")), None).values * STANDARD_GRAVITY
     fs = _number(path, "bearing.sr")
     # two sample rates were published, one twice the other
     factor = round(fs / FS) if math.isfinite(fs) else 0

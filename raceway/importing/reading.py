@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING
 
 from gen.support.errors import CorpusError
 from raceway.importing.recorded import ACCELERATION, Recorded
-from raceway.importing.signals import SUFFIXES, SeveralSignalsError, StatedOtherwiseError, read_signal
+from raceway.importing.signals import (
+    SUFFIXES,
+    Reader,
+    SeveralSignalsError,
+    StatedOtherwiseError,
+    is_known,
+    read_signal,
+    reader,
+)
 
 if TYPE_CHECKING:
     from raceway.importing.reading_options import Reading
@@ -21,6 +29,7 @@ OPTIONS = {
     "rate": "--rate",
     "unit": "--unit",
     "delimiter": "--delimiter",
+    "decimal": "--decimal",
 }
 
 
@@ -34,7 +43,7 @@ def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
     """
     left_out = {path.resolve() for path in without}
     files = (path for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
-    found = sorted(path for path in files if path.suffix.lower() in SUFFIXES and path.resolve() not in left_out)
+    found = sorted(path for path in files if is_known(path.suffix) and path.resolve() not in left_out)
     if not found:
         message = f"{folder}: has no recording in it ({', '.join(SUFFIXES)}); give a recording, or the folder that holds them."
         raise CorpusError(message)
@@ -67,15 +76,16 @@ def set_aside(path: Path, unusable: dict[Path, str] | None) -> Iterator[None]:
 
 def read_as_stated(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, tuple[str, ...]]":
     """Read one of several recordings: as `read_recording`, without the options that the file contradicts."""
-    try:
-        return read_recording(path, reading)
-    except StatedOtherwiseError as error:
-        option = error.option
-    recorded, used, notes = read_as_stated(path, reading._replace(**{option: None}))
-    value = getattr(reading, option)
-    told = value if isinstance(value, str) else f"{value:g}"
-    note = f"{path.name}: it states otherwise than --{option} {told}, and is read as it states."
-    return recorded, used, (*notes, note)
+    read, notes = reader(path), list[str]()
+    while True:
+        try:
+            recorded, used, told = _channels(path, reading, read)
+            return recorded, used, (*told, *reversed(notes))
+        except StatedOtherwiseError as error:
+            value = getattr(reading, error.option)
+            said = value if isinstance(value, str) else f"{value:g}"
+            notes.append(f"{path.name}: it states otherwise than --{error.option} {said}, and is read as it states.")
+            reading = reading._replace(**{error.option: None})
 
 
 def read_recording(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, tuple[str, ...]]":
@@ -83,13 +93,17 @@ def read_recording(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, 
 
     Without a choice the axes of one sensor are all read. The diagnosis itself warns of an implausible rms.
     """
+    return _channels(path, reading, reader(path))
+
+
+def _channels(path: Path, reading: "Reading", read: Reader) -> "tuple[Recorded, Reading, tuple[str, ...]]":
     try:
-        return _read(path, reading)
+        return _read(path, reading, read)
     except SeveralSignalsError as error:
         if reading.channels or not error.axes:
             raise
         axes = error.axes
-    recorded, used, notes = _read(path, reading._replace(channels=axes))
+    recorded, used, notes = _read(path, reading._replace(channels=axes), read)
     name, *others = axes
     if others:
         return recorded, used, notes
@@ -97,15 +111,15 @@ def read_recording(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, 
     return recorded._replace(signals={"": recorded.signals[name]}), used, (note, *notes)
 
 
-def _read(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, tuple[str, ...]]":
+def _read(path: Path, reading: "Reading", read: Reader) -> "tuple[Recorded, Reading, tuple[str, ...]]":
     signals = {}
     notes: list[str] = []
     for channel in reading.channels or (None,):
         number = int(channel) if channel is not None and channel.isdecimal() else channel
         named = path.suffix.lower() == ".mat" and isinstance(number, str)
         place = {"variable": number, "column": None} if named else {"variable": reading.variable, "column": number}
-        how = place | {name: getattr(reading, name) for name in ("unit", "sensitivity", "rate", "delimiter")}
-        signal = read_signal(path, **how, options=OPTIONS)  # type: ignore[arg-type]
+        how = place | {name: getattr(reading, name) for name in ("unit", "sensitivity", "rate", "delimiter", "decimal")}
+        signal = read_signal(path, **how, read=read, options=OPTIONS)  # type: ignore[arg-type]
         if signal.fs is None:
             raise CorpusError(f"{path}: does not state its sample rate; give it with --rate HZ.")
         signals[channel or ""] = signal

@@ -9,6 +9,7 @@ from raceway.console.options import Decorator, gathered, names
 
 UNITS = ("g", "mg", "m/s2", "mm/s2", "V", "mV")
 MARKS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
+DECIMAL_MARKS = (".", ",")
 SLOWEST, FASTEST = 0.001, 1e7  # rpm
 
 
@@ -21,6 +22,7 @@ class Reading(NamedTuple):
     sensitivity: float | None
     rate: float | None
     delimiter: str | None
+    decimal: str | None = None
 
 
 def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
@@ -99,4 +101,9 @@ _delimiter: Decorator = click.option(
 )
 
 
-reading_options = gathered("reading", Reading, _rate, _unit, _sensitivity, _channels, _variable, _delimiter)
+_decimal: Decorator = click.option(
+    "--decimal",
+    type=click.Choice(DECIMAL_MARKS),
+    help="Decimal mark of a text, if its numbers can be read in two ways, such as 1.234.",
+)
+reading_options = gathered("reading", Reading, _rate, _unit, _sensitivity, _channels, _variable, _delimiter, _decimal)

@@ -1,25 +1,25 @@
 """Sheets of Excel files, read with python-calamine, which is an extra: ``size -> sheet -> lines of fields -> table``."""
 
+import csv
+import io
 import re
 import zipfile
-from collections.abc import Iterator
 from datetime import date, datetime
 from pathlib import Path
 from typing import Any
 
 from gen.support.limits import check_limit
-from raceway.importing.columns import Values
 from raceway.importing.files import UnusableError, guarded
-from raceway.importing.numerals import POINT, is_number
-from raceway.importing.table import TableLine, read_table
+from raceway.importing.numerals import is_number
+from raceway.importing.table import Table, read_table
 
 _CELL = re.compile(rb"r\s*=\s*[\"']([A-Za-z]{1,3})(\d{1,7})[\"']")
 _CELL_BYTES = 32  # that the library takes for each cell of the rectangle around all cells
 _CHUNK, _OVERLAP = 4_000_000, 20  # bytes
 
 
-def read_sheet(path: Path, sheet: str | None, column: int | str | None) -> Values:
-    """Signal in a sheet of an Excel file, by default the visible one that is active, or else the first visible one.
+def read_sheet(path: Path, sheet: str | None) -> Table:
+    """Table in a sheet of an Excel file, by default the visible one that is active, or else the first visible one.
 
     Raises
     ------
@@ -38,8 +38,10 @@ def read_sheet(path: Path, sheet: str | None, column: int | str | None) -> Value
             visible = [one.name for one in book.sheets_metadata if (one.visible, one.typ) == shown]
             name, notes = _chosen(book.sheet_names, visible, active, sheet)
             rows = book.get_sheet_by_name(name).to_python(skip_empty_area=False)
-        found = read_table(_lines(rows), column, _place, POINT)
-        return found._replace(notes=(*notes, *found.notes))
+        text = io.StringIO()
+        csv.writer(text, delimiter="\t", lineterminator="\n").writerows([_text(cell) for cell in row] for row in rows)
+        table = read_table(text.getvalue().encode(), "\t", ".", _place)
+        return table._replace(notes=(*notes, *table.notes))
 
 
 def _check_size(path: Path) -> int:
@@ -80,11 +82,6 @@ def _chosen(names: list[str], visible: list[str], active: int, wanted: str | Non
     return name, (f"sheet {name} is read, and not {', '.join(others)}",) if others else ()
 
 
-def _lines(rows: list[list[Any]]) -> Iterator[TableLine]:
-    for number, row in enumerate(rows, 1):
-        yield TableLine(number, [_text(cell) for cell in row])
-
-
 def _text(cell: Any) -> str:
     """Text of a cell; a number that is stored as text begins with an apostrophe, as it does when it is typed."""
     if isinstance(cell, bool):
@@ -93,7 +90,7 @@ def _text(cell: Any) -> str:
         return repr(cell)
     if isinstance(cell, datetime | date):
         return cell.isoformat(" ") if isinstance(cell, datetime) else cell.isoformat()
-    text = str(cell).strip()
+    text = " ".join(str(cell).split())
     return f"'{text}" if is_number(text) else text
 
 

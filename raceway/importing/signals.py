@@ -1,6 +1,7 @@
 """One recording of the user: a column of a text, Excel, MATLAB, NumPy or WAV file, in m/s^2."""
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
@@ -9,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.support.errors import CorpusError
-from raceway.importing.columns import Values, table_signal
+from raceway.importing.columns import Values, signal_of
 from raceway.importing.conversion import (
     Scale,
     Unit,
@@ -28,14 +29,20 @@ from raceway.importing.files import (
     reason_of,
 )
 from raceway.importing.header import known_unit
-from raceway.importing.matlab import read_matlab
+from raceway.importing.matlab import read_matlab_table
 from raceway.importing.sheets import read_sheet
-from raceway.importing.text import read_text
+from raceway.importing.table import Table, read_text, table_of
 
-TEXT = (".csv", ".txt", ".tsv", ".dat")
-SHEETS = (".xlsx",)
-STATING_RATES = (".wav", *TEXT, *SHEETS)
-SUFFIXES = (".mat", ".npy", *STATING_RATES)
+WITHOUT_UNITS = (".mat", ".npy", ".wav")
+_BINARY = (*WITHOUT_UNITS, ".xlsx")
+SUFFIXES = (*WITHOUT_UNITS, ".csv", ".txt", ".tsv", ".dat", ".lvm", ".asc", ".prn", ".xls", ".xlsx")
+_SIGNATURES = {
+    ".npy": rb"\x93NUMPY",
+    ".mat": rb"MATLAB|\x89HDF",
+    ".wav": rb"RIFF.{4}WAVE",
+    ".xlsx": rb"PK\x03\x04",
+    ".old": rb"\xd0\xcf\x11\xe0",
+}
 _AS_HERE: Mapping[str, str] = MappingProxyType({})
 
 
@@ -59,24 +66,31 @@ class Place(NamedTuple):
     """Place of a signal in a file.
 
     ``variable`` is the name in a MATLAB file, by default that of the only signal in it, or the sheet of an Excel file, by default the
-    active one; ``column`` the name in the header of a text or sheet, or a number from 0; ``delimiter`` that of a text, detected by default.
+    active one; ``column`` the name in the header of a text or sheet, or a number from 0; ``delimiter`` and ``decimal`` are the mark between
+    the columns of a text and its decimal mark, detected by default.
     """
 
     variable: str | None = None
     column: int | str | None = None
     delimiter: str | None = None
+    decimal: str | None = None
 
 
 class Signal(NamedTuple):
     """A recording in m s-2, shape (time,), its sample rate [Hz] or None if it is not known, and a sentence for each assumption.
 
-    ``unit`` is the unit in which the file was read.
+    ``unit`` is the unit in which the file was read; ``absolute`` is False for shares of the full scale of a converter.
     """
 
     values: FloatArray
     fs: float | None
     warnings: tuple[str, ...]
     unit: Unit
+    absolute: bool = True
+
+
+Reader = Callable[[Place], Values]
+"""Values of a signal in the unit of its file, by its place."""
 
 
 def read_signal(
@@ -85,9 +99,11 @@ def read_signal(
     variable: str | None = None,
     column: int | str | None = None,
     delimiter: str | None = None,
+    decimal: str | None = None,
     unit: Unit | None = None,
     sensitivity: float | None = None,
     rate: float | None = None,
+    read: Reader | None = None,
     options: Mapping[str, str] = _AS_HERE,
 ) -> Signal:
     """Read a recording from a file of the user.
@@ -103,14 +119,18 @@ def read_signal(
         Column of a table, from 0, or its name in the header; also the channel of a WAV file. Needed if there are several beside times.
     delimiter : str, optional
         Of a text; detected by default.
+    decimal : {".", ","}, optional
+        Decimal mark of a text; detected by default.
     unit : {"m/s2", "mm/s2", "g", "mg", "V", "mV"}
         Unit of the values; by default that in the header, or else m/s2.
     sensitivity : float, optional
         Of the sensor [mV/g], for a voltage.
     rate : float, optional
         Sample rate [Hz]; by default that of the times or the header. It is used even if a WAV file states another.
+    read : callable, optional
+        The :func:`reader` of the file, for several signals of it; by default a new one.
     options : mapping, optional
-        Names of the options that give ``variable``, ``column``, ``delimiter``, ``unit`` and ``rate``, for error messages.
+        Names of the options that give ``variable``, ``column``, ``delimiter``, ``decimal``, ``unit`` and ``rate``, for error messages.
 
     Returns
     -------
@@ -126,26 +146,39 @@ def read_signal(
     StatedOtherwiseError
         If the file states another rate, unit or kind of unit than the given rate, unit or sensitivity.
     """
-    with _as_sentences(path, options):
-        content = read_values(path, Place(variable, column, delimiter))
-        fs, notes = content.rate(rate, "rate")
-        used, of_unit = content.stated_unit(unit)
-        scale = _scale(used, sensitivity, stated=unit is None and known_unit(content.unit) is not None)
-        signal = accelerations(content.values, scale)
-        notes = [*content.notes, *notes, *of_unit, *doubts(content.values, signal, scale, absolute=content.absolute)]
-    return Signal(signal, fs, tuple(f"{path.name}: {note}." for note in notes), used)
+    with as_sentences(path, options):
+        values = (read or reader(path))(Place(variable, column, delimiter, decimal))
+        signal = acceleration(values, unit, volts_per_acceleration(sensitivity, None), rate)
+    return signal._replace(warnings=tuple(f"{path.name}: {note}." for note in signal.warnings))
+
+
+def acceleration(
+    content: Values, unit: Unit | None, sensitivity: float | None, rate: float | None, key: str = "rate"
+) -> Signal:
+    """Signal of values in the unit of their file; the sensitivity is in V per m s-2, and ``key`` gives the rate."""
+    fs, notes = content.rate(rate, key)
+    used, of_unit = content.stated_unit(unit)
+    problem = unit_problem(used, sensitivity)
+    if problem is not None and unit is None and known_unit(content.unit) is not None and sensitivity is not None:
+        raise ContradictionError(problem, "sensitivity")
+    if problem is not None:
+        raise UnusableError(problem)
+    scale = Scale(used, sensitivity)
+    signal = accelerations(content.values, scale)
+    told = *content.notes, *notes, *of_unit, *doubts(content.values, signal, scale, absolute=content.absolute)
+    return Signal(signal, fs, told, used, content.absolute)
 
 
 def read_shape(path: Path, place: Place, rate: float | None, options: Mapping[str, str] = _AS_HERE) -> Signal:
     """Recording in the unit of its file, for uses in which the unit does not matter; otherwise as :func:`read_signal`."""
-    with _as_sentences(path, options):
-        content = read_values(path, place)
+    with as_sentences(path, options):
+        content = reader(path)(place)
         fs, notes = content.rate(rate, "rate")
     return Signal(content.values, fs, tuple(f"{path.name}: {note}." for note in (*content.notes, *notes)), "m/s2")
 
 
 @contextmanager
-def _as_sentences(path: Path, options: Mapping[str, str]) -> Iterator[None]:
+def as_sentences(path: Path, options: Mapping[str, str]) -> Iterator[None]:
     """Turn the reason why a file cannot be used into a sentence."""
     try:
         yield
@@ -162,51 +195,59 @@ def _as_sentences(path: Path, options: Mapping[str, str]) -> Iterator[None]:
         raise CorpusError(message) from None
 
 
-def _scale(unit: Unit, sensitivity: float | None, *, stated: bool) -> Scale:
-    problem = unit_problem(unit, sensitivity)
-    if problem is not None and stated and sensitivity is not None:
-        raise ContradictionError(problem, "sensitivity")
-    if problem is not None:
-        raise UnusableError(problem)
-    return Scale(unit, volts_per_acceleration(sensitivity, None))
+def reader(path: Path) -> Reader:
+    """Reader of signals of a file, which parses each of its tables once.
 
-
-def read_values(path: Path, place: Place) -> Values:
-    """Values of a signal in the unit of its file.
-
-    Raises
-    ------
-    UnusableError
-        If the file is empty, of an unknown type, damaged or has no such signal.
-    OSError
-        If the file cannot be opened.
+    It raises an :class:`UnusableError` if the file is empty, of an unknown type, damaged or has no such signal, and an :class:`OSError`
+    if it cannot be opened.
     """
-    found = _read(path, place)
-    wrong = np.flatnonzero(~np.isfinite(found.values))
-    if wrong.size:
-        count = f"{wrong.size} samples of {found.values.size}"
-        message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
-        raise UnusableError(message)
-    return found
+    tables: dict[Place, Table] = {}
+
+    def read(place: Place) -> Values:
+        which = place._replace(column=None)
+        if which not in tables:
+            tables[which] = _table(path, place)
+        content = signal_of(tables[which], place.column)
+        wrong = np.flatnonzero(~np.isfinite(content.values))
+        if wrong.size:
+            count = f"{wrong.size} samples of {content.values.size}"
+            message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
+            raise UnusableError(message)
+        return content
+
+    return read
 
 
-def _read(path: Path, place: Place) -> Values:
+def _table(path: Path, place: Place) -> Table:
+    match _kind(path):
+        case ".npy":
+            return table_of(read_numpy(path))
+        case ".mat":
+            return read_matlab_table(path, place.variable)
+        case ".xlsx":
+            return read_sheet(path, place.variable)
+        case ".wav":
+            samples, full_scale, fs = read_wav(path)
+            table = table_of(samples)
+            scaled = {n: values / full_scale for n, values in table.columns.items()}
+            return table._replace(columns=scaled, playback=fs or None, absolute=full_scale == 1)
+    return read_text(path, place.delimiter, place.decimal)
+
+
+def _kind(path: Path) -> str:
+    """Suffix of the kind of a file, by its first bytes, or else by its name; that of all texts is .txt."""
     suffix = path.suffix.lower()
-    if suffix in TEXT:
-        return read_text(path, place.column, place.delimiter)
-    if suffix in SHEETS:
-        return read_sheet(path, place.variable, place.column)
-    if suffix not in SUFFIXES:
-        message = f"is of no known type; known are {', '.join(SUFFIXES)}"
-        raise UnusableError(message)
-    column = place.column
-    if isinstance(column, str):
-        message = f"has columns without names, so none is called {column}; give a number from 0"
-        raise UnusableError(message, "column")
-    if suffix == ".npy":
-        return table_signal(read_numpy(path), column)
-    if suffix == ".mat":
-        return table_signal(read_matlab(path, place.variable), column)
-    samples, full_scale, fs = read_wav(path)
-    found = table_signal(samples, column)
-    return found._replace(values=found.values / full_scale, playback=fs or None, absolute=full_scale == 1)
+    if path.is_file():
+        with path.open("rb") as stream:
+            start = stream.read(12)
+        suffix = next((kind for kind, begin in _SIGNATURES.items() if re.match(begin, start, re.DOTALL)), suffix)
+    if suffix == ".old":
+        raise UnusableError("is an Excel file of the form before 2007; save it as .xlsx")
+    if not is_known(suffix):
+        raise UnusableError(f"is of no known type; known are {', '.join(SUFFIXES)}")
+    return suffix if suffix in _BINARY else ".txt"
+
+
+def is_known(suffix: str) -> bool:
+    """Whether files with a suffix can be recordings; a date at the end of a name is one, too."""
+    return suffix.lower() in SUFFIXES or suffix[1:].isdecimal()

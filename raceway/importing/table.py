@@ -1,53 +1,90 @@
-"""A table of texts, in a file or a sheet: a header, rows, and perhaps notes at the end.
+"""A table of numbers in a text or a sheet: a header, rows, and perhaps notes at the end.
 
-``lines of fields -> header -> columns to load -> blocks of numbers -> signal``
+``first lines -> header, dialect -> all rows by pandas -> columns of numbers``
 
 A row begins with a number or a time stamp, a line of the header and a note with text. So the first row is data, and no later line is
-taken for a header or for the end: text or a gap among the rows is refused.
+taken for a header or for the end: text or a gap among the rows is refused. The dialect is the mark between columns and the decimal one.
 """
 
+import io
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from itertools import chain, islice
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
 
-from raceway.importing.columns import LEAST_LENGTH, Values, columns_to_load, is_even, signal_of, table_signal
-from raceway.importing.files import FloatArray, UnusableError
-from raceway.importing.header import header_of
-from raceway.importing.numerals import Form, block_of, is_number, numbers_in, readings
+from raceway.importing.files import FloatArray, UnusableError, guarded
+from raceway.importing.header import Header, header_of
+from raceway.importing.numerals import AS_PYTHON, PATTERNS, decimal_marks, is_number
+from raceway.importing.text import BLANK, Line, first_lines, is_value, mark_between, split, text_of
 
-START = 400  # lines that tell the columns
+_MOST_COLUMNS, _AXES = 64, 3  # of a table without names; beyond three axes of a sensor they may be windows
+_LEAST_LENGTH, _LEAST_OF_CHANNELS = 8, 100  # of the longer axis, which is time, in widths of the shorter one
 _HEADER_LINES = 200
-_ROWS = 4096  # of a block
 _MOST_NOTES = 20
-_MONTH = "(?:jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*"
-_STAMP = re.compile(
-    rf"(?=.*(?:\d[-/:]\d|\d\.\d+\.\d|{_MONTH}))(?:[-\d/.:, +tz]|{_MONTH}|[ap]m|(?:mon|tue|wed|thu|fri|sat|sun)[a-z]*)+|'[-+\d.,]+",
-    re.ASCII | re.IGNORECASE,
-)  # or a number that a sheet holds as text
 _NO_VALUE = re.compile(
     r"[-+]?(?:nan|inf(?:inity)?|n/?a|null|none|true|false|bad|ov(?:l|r|f|er(?:flow|load|range)?)|err(?:or)?|-{1,3})|#(?:n/?a|nv|.*[!?])",
     re.IGNORECASE,
 )
 _DIGIT = re.compile(r"[-+.,]?\d")
+Place = Callable[[int, int], str]
+"""Words on where a field is, by the number of its line and of its column."""
 
 
-class TableLine(NamedTuple):
-    """A line of a table: its number from 1, and its fields without blanks around them."""
+class Table(NamedTuple):
+    """Columns that begin with numbers, by their number from 0, each up to its first flaw.
 
-    number: int
-    fields: list[str]
-
-
-def is_value(field: str) -> bool:
-    """Whether a field is a number or a time stamp.
-
-    >>> [is_value(field) for field in ("0,5", "24.11.2026 10:00", "Nov 24, 2026", "0,5 0,7", "RMS")]
-    [True, True, True, False, False]
+    ``flaws`` are reasons why columns cannot be used; ``marks`` are the decimal marks with which columns that have such marks can be read;
+    ``notes`` are sentences without their end. ``playback`` is a sample rate [Hz] in whose place another can be given; ``absolute`` is
+    False for shares of the full scale of a converter.
     """
-    return is_number(field) or _STAMP.fullmatch(field) is not None
+
+    columns: Mapping[int, FloatArray]
+    header: Header = Header()
+    flaws: Mapping[int, UnusableError] = {}
+    marks: Mapping[int, str] = {}
+    notes: tuple[str, ...] = ()
+    playback: float | None = None
+    absolute: bool = True
+
+
+def read_text(path: Path, mark: str | None = None, decimal: str | None = None) -> Table:
+    """Table in a text, with a ``mark`` between its columns and a ``decimal`` mark, which are by default those that suit its first lines.
+
+    Raises
+    ------
+    UnusableError
+        If the file is no text with columns, or does not say which mark is between them, or as in :func:`read_table`.
+    """
+    content = text_of(path)
+    with guarded(path, "delimited text"):
+        return read_table(content, mark or mark_between(first_lines(content)), decimal, lambda line, _: f"line {line}")
+
+
+def table_of(values: NDArray[Any]) -> Table:
+    """Table without names, whose longer axis is time."""
+    return Table(dict(enumerate(as_columns(values).astype(np.float64, copy=False))))
+
+
+def as_columns(values: NDArray[Any]) -> NDArray[Any]:
+    """Table with its longer axis last.
+
+    Raises
+    ------
+    UnusableError
+        If the values are not real numbers, or not a table of which one axis is plainly that of time.
+    """
+    shorter, longer = (1, values.size) if values.ndim == 1 else sorted(values.shape) if values.ndim == 2 else (0, 0)
+    least = _LEAST_LENGTH if shorter <= _AXES else _LEAST_OF_CHANNELS
+    plain = shorter == 1 or (0 < shorter <= _MOST_COLUMNS and longer >= least * shorter)
+    if values.dtype.kind not in "iuf" or values.size == 0 or not plain:
+        what = "not one column of real numbers, or a few long ones; windows cannot be told from channels"
+        raise UnusableError(f"holds {values.dtype} of shape {values.shape}, {what}")
+    columns = np.atleast_2d(values)
+    return columns.T if columns.shape[0] > columns.shape[1] else columns
 
 
 def is_row(fields: Iterable[str]) -> bool:
@@ -73,122 +110,165 @@ def is_flawed_row(fields: Iterable[str]) -> bool:
     )
 
 
-def read_table(
-    lines: Iterator[TableLine], column: int | str | None, place: Callable[[int, int], str], form: Form | None = None
-) -> Values:
-    """Signal in a table.
+class Body(NamedTuple):
+    """Rows of a text: bytes from ``start`` to ``end``, ``height`` lines from the line with a ``number``, and notes after them."""
 
-    Parameters
-    ----------
-    lines
-        All lines, empty ones too.
-    column
-        Number, from 0, or name.
-    place
-        Words on where a field is, by the number of its line and of its column.
-    form
-        How numbers are written; by default the only way that suits all of them.
+    content: bytes
+    start: int
+    end: int
+    number: int
+    mark: str
+    place: Place
+    notes: tuple[str, ...] = ()
+
+    @property
+    def height(self) -> int:
+        """Number of lines."""
+        return self.content.count(b"\n", self.start, self.end)
+
+    def parsed(self, width: int, point: str) -> pd.DataFrame:
+        """Columns of numbers, and of texts where not all rows have plain numbers."""
+        stream = io.BytesIO(self.content)
+        stream.seek(self.start)
+        try:
+            return pd.read_csv(
+                stream, sep=r"\s+" if self.mark == BLANK else self.mark, decimal=point, header=None, names=range(width),
+                nrows=self.height, skipinitialspace=True, skip_blank_lines=False, na_filter=False, low_memory=False,
+                float_precision="round_trip",
+            )  # fmt: skip
+        except pd.errors.ParserError as error:
+            line = re.search(r"in line (\d+)", str(error))
+            if line is None:
+                raise
+            raise self.flaw(int(line[1]) - 1, 0, None, "has not as many fields as the rows before") from None
+
+    def flaw(self, row: int, column: int, counted: NDArray[np.bool_] | None, reason: str = "") -> UnusableError:
+        """Reason why a row, counted from 0, cannot be used."""
+        line = self.content[self.start : self.end].split(b"\n", row + 1)[row].decode()
+        fields = next(split([f"{line}\n"], self.mark)).fields
+        if not any(fields):
+            column, reason = 0, "has an empty line among its rows"
+        elif not reason and column < len(fields) and is_number(fields[column]):
+            reason = "has a number that is written in another way than those before"
+        elif not reason and (is_row(fields) or is_flawed_row(fields)):
+            reason = "has no number"
+        elif not reason:
+            column, reason = 0, "has text among its rows"
+        lost = self.height - row if counted is None else np.count_nonzero(counted[row:])
+        where = (
+            f"in {self.place(self.number + row, column)} ({' '.join(fields)!r:.60}), where {lost} rows would be lost"
+        )
+        return UnusableError(f"{reason} {where}; correct the file, or cut it there")
+
+
+def read_table(content: bytes, mark: str, decimal: str | None, place: Place) -> Table:
+    """Columns of a table in UTF-8 with a ``mark`` between them; ``decimal`` is by default the mark that suits its first lines.
 
     Raises
     ------
     UnusableError
-        If there is no such column, or if it has text or gaps among its numbers, or numbers that can be read in two ways.
+        If it has no row of numbers, or text or a gap in place of one.
     """
-    start = [*islice(lines, START)]
-    first = next((n for n, line in enumerate(start[: _HEADER_LINES + 1]) if is_row(line.fields)), None)
+    lines = [*split(first_lines(content), mark)]
+    first = next((n for n, line in enumerate(lines[: _HEADER_LINES + 1]) if is_row(line.fields)), None)
     if first is None:
-        message = f"has no row of numbers among its first {min(len(start), _HEADER_LINES)} lines; export a row of numbers for each sample"
+        message = f"has no row of numbers among its first {min(len(lines), _HEADER_LINES)} lines; export a row of numbers for each sample"
         raise UnusableError(message)
-    above = [line for line in start[:first] if any(line.fields)]
-    rows = [line.fields for line in start[first:] if is_row(line.fields)]
-    forms = [form] if form else None
-    if len(start) == len(rows) and len(rows[0]) >= LEAST_LENGTH * len(rows):
-        return table_signal(np.stack(_numbers([[block_of(fields) or ""] for fields in rows], forms)), column)
-    filled = max(n for n, field in enumerate(rows[0], 1) if field)
-    header = header_of([line.fields for line in above], filled, len(rows[0]))
-    width = max(len(rows[0]), len(header.names))
+    above = [line for line in lines[:first] if any(line.fields)]
+    rows = [line.fields for line in lines[first:] if is_row(line.fields)]
+    body = _body(content, lines[first].number, mark, place)
+    if body.height == len(rows) and len(rows[0]) >= _LEAST_LENGTH * len(rows):  # a signal in each row
+        turned = "".join("\t".join(column) + "\n" for column in zip(*rows, strict=True))
+        return read_table(turned.encode(), "\t", decimal, place)
+    least = max(n for n, field in enumerate(rows[0], 1) if field)
+    header = header_of([line.fields for line in above], least, len(rows[0]))
+    width = max(len(header.names), *map(len, rows))
     columns = [[fields[n] if n < len(fields) else "" for fields in rows] for n in range(width)]
-    numeric = [n for n in range(width) if any(map(is_number, columns[n]))]
+    starts = {n: [*filter(is_number, fields)] for n, fields in enumerate(columns) if any(map(is_number, fields))}
+    _check_beginning(above, rows, columns, starts, body)
+    marks = {n: decimal_marks(numbers) for n, numbers in starts.items() if re.search("[.,]", "".join(numbers))}
+    point = decimal or ("," if "," in marks.values() and "." not in marks.values() else ".")
+    frame = body.parsed(width, point)
+    read = {n: _numbers(frame[n], point) for n in starts}
+    counted = np.any([np.isfinite(values) for values in read.values()], axis=0)
+    _check_rows(frame, counted, read, body)
+    flaws = {}
+    for n, values in read.items():
+        row = _first(~np.isfinite(values))
+        if row is not None:
+            flaws[n], read[n] = body.flaw(row, n, counted), values[:row]
+    return Table(read, header, flaws, {} if decimal else marks, body.notes)
+
+
+def _body(content: bytes, number: int, mark: str, place: Place) -> Body:
+    """Rows from the line with a number on, without notes and empty lines at the end."""
+    start = 0
+    for _ in range(number - 1):
+        start = content.index(b"\n", start) + 1
+    end, notes = len(content), list[str]()
+    while end > start:
+        line = content.rfind(b"\n", 0, end - 1) + 1
+        fields = next(split([content[line:end].decode()], mark)).fields
+        if is_row(fields) or is_flawed_row(fields):
+            break
+        notes += [" ".join(fields)] if any(fields) else []
+        end = line
+    body = Body(content, start, end, number, mark, place)
+    if len(notes) > _MOST_NOTES:
+        where = place(number + body.height, 0)
+        raise UnusableError(
+            f"has more than {_MOST_NOTES} lines of text from {where} on; correct the file, or cut it there"
+        )
+    told = f"text after the numbers is left out: {notes[-1]!r:.60}, lines: {len(notes)}" if notes else ""
+    return body._replace(notes=(told,) if told else ())
+
+
+def _check_beginning(
+    above: Sequence[Line],
+    rows: Sequence[Sequence[str]],
+    columns: Sequence[Sequence[str]],
+    numeric: Iterable[int],
+    body: Body,
+) -> None:
+    """Refuse a row of numbers that is taken for the last line of the header, and a header that is taken for the first row."""
     last = above[-1].fields if above else []
+    where = body.place(body.number, 0)
     if last and (is_flawed_row(last) or all(n < len(last) and is_number(last[n]) for n in numeric)):
-        message = f"has text among numbers in {place(above[-1].number, 0)}, where the rows begin; correct that line, or delete it"
-        raise UnusableError(message)
+        where = body.place(above[-1].number, 0)
+        raise UnusableError(f"has text among numbers in {where}, where the rows begin; correct that line, or delete it")
     if any(not columns[n][0] and all(columns[n][1:]) for n in numeric):
-        message = f"has a gap in {place(start[first].number, 0)}, where the rows begin; delete that line if it has no samples, or fill it"
+        raise UnusableError(
+            f"has a gap in {where}, where the rows begin; delete that line if it has no samples, or fill it"
+        )
+    if [*filter(None, rows[0])] == [str(body.height - 1)]:
+        message = f"has {rows[0][0]} in {where}, which is the number of the rows below; delete that line"
         raise UnusableError(message)
-    even = [n for n in numeric if _is_even(columns[n])]
-    places = columns_to_load(header, column, numeric, even)
-    least = max(
-        max(places) + 1, *(len(fields) for fields in rows[1:2])
-    )  # of fields; a gap between blanks would move the later ones
-    blocks, notes = _load(chain(start[first:], lines), places, range(least, width + 1), place)
-    loaded = dict(zip(places, _numbers(blocks, forms), strict=True))
-    return signal_of(header, column, loaded)._replace(notes=notes)
+    if body.mark == BLANK and any(field in ("-", "+") for fields in rows for field in fields):
+        raise UnusableError(f"has signs apart from their numbers from {where} on; export them side by side")
 
 
-def _is_even(fields: Sequence[str]) -> bool:
-    block = block_of(fields)
-    return block is not None and any(is_even(numbers_in([block], form)) for form in readings([block]))
+def _check_rows(frame: pd.DataFrame, counted: NDArray[np.bool_], read: Mapping[int, FloatArray], body: Body) -> None:
+    """Refuse text at the beginning of a row, and between blanks a missing field, which moves the others."""
+    open_ = ~np.isfinite(read[0]) if 0 in read else np.ones(len(frame), bool)
+    beginnings = frame[0][open_].astype(str).str.strip()
+    rows = np.flatnonzero(open_)
+    text = next((int(row) for row, field in zip(rows, beginnings, strict=True) if field and not is_value(field)), None)
+    if text is not None:
+        raise body.flaw(text, 0, counted)
+    last = frame.iloc[:, -1]
+    if body.mark == BLANK and (last.dtype.kind == "O" and (last == "").any()):
+        raise body.flaw(int(np.argmax(last == "")), 0, counted, "has not as many fields as the rows before")
 
 
-def _numbers(columns: Sequence[Sequence[str]], forms: Sequence[Form] | None) -> list[FloatArray]:
-    """Numbers of columns of blocks, which are all written in one form."""
-    forms = readings([block for blocks in columns for block in blocks]) if forms is None else forms
-    if len(forms) != 1:
-        how = "that can be read in two ways, such as 1.234" if forms else "that are written in different ways"
-        message = f"has numbers {how}; export them with decimal points, and without marks between thousands"
-        raise UnusableError(message)
-    return [numbers_in(blocks, forms[0]) for blocks in columns]
+def _first(wrong: NDArray[np.bool_]) -> int | None:
+    """Number of the first row that is wrong."""
+    return int(np.argmax(wrong)) if wrong.any() else None
 
 
-def _load(
-    lines: Iterator[TableLine], places: Sequence[int], counts: range, place: Callable[[int, int], str]
-) -> tuple[list[list[str]], tuple[str, ...]]:
-    """Blocks of numbers of each column to be loaded, and a sentence on notes that are left out."""
-    loaded: list[list[str]] = []
-    while (some := [*islice(lines, _ROWS)]) and (blocks := _blocks(some, places, counts)):
-        loaded.append(blocks)
-    rest = chain(some, lines)
-    end, notes = None, []
-    for line in rest:
-        blocks = _blocks([line], places, counts) if end is None else None
-        if blocks:
-            loaded.append(blocks)
-            continue
-        end = end or line
-        notes += [" ".join(line.fields)] if any(line.fields) else []
-        where, reason = _flaw(line, end, places, counts, place)
-        if not reason and len(notes) > _MOST_NOTES:
-            where, reason = end, f"has more than {_MOST_NOTES} lines of text from {place(end.number, 0)} on"
-        if reason:
-            lost = sum(is_row(one.fields) for one in chain([line], rest))
-            text = " ".join(where.fields)
-            message = f"{reason} ({text!r:.60}), where {lost} rows would be lost; correct the file, or cut it there"
-            raise UnusableError(message)
-    told = [f"text after the numbers is left out: {notes[0]!r:.60}, lines: {len(notes)}"] if notes else []
-    return [*map(list, zip(*loaded, strict=True))], tuple(told)
-
-
-def _blocks(lines: Sequence[TableLine], places: Sequence[int], counts: range) -> list[str] | None:
-    """Numbers of each column in lines; None if not all of them are rows of as many fields with numbers in these columns."""
-    if not {len(line.fields) for line in lines} <= {*counts}:
-        return None
-    if 0 not in places and not all(is_row(line.fields) for line in lines):
-        return None
-    blocks = [block_of([line.fields[n] for line in lines]) for n in places]
-    return [block for block in blocks if block] if all(blocks) else None
-
-
-def _flaw(
-    line: TableLine, end: TableLine, places: Sequence[int], counts: range, place: Callable[[int, int], str]
-) -> tuple[TableLine, str]:
-    """Reason why a line after the ``end`` of the rows is no note, and the line to be named; no reason if it is one, or empty."""
-    if is_row(line.fields) and end is not line:
-        what = "text" if any(end.fields) else "an empty line"
-        return end, f"has {what} among its rows in {place(end.number, 0)}"
-    if is_row(line.fields) and len(line.fields) not in counts:
-        return line, f"has not as many fields as the rows before in {place(line.number, 0)}"
-    if is_row(line.fields) or is_flawed_row(line.fields):
-        missing = (n for n in places if n >= len(line.fields) or not is_number(line.fields[n]))
-        return line, f"has no number in {place(line.number, next(missing, 0))}"
-    return line, ""
+def _numbers(column: "pd.Series[Any]", point: str) -> FloatArray:
+    """Numbers of a column, which may have marks between thousands or exponents of Fortran; NaN for what is none."""
+    if column.dtype.kind in "iuf":
+        return column.to_numpy(np.float64)
+    texts = column.astype(str).str.strip()
+    fitting = max((texts.str.fullmatch(form, flags=re.ASCII) for form in PATTERNS[point]), key=np.count_nonzero)
+    return texts.where(fitting, "nan").str.translate(AS_PYTHON[point]).to_numpy(np.float64)

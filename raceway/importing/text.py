@@ -1,74 +1,102 @@
-"""Tables in text: ``encoding -> mark between columns -> lines of fields -> table``."""
+"""Texts of the user: ``encoding -> lines -> mark between columns -> fields``."""
 
 import codecs
 import csv
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import islice
 from pathlib import Path
-from typing import IO
+from typing import NamedTuple
 
-from raceway.importing.columns import Values
 from raceway.importing.files import UnusableError, guarded
 from raceway.importing.numerals import is_number
-from raceway.importing.table import START, TableLine, is_value, read_table
 
-_BEGINNING = 2_000_000  # bytes that tell the encoding
-_LONGEST_LINE = 50_000_000  # letters
+START = 400  # lines that tell the columns
+BLANK = " "  # stands for any number of blanks and tabs
+_BEGINNING = 2_000_000  # bytes
+_LONGEST_LINE = 50_000_000  # bytes
 _ONE_COLUMN = "\x1f"
-_MARKS = ("\t", ";", ",", " ")
+_MARKS = ("\t", ";", ",", BLANK)
 _BLANKS = re.compile(r"[ \t]+")
+_EASTERN = re.compile(rb"[\x80-\xff]{3}")  # two letters with accents may stand side by side, but not three
+_EASTERN_ENCODINGS = ("gb2312", "big5", "cp932", "cp949", "gb18030")
+_MONTH = "(?:jan|feb|mar|apr|may|jun|jul|aug|sep|oct|nov|dec)[a-z]*"
+STAMP = re.compile(
+    rf"(?=.*(?:\d[-/:]\d|\d\.\d+\.\d|{_MONTH}))(?:[-\d/.:, +tz]|{_MONTH}|[ap]m|(?:mon|tue|wed|thu|fri|sat|sun)[a-z]*)+|'[-+\d.,eE]+",
+    re.ASCII | re.IGNORECASE,
+)
+"""A time stamp, or a number that a sheet holds as text."""
 
 
-def read_text(path: Path, column: int | str | None = None, delimiter: str | None = None) -> Values:
-    """Signal in a text with columns; ``delimiter`` is the mark between them, a blank stands for any number of blanks.
+class Line(NamedTuple):
+    """A line of a table: its number from 1, and its fields without blanks around them."""
+
+    number: int
+    fields: list[str]
+
+
+def is_value(field: str) -> bool:
+    """Whether a field is a number or a time stamp.
+
+    >>> [is_value(field) for field in ("0,5", "24.11.2026 10:00", "Nov 24, 2026", "0,5 0,7", "RMS")]
+    [True, True, True, False, False]
+    """
+    return is_number(field) or STAMP.fullmatch(field) is not None
+
+
+def text_of(path: Path) -> bytes:
+    r"""Text in UTF-8 with ``\n`` after each line.
+
+    UTF-16 has a mark; other texts are in UTF-8, or with three bytes of other letters in a row in an encoding of East Asia, or in Latin-1.
 
     Raises
     ------
     UnusableError
-        If the file is not such a text, does not say which mark is between its columns, or as in
-        :func:`~raceway.importing.table.read_table`.
+        If the file is empty or too large, or holds zero bytes.
     """
-    with guarded(path, "delimited text"):
-        encoding = encoding_of(path)
-        with path.open(encoding=encoding, errors="replace") as text:
-            mark = delimiter or _mark([*islice(lines_of(text), START)])
-        with path.open(encoding=encoding, errors="replace") as text:
-            return read_table(_split(lines_of(text), mark), column, lambda number, _: f"line {number}")
-
-
-def encoding_of(path: Path) -> str:
-    """Encoding of a text by its beginning: UTF-16 has a mark, and what is no UTF-8 is read as Latin-1."""
-    with path.open("rb") as stream:
+    with guarded(path, "text"), path.open("rb") as stream:
         start = stream.read(_BEGINNING)
-    if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return "utf-16"
-    try:
-        codecs.getincrementaldecoder("utf-8")().decode(start)
-    except UnicodeDecodeError:
-        return "latin-1"
-    return "utf-8-sig"
+        wide = start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        content = start if b"\0" in start and not wide else start + stream.read()
+        if wide:
+            content = content.decode("utf-16", "replace").encode()
+        if b"\0" in content:
+            raise UnusableError("is no text with columns: it holds zero bytes; export it again")
+        if not content.isascii():
+            content = _decoded(content).encode()
+        return content.replace(b"\r\n", b"\n").replace(b"\r", b"\n").rstrip(b"\n") + b"\n"
 
 
-def lines_of(text: IO[str]) -> Iterator[str]:
-    """Lines of a text, none of which is longer than a row can be."""
-    while line := text.readline(_LONGEST_LINE):
-        if len(line) == _LONGEST_LINE or "\0" in line:
-            raise UnusableError(
-                "is no text with columns: it holds zero bytes, or a line without an end; export it again"
-            )
-        yield line
+def _decoded(content: bytes) -> str:
+    for encoding in ("utf-8-sig", *(_EASTERN_ENCODINGS if _EASTERN.search(content) else ())):
+        try:
+            return content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    return content.decode("latin-1")
 
 
-def _split(lines: Iterable[str], mark: str) -> Iterator[TableLine]:
+def first_lines(content: bytes) -> list[str]:
+    """Lines that tell the columns, with their ends.
+
+    Raises
+    ------
+    UnusableError
+        If one is longer than a row can be.
+    """
+    *lines, rest = content.split(b"\n", START)
+    lines += [rest] if rest and len(lines) < START else []
+    if max(map(len, lines), default=0) > _LONGEST_LINE:
+        raise UnusableError("is no text with columns: it holds a line without an end; export it again")
+    return [f"{line.decode()}\n" for line in lines]
+
+
+def split(lines: Iterable[str], mark: str) -> Iterator[Line]:
     """Fields of lines; a field in quotes can hold marks, and in a header line breaks."""
-    reader = csv.reader((_BLANKS.sub(" ", line.strip()) for line in lines) if mark == " " else lines, delimiter=mark)
+    reader = csv.reader((_BLANKS.sub(" ", line.strip()) for line in lines) if mark == BLANK else lines, delimiter=mark)
     number = 1
     for fields in reader:
-        plain = [field.strip() for field in fields]
-        if reader.line_num > number:
-            plain = [" ".join(field.split()) for field in plain]
-        yield TableLine(number, _with_units(plain) if mark == " " else plain)
+        plain = [" ".join(field.split()) if "\n" in field else field.strip() for field in fields]
+        yield Line(number, _with_units(plain) if mark == BLANK else plain)
         number = reader.line_num + 1
 
 
@@ -83,7 +111,7 @@ def _with_units(fields: Sequence[str]) -> list[str]:
     return joined
 
 
-def _mark(lines: Sequence[str]) -> str:
+def mark_between(lines: Sequence[str]) -> str:
     """Mark between the columns: the one with which most lines are rows of numbers.
 
     Raises
@@ -91,7 +119,7 @@ def _mark(lines: Sequence[str]) -> str:
     UnusableError
         If there is no such line, or if commas may part the columns or be decimal ones.
     """
-    rows = {mark: [line.fields for line in _split(lines, mark) if _is_plain_row(line.fields)] for mark in _MARKS}
+    rows = {mark: [line.fields for line in split(lines, mark) if _is_plain_row(line.fields)] for mark in _MARKS}
     most = max(map(len, rows.values()))
     if not most:
         message = f"has no row of numbers among its first {len(lines)} lines; export numbers, or give the mark between columns"

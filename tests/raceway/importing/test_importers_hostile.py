@@ -14,7 +14,7 @@ from gen.support.limits import VARIABLE
 from raceway.importing import import_cwru
 from raceway.importing.files import UnusableError, read_numpy
 from raceway.importing.matlab import read_matlab
-from raceway.importing.text import read_text
+from raceway.importing.table import read_text
 from raceway.sharing.card.page import data_card
 from tests.labels import import_labelled
 
@@ -97,7 +97,7 @@ def test_pipes_and_devices_are_refused_and_never_waited_for(tmp_path):
 
 def test_a_recording_on_one_line_is_read(tmp_path):
     (tmp_path / "line.csv").write_text(",".join(f"{value:.6f}" for value in SIGNAL[0]))
-    np.testing.assert_allclose(read_text(tmp_path / "line.csv").values, SIGNAL[0], atol=1e-6)
+    np.testing.assert_allclose(read_text(tmp_path / "line.csv").columns[0], SIGNAL[0], atol=1e-6)
 
 
 def test_numpy_headers_that_promise_more_than_the_file_holds_are_refused(tmp_path):

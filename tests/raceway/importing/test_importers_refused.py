@@ -96,7 +96,7 @@ UNUSABLE = {
     ),
     "table.npy": (
         lambda path: np.save(path, np.c_[SIGNAL, SIGNAL]), {"column": "ax"},
-        "has columns without names, so none is called ax; give a number from 0 with column",
+        "has the columns 0, 1, and no numbers in ax; choose one with column",
     ),
     "two.mat": (
         mat(x=SIGNAL, y=SIGNAL, rpm=5), {}, "holds x, y, more than one variable with 100 numbers or more; name one with variable",

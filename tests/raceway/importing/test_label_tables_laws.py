@@ -22,7 +22,8 @@ BASE = {"path": "a.npy", "fault": "outer", "specimen": "A", "bearing": "6205", "
 VALUES = {
     "path": "b/c d.mat", "fault": "ball", "specimen": "007", "rig": "2", "recording": "r", "bearing": "NU206", "shaft_rpm": 1480.5,
     "load_n": 0.25, "width_mm": 1.25, "depth_um": 20, "angle_deg": -90, "n_spalls": 2, "sample_rate_hz": 12800, "resample_hz": 6400,
-    "delimiter": "\t", "channel": "drive end", "title": "Pump; 7", "origin": "Plant, spring", "variable": "X*_DE", "column": "ax",
+    "delimiter": "\t", "channel": "drive end", "decimal": ",",
+    "title": "Pump; 7", "origin": "Plant, spring", "variable": "X*_DE", "column": "ax",
     "unit": "mV", "sensitivity_mv_per_g": 50.5, "sensitivity_mv_per_m_s2": 10.2,
     "channels": '[{"name": "x", "column": 0}, {"name": "y", "column": "ay"}]',
 }  # fmt: skip
