@@ -46,7 +46,12 @@ def read_model_file(path: Path) -> Any:
         with warnings.catch_warnings():
             # objects of another scikit-learn may load and predict something else
             warnings.simplefilter("error", InconsistentVersionWarning)
+            with zipfile.ZipFile(path) as archive:
+                unpacked = sum(member.file_size for member in archive.infolist())
+            check_limit("file_bytes", unpacked, f"{path}: unpacked has", CorpusError)
             return skops.io.load(path, trusted=TRUSTED)
+    except CorpusError:
+        raise
     except UntrustedTypesFoundException as error:
         foreign = sorted(set(skops.io.get_untrusted_types(file=path)) - set(TRUSTED))
         raise CorpusError(

@@ -125,8 +125,12 @@ def diagnose(
     found = []
     # one recording at a time, read when its turn comes
     for path, recorded, used, of_file in chain((first,), readings):
+        stated = recorded.rpm if speeds is None else None
+        if stated is not None:
+            of_file = (*of_file, f"{path.name}: it states a speed of {stated:g} rpm, which is used.")
+        own = given if stated is None else _given(known, (stated, stated))
         with set_aside(path, unusable if several else None), notice_compilation():
-            diagnosis = diagnose_recording(recorded, given, loaded, healthy=references)
+            diagnosis = diagnose_recording(recorded, own, loaded, healthy=references)
         if path in unusable:
             continue
         notes = tuple(dict.fromkeys(of_file + doubts))

@@ -9,12 +9,11 @@ import numpy as np
 from raceway.importing.axes import axes_of
 from raceway.importing.conversion import Unit
 from raceway.importing.files import ContradictionError, FloatArray, NoneChosenError, UnusableError
-from raceway.importing.header import SECONDS, Header, key_of, known_unit
+from raceway.importing.header import SECONDS, Header, key_of, known_unit, rounded_rate
 from raceway.importing.table import Table
 
 SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
 _SAME_RATE = 0.01  # relative
-_COARSE = 1e-3  # of the rate, relative
 _JITTER = 0.05  # of a step
 _FEW, _MANY = 0.01, 0.1  # of the steps
 _MOST_NAMED = 12
@@ -25,7 +24,7 @@ class Values(NamedTuple):
 
     ``rates`` are sample rates [Hz] and where they are stated, ``playback`` one in whose place another can be given; ``unit`` is as the
     file writes it, and ``named`` tells where; ``absolute`` is False for shares of the full scale of a converter; ``notes`` are sentences
-    without their end.
+    without their end; ``rpm`` is the speed of the shaft.
     """
 
     values: FloatArray
@@ -35,6 +34,7 @@ class Values(NamedTuple):
     named: str = ""
     absolute: bool = True
     notes: tuple[str, ...] = ()
+    rpm: float | None = None
 
     def rate(self, given: float | None, key: str) -> tuple[float | None, list[str]]:
         """Sample rate to be used, or None; and a sentence without its end if another one is stated.
@@ -132,7 +132,14 @@ def signal_of(table: Table, column: int | str | None) -> Values:
     own = header.unit_of(signals[0])
     named = f"column {header.name(signals[0])}" if own else header.unit
     return Values(
-        columns[signals[0]], tuple(rates), table.playback, own or header.unit, named, table.absolute, table.notes
+        columns[signals[0]],
+        tuple(rates),
+        table.playback,
+        own or header.unit,
+        named,
+        table.absolute,
+        table.notes,
+        table.rpm,
     )
 
 
@@ -189,12 +196,7 @@ def _rate_of(times: FloatArray) -> float | None:
     """
     span, steps = float(times[-1] - times[0]), np.diff(times)
     rate, doubt = (times.size - 1) / span, _resolution(times) / span
-    if np.ptp(steps) <= 1e-6 * steps[0]:
-        doubt = 1e-9
-    elif doubt > _COARSE:
-        return None
-    shorter = (float(f"{rate:.{digits}g}") for digits in range(2, 12))
-    return next((one for one in shorter if math.isclose(one, rate, rel_tol=doubt)), rate)
+    return rounded_rate(rate, 1e-9 if np.ptp(steps) <= 1e-6 * steps[0] else doubt)
 
 
 def _listed(header: Header, columns: Sequence[int]) -> str:

@@ -61,6 +61,7 @@ def import_femto(source: Path, output: Path, *, progress: Progress | None = None
     CorpusError
         If nothing can be imported, or the output is taken.
     """
+    source = source.resolve()  # whose names tell which lives are censored
     lives = defaultdict[Path, dict[int, Path]](dict)
     for path in files_below(source, ".csv"):
         number = _FILE.match(path.stem)
@@ -71,8 +72,14 @@ def import_femto(source: Path, output: Path, *, progress: Progress | None = None
             f"{source}: has no folder such as Bearing1_1 with files acc_00001.csv; give the one that holds them."
         )
     candidates, warnings = list[Candidate](), list[str]()
-    # a folder is a life, and the number of a file its age
-    for specimen, (folder, files) in enumerate(sorted(lives.items())):
+    longest = {
+        folder.name.lower(): folder
+        for folder in sorted(lives, key=lambda folder: (len(lives[folder]), not _censored(folder)))
+    }
+    for folder in sorted(lives.keys() - longest.values()):
+        other = name_of(longest[folder.name.lower()], source)
+        warnings.append(f"{name_of(folder, source)}: is left out, since {other} holds more of the same life.")
+    for specimen, (folder, files) in enumerate(sorted((folder, lives[folder]) for folder in longest.values())):
         missing = [number for number in range(min(files), max(files)) if number not in files]
         if missing:
             warnings.append(
@@ -87,12 +94,15 @@ def import_femto(source: Path, output: Path, *, progress: Progress | None = None
     return import_recordings(_COLLECTION, candidates, output, window=SNAPSHOT, warnings=warnings, progress=progress)
 
 
+def _censored(path: Path) -> bool:
+    return any(part.lower() == "test_set" for part in path.parts)
+
+
 def _read(path: Path, number: int, last: int, specimen: int, clock: dict[str, float]) -> Recording:
     """One snapshot; ``clock`` has the time of day at which the life would have begun by its first file."""
     values, folder = _numbers(path), path.parent.name
     rpm, load = _CONDITIONS[folder[len("bearing")]]
-    age, censored = EVERY * (number - 1), any(part.lower() == "test_set" for part in path.parts)
-    # its clock and its number tell the age twice; a difference is told
+    age, censored = EVERY * (number - 1), _censored(path)
     begun = float(values[0, :4] @ (3600, 60, 1, 1e-6)) - age
     away = math.remainder(begun - clock.setdefault("begun", begun), _DAY)
     unknown = dict.fromkeys((variable.name for variable in LIFE), math.nan)

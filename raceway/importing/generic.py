@@ -96,25 +96,34 @@ def _recordings(found: Sequence[tuple[str, Labels]], folder: Path) -> tuple[list
     """
     skipped: list[str] = []
     recordings: dict[tuple[str, ...], list[Labels]] = {}
+    files: dict[tuple[Any, ...], tuple[str, Labels]] = {}
     root = folder.resolve()
     for place, labels in found:
-        if not (folder / labels.path).resolve().is_relative_to(root):
+        path = (folder / labels.path).resolve()
+        if not path.is_relative_to(root):
             raise CorpusError(f"{place}: {labels.path} is a link that leads out of the folder; copy the file into it.")
-        key = ("", labels.rig, labels.specimen, labels.recording) if labels.recording else (labels.name,)
-        known = recordings.setdefault(key, [])
-        if any(labels.name == other.name for other in known):
+        first_place, first = files.setdefault((path, tuple(sensor.place for sensor in labels.sensors)), (place, labels))
+        if first is not labels:
+            _check_alike(place, labels, first, f"is the file of {first_place}; remove one of the two rows")
             skipped.append(f"{labels.name}: is listed again in {place}; skipped.")
             continue
-        here, there = (_shared(one) for one in (labels, known[0] if known else labels))
-        different = next((key for key in here if here[key] != there[key]), None)
-        if different is not None:
-            message = (
-                f"{place}: {labels.name} belongs to recording {labels.recording} as {known[0].name} does, and {different} is "
-                f"{here[different]} here and {there[different]} there; give each recording a name of its own."
-            )
-            raise CorpusError(message)
-        known.append(labels)
+        key = ("", labels.rig, labels.specimen, labels.recording) if labels.recording else (labels.name,)
+        parts = recordings.setdefault(key, [])
+        if parts:
+            told = f"belongs to recording {labels.recording} as {parts[0].name} does; give each recording a name of its own"
+            _check_alike(place, labels, parts[0], told)
+        parts.append(labels)
     return [*recordings.values()], skipped
+
+
+def _check_alike(place: str, labels: Labels, first: Labels, told: str) -> None:
+    """Refuse labels that differ from those of an earlier row for the same recording."""
+    here, there = _shared(labels), _shared(first)
+    different = next((key for key in here if here[key] != there[key]), None)
+    if different is not None:
+        reason, advice = told.split("; ")
+        what = f"{different} is {here[different]} here and {there[different]} there"
+        raise CorpusError(f"{place}: {labels.name} {reason}, and {what}; {advice}.")
 
 
 def _shared(labels: Labels) -> dict[str, Any]:

@@ -3,9 +3,11 @@
 A unit in another form, or another unit, is kept as it is written: it is then no unit of ``UNITS``, and has to be given.
 """
 
+import math
 import re
 import unicodedata
 from collections.abc import Iterator, Sequence
+from decimal import Decimal
 from typing import NamedTuple
 
 from raceway.importing.conversion import UNITS, Unit
@@ -16,6 +18,8 @@ _OTHERS = re.compile(
     r"velocity|displacement|temperature|speed|tacho|counts?|lsb|adc|raw|db|gal|ips|volts?|[mc]?m/s|in/s|[uμ]m|mm|mils?|rpm|k?hz|°c|k?pa|bar|k?n|%",
     re.IGNORECASE,
 )  # as last word of a name
+_NARROW = str.maketrans("（）［］：／", "()[]:/")  # marks of East Asia
+_COARSE = 1e-3  # of a rate, relative
 _LONGEST_UNIT = 12
 _UNIT_ROWS = 3  # last lines in which a row of units is searched: names, units, comments
 _COMMENT = re.compile(r"^(?:#|%|//)\s*")
@@ -64,6 +68,7 @@ class Header(NamedTuple):
         """Numbers of the columns that a number or a name means; the unit of a name can be left out."""
         if isinstance(column, int):
             return [column]
+        column = column.translate(_NARROW)
         exact = [n for n, name in enumerate(self.names) if name == column]
         return exact or [n for n, name in enumerate(map(_without_unit, self.names)) if name == column]
 
@@ -81,14 +86,19 @@ def header_of(rows: Sequence[Sequence[str]], least: int, most: int) -> Header:
     """Header in rows of texts before rows of ``least`` to ``most`` fields."""
     lines = [*filter(None, map(_uncommented, rows))]
     names, units = _names(lines, least, most)
-    rates = dict.fromkeys(rate for fields in lines for rate in _rates(fields, lines))
+    of_labview = (
+        bool(lines) and lines[0][0].startswith("LabVIEW") and ["X_Dimension", "Time"] in [line[:2] for line in lines]
+    )
+    if of_labview:
+        units = tuple("s" if name == "X_Value" else unit for name, unit in zip(names, units, strict=True))
+    rates = dict.fromkeys(rate for fields in lines for rate in _rates(" ".join(fields), steps=of_labview))
     return Header(names, units, _common_unit(lines, names), tuple(rates))
 
 
 def _uncommented(fields: Sequence[str]) -> list[str]:
     """Fields without the mark of a comment, and without empty ones at the end."""
     first = _COMMENT.sub("", fields[0])
-    kept = [*([first] if first or not fields[0] else []), *fields[1:]]
+    kept = [field.translate(_NARROW) for field in ([first] if first or not fields[0] else []) + [*fields[1:]]]
     return kept[: max((n for n, field in enumerate(kept, 1) if field), default=0)]
 
 
@@ -174,18 +184,34 @@ def _says_unit(text: str) -> bool:
     return any(known_unit(word) or word.casefold() in ("volt", "volts", "counts") for word in words)
 
 
-def _rates(fields: Sequence[str], lines: Sequence[Sequence[str]]) -> Iterator[float]:
-    """Sample rates [Hz] that a line states; the step of time only of files of LabVIEW."""
-    line = " ".join(fields)
+def _rates(line: str, *, steps: bool) -> Iterator[float]:
+    """Sample rates [Hz] that a line states; the step of time only if ``steps``, as in files of LabVIEW."""
     found, step = _RATE.fullmatch(line), _STEP.fullmatch(line)
     if found:
         before, number, after = found.groups()
         value, unit = number_in(number), before or after
         if value is not None and unit and (before or after) == (after or before):
             yield value * {"k": 1e3, "K": 1e3, "M": 1e6}.get(unit[0], 1.0)
-    elif (
-        step and lines[0][0].startswith("LabVIEW Measurement") and ["X_Dimension", "Time"] in [one[:2] for one in lines]
-    ):
-        for value in map(number_in, step[1].split()):
-            if value:
-                yield 1 / value
+    elif step and steps:
+        yield from filter(None, map(_rate_of_step, step[1].split()))
+
+
+def _rate_of_step(text: str) -> float | None:
+    """Sample rate [Hz] of a step [s], None if its decimals do not tell it.
+
+    >>> _rate_of_step("0.000977"), _rate_of_step("7,8125E-5"), _rate_of_step("0.000156")
+    (1024.0, 12800.0, None)
+    """
+    step = number_in(text)
+    if not step:
+        return None
+    exponent = Decimal(text.replace(",", ".")).as_tuple().exponent
+    return rounded_rate(1 / step, 0.5 * 10.0 ** int(exponent) / step)
+
+
+def rounded_rate(rate: float, doubt: float) -> float | None:
+    """Number with as few digits as a relative doubt allows; None above 0.1 %."""
+    if doubt > _COARSE:
+        return None
+    shorter = (float(f"{rate:.{digits}g}") for digits in range(2, 12))
+    return next((number for number in shorter if math.isclose(number, rate, rel_tol=doubt)), rate)

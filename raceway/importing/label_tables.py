@@ -118,6 +118,8 @@ def _check_alike(key: str, values: Sequence[tuple[str, Any]], advice: str) -> No
 def keys_of_yaml(path: Path) -> dict[str, Any]:
     """Keys in a YAML file."""
     keys = read_yaml(path, CorpusError)
+    for key, text in re.findall(r"""(\w+)["']?:[ ]+["']?([\d.]+)""", path.read_text("utf-8", "ignore")):
+        _value(f"{path}: {key}", key, text)
     if not isinstance(keys, dict) or not all(isinstance(key, str) for key in keys):
         raise CorpusError(f"{path}: holds no keys; write those that all files share, such as unit: g.")
     return keys

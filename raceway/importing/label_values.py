@@ -1,7 +1,7 @@
 """Types of the values in a table of labels."""
 
 import unicodedata
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field
@@ -17,8 +17,8 @@ _MOST_COLUMNS = 1_000_000
 
 
 def _inside(text: str) -> str:
-    path = Path(on_one_line(text))
-    if path.is_absolute() or ".." in path.parts:
+    path = Path(on_one_line(text).replace("\\", "/"))  # Windows has backslashes
+    if path.is_absolute() or PureWindowsPath(text).drive or ".." in path.parts:
         raise ValueError(f"{text} leads out of the folder of the recordings; put the table into a folder above them.")
     return path.as_posix()
 

@@ -5,6 +5,7 @@ in the file.
 """
 
 import math
+import re
 import struct
 from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
@@ -24,6 +25,8 @@ from raceway.importing.table import Table, as_columns, table_of
 
 _FEWEST = 100  # values of a signal; speeds and rates have one
 _REAL = "biuf"  # kinds of NumPy types
+_TABLES = (b"table", b"timetable", "table", "timetable")
+_RATE = re.compile(r"sr|fs|samp(?:le|ling)?_?(?:rate|freq(?:uency)?)", re.IGNORECASE)
 _BYTES_OF_LEVEL_4 = (8, 4, 4, 2, 2, 1)  # of a value, by the type of the numbers
 
 
@@ -45,15 +48,26 @@ def read_matlab(path: Path, variable: str | None) -> NDArray[Any]:
     OSError
         If the file cannot be opened.
     """
-    with guarded(path, "MATLAB"):
-        with LIBRARY_LOCK:
-            in_hdf5 = h5py.is_hdf5(path)
-        return _read_hdf5(path, variable) if in_hdf5 else _read(path, variable)
+    return _read(path, variable)[1]
 
 
 def read_matlab_table(path: Path, variable: str | None) -> Table:
-    """Table in a variable."""
-    return table_of(read_matlab(path, variable))
+    """Table in a variable, with the sample rates that variables beside it or of the whole file state; errors as in :func:`read_matlab`."""
+    name, values, scalars = _read(path, variable)
+    near = {key: number for key, number in scalars.items() if key.rpartition(".")[0] in ("", name.rpartition(".")[0])}
+    rates = dict.fromkeys(number for key, number in near.items() if _RATE.fullmatch(key.rpartition(".")[2]))
+    speeds = {key: number for key, number in near.items() if key.lower().endswith("rpm")}
+    own = {key: number for key, number in speeds.items() if key[: -len("rpm")] and name.startswith(key[: -len("rpm")])}
+    (rpm,) = (own or speeds).values() if len(own or speeds) == 1 else (None,)
+    return table_of(values)._replace(header=Header(rates=tuple(rates)), rpm=rpm)
+
+
+def _read(path: Path, variable: str | None) -> tuple[str, NDArray[Any], dict[str, float]]:
+    """Name and values of a variable, and all single numbers of the file by name."""
+    with guarded(path, "MATLAB"):
+        with LIBRARY_LOCK:
+            in_hdf5 = h5py.is_hdf5(path)
+        return _read_hdf5(path, variable) if in_hdf5 else _read_level_5(path, variable)
 
 
 def read_number(path: Path, variable: str | None) -> float:
@@ -65,8 +79,8 @@ def read_number(path: Path, variable: str | None) -> float:
         return math.nan
 
 
-def _content(path: Path, only: str | None = None) -> dict[str, Any]:
-    """Variables, or one of them, and in place of structures their fields, as ``"bearing.gs"``."""
+def _content(path: Path) -> dict[str, Any]:
+    """Variables, and in place of structures their fields, as ``"bearing.gs"`` or ``"Y[6].Data"``."""
     from scipy.io import loadmat  # loads scipy.sparse
     from scipy.io.matlab import matfile_version
 
@@ -78,10 +92,13 @@ def _content(path: Path, only: str | None = None) -> dict[str, Any]:
         if isinstance(value, dict):
             for field, inner in value.items():
                 add(f"{name}.{field}", inner)
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            for number, inner in enumerate(value):
+                add(f"{name}[{number}]", inner)
         else:
             variables[name] = value
 
-    for name, value in loadmat(path, variable_names=[only] if only else None, simplify_cells=True).items():
+    for name, value in loadmat(path, simplify_cells=True).items():
         if not name.startswith("__"):
             add(name, value)
     return variables
@@ -99,17 +116,18 @@ def _check_level_4(path: Path) -> None:
             stream.seek(length + size, 1)
 
 
-def _read(path: Path, variable: str | None) -> NDArray[Any]:
-    name = _whole_name(variable)
-    variables = _content(path, name and name.split(".")[0])
-    name = name or _only({key: np.size(value) for key, value in variables.items() if _is_array(value, _REAL)}, variable)
+def _read_level_5(path: Path, variable: str | None) -> tuple[str, NDArray[Any], dict[str, float]]:
+    variables = _content(path)
+    arrays = {key: np.asarray(value) for key, value in variables.items() if _is_array(value, _REAL)}
+    name = _whole_name(variable) or _only({key: value.size for key, value in arrays.items()}, variable)
     if name not in variables:
-        message = f"holds {listing([*(variables or _content(path))])}, not {name}"
+        message = f"holds {listing([*variables])}, not {name}"
         raise UnusableError(message)
     if not _is_array(variables[name], _REAL + "U"):
         message = f"holds {name}, but neither real numbers nor text in it"
         raise UnusableError(message)
-    return np.asarray(variables[name])
+    scalars = {key: float(value.item()) for key, value in arrays.items() if value.size == 1}
+    return name, np.asarray(variables[name]), scalars
 
 
 def _whole_name(variable: str | None) -> str | None:
@@ -121,9 +139,10 @@ def _is_array(value: Any, kinds: str) -> bool:
     return not isinstance(value, list) and np.asarray(value).dtype.kind in kinds
 
 
-def _read_hdf5(path: Path, variable: str | None) -> NDArray[Any]:
+def _read_hdf5(path: Path, variable: str | None) -> tuple[str, NDArray[Any], dict[str, float]]:
     with LIBRARY_LOCK, h5py.File(path, "r") as file:
-        name = _whole_name(variable) or _only(_sizes(file), variable)
+        sizes = _sizes(file)
+        name = _whole_name(variable) or _only(sizes, variable)
         try:
             dataset = own_dataset(file, name.replace(".", "/"))
         except ForeignStorageError as error:
@@ -136,9 +155,11 @@ def _read_hdf5(path: Path, variable: str | None) -> NDArray[Any]:
             message = f"holds {name}, but it is not real numbers"
             raise UnusableError(message)
         if dataset.attrs.get("MATLAB_empty"):  # it holds its dimensions
-            return np.empty(0)
+            return name, np.empty(0), {}
         values = np.asarray(dataset)
-        return _text(values) if _is_text(dataset) else values
+        single = {key: own_dataset(file, key.replace(".", "/")) for key, size in sizes.items() if size == 1}
+        scalars = {key: float(np.asarray(number).item()) for key, number in single.items()}
+        return name, _text(values) if _is_text(dataset) else values, scalars
 
 
 def _is_text(dataset: h5py.Dataset) -> bool:
@@ -155,6 +176,8 @@ def _sizes(file: h5py.File) -> dict[str, int]:
     sizes: dict[str, int] = {}
 
     def note(name: str, node: Any) -> None:
+        if node.attrs.get("MATLAB_class") in _TABLES:
+            raise UnusableError(f"holds {name}, which is a table; save its columns as arrays of numbers")
         numbers = isinstance(node, h5py.Dataset) and node.dtype.kind in _REAL and not _is_text(node)
         if numbers and not name.startswith("#"):
             sizes[name.replace("/", ".")] = node.size or 0

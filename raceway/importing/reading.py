@@ -23,6 +23,7 @@ from raceway.importing.signals import (
 if TYPE_CHECKING:
     from raceway.importing.reading_options import Reading
 
+_FEWEST = 8  # samples of a spectrum
 OPTIONS = {
     "column": "--channel",
     "variable": "--channel",
@@ -125,11 +126,14 @@ def _read(path: Path, reading: "Reading", read: Reader) -> "tuple[Recorded, Read
         signals[channel or ""] = signal
         notes += [note for note in signal.warnings if "its rms" not in note]
     shortest = min(signal.values.size for signal in signals.values())
+    if shortest < _FEWEST:
+        raise CorpusError(f"{path}: holds {shortest} samples, and a diagnosis needs {_FEWEST} at least; record 10 s.")
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}
     unit = "unit of the file" if reading.unit is None and path.suffix.lower() == ".wav" else ACCELERATION
     units = " and ".join(dict.fromkeys(signal.unit for signal in signals.values()))
+    first = next(iter(signals.values()))
     return (
-        Recorded(cut, next(iter(signals.values())).fs, str(path), unit),
+        Recorded(cut, first.fs, str(path), unit, first.rpm),
         reading._replace(unit=units),
         tuple(dict.fromkeys(notes)),
     )

@@ -12,12 +12,13 @@ LONGEST = 60.0  # s; of a longer recording the beginning is used
 
 
 class Recorded(NamedTuple):
-    """A recording: signals of equal length by the name of their channel, shape (time,), sample rate [Hz], name, and unit."""
+    """A recording: signals of equal length by the name of their channel, shape (time,), sample rate [Hz], name, unit, and stated speed."""
 
     signals: Mapping[str, FloatArray]
     fs: float
     name: str = "the recording"
     unit: str = ACCELERATION
+    rpm: float | None = None
 
     @property
     def used(self) -> "Recorded":

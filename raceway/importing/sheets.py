@@ -15,6 +15,7 @@ from raceway.importing.table import Table, read_table
 
 _CELL = re.compile(rb"r\s*=\s*[\"']([A-Za-z]{1,3})(\d{1,7})[\"']")
 _CELL_BYTES = 32  # that the library takes for each cell of the rectangle around all cells
+_MOST_ROWS = 1_048_576
 _CHUNK, _OVERLAP = 4_000_000, 20  # bytes
 
 
@@ -49,12 +50,18 @@ def _check_size(path: Path) -> int:
     with zipfile.ZipFile(path) as archive:
         check_limit("file_bytes", sum(part.file_size for part in archive.infolist()), "is unpacked", UnusableError)
         for part in archive.infolist():
-            columns, rows, rest = 0, 0, b""
+            columns, rows, tags, rest = 0, 0, 0, b""
             with archive.open(part) as stream:
                 while block := stream.read(_CHUNK):
                     for letters, row in _CELL.findall(rest + block):
                         columns, rows = max(columns, _number(letters.upper())), max(rows, int(row))
+                    tags += block.count(b"<row")
                     rest = block[-_OVERLAP:]
+            if max(rows, tags) > _MOST_ROWS:
+                message = (
+                    f"has a sheet of {max(rows, tags)} rows, and one of Excel has at most {_MOST_ROWS}; export it again"
+                )
+                raise UnusableError(message)
             what = f"has a sheet of {columns} columns and {rows} rows, which takes"
             check_limit("file_bytes", columns * rows * _CELL_BYTES, what, UnusableError)
         found = re.search(rb"\bactiveTab\s*=\s*[\"'](\d{1,5})[\"']", archive.read("xl/workbook.xml"))

@@ -79,14 +79,14 @@ class Place(NamedTuple):
 class Signal(NamedTuple):
     """A recording in m s-2, shape (time,), its sample rate [Hz] or None if it is not known, and a sentence for each assumption.
 
-    ``unit`` is the unit in which the file was read; ``absolute`` is False for shares of the full scale of a converter.
+    ``unit`` is the unit in which the file was read; ``rpm`` the speed of the shaft, if the file states it.
     """
 
     values: FloatArray
     fs: float | None
     warnings: tuple[str, ...]
     unit: Unit
-    absolute: bool = True
+    rpm: float | None = None
 
 
 Reader = Callable[[Place], Values]
@@ -166,7 +166,7 @@ def acceleration(
     scale = Scale(used, sensitivity)
     signal = accelerations(content.values, scale)
     told = *content.notes, *notes, *of_unit, *doubts(content.values, signal, scale, absolute=content.absolute)
-    return Signal(signal, fs, told, used, content.absolute)
+    return Signal(signal, fs, told, used, content.rpm)
 
 
 def read_shape(path: Path, place: Place, rate: float | None, options: Mapping[str, str] = _AS_HERE) -> Signal:

@@ -39,7 +39,7 @@ class Table(NamedTuple):
 
     ``flaws`` are reasons why columns cannot be used; ``marks`` are the decimal marks with which columns that have such marks can be read;
     ``notes`` are sentences without their end. ``playback`` is a sample rate [Hz] in whose place another can be given; ``absolute`` is
-    False for shares of the full scale of a converter.
+    False for shares of the full scale of a converter; ``rpm`` is the speed of the shaft that the file states.
     """
 
     columns: Mapping[int, FloatArray]
@@ -49,6 +49,7 @@ class Table(NamedTuple):
     notes: tuple[str, ...] = ()
     playback: float | None = None
     absolute: bool = True
+    rpm: float | None = None
 
 
 def read_text(path: Path, mark: str | None = None, decimal: str | None = None) -> Table:
@@ -242,6 +243,13 @@ def _check_beginning(
         )
     if [*filter(None, rows[0])] == [str(body.height - 1)]:
         message = f"has {rows[0][0]} in {where}, which is the number of the rows below; delete that line"
+        raise UnusableError(message)
+    samples = next((line.fields[1:] for line in above if line.fields[0] == "Samples"), [])
+    most = max((int(field) for field in samples if field.isdecimal()), default=0)
+    if most and above[0].fields[0].startswith("LabVIEW") and body.height > most:
+        message = (
+            f"has {body.height} rows and states {most} samples: it holds several blocks; save each in a file of its own"
+        )
         raise UnusableError(message)
     if body.mark == BLANK and any(field in ("-", "+") for fields in rows for field in fields):
         raise UnusableError(f"has signs apart from their numbers from {where} on; export them side by side")

@@ -225,6 +225,14 @@ def test_channels_of_a_matlab_file_are_its_variables_or_the_columns_of_one(model
     assert variables["channels"] == ["DE_time", "FE_time"]
 
 
+def test_rate_and_speed_in_a_matlab_file_are_used_and_the_speed_is_told(model, recordings, tmp_path):
+    signal, rpm = recordings["inner"]
+    savemat(tmp_path / "r.mat", {"X1_DE": signal, "fs": FS, "X1RPM": rpm})
+    found = told(tmp_path / "r.mat", "--bearing", "6205", "--model", model)
+    assert (found["verdict"], found["sample_rate_hz"]) == ("inner", FS)
+    assert f"r.mat: it states a speed of {rpm:g} rpm, which is used." in found["warnings"]
+
+
 def test_a_signal_that_tells_nothing_gives_unsure_and_advice(model, recordings, tmp_path):
     """Which signals do is tested in tests/raceway/diagnosis/test_quality_laws.py."""
     signal, rpm = recordings["inner"]

@@ -1,5 +1,7 @@
 """The importer of PRONOSTIA on small made-up files."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -41,12 +43,24 @@ def test_a_folder_is_a_life_whose_last_snapshot_is_its_end(tmp_path):
     np.testing.assert_allclose(corpus.acceleration[1].values, 9.80665 * signals[1].T, rtol=1e-4, atol=1e-3)
 
 
-def test_truncated_lives_are_censored(tmp_path):
-    for place in ("Test_set", "Full_Test_Set"):
-        write(tmp_path / "set" / place / "Bearing1_3", 1)
-    _, corpus = imported(tmp_path / "set", tmp_path / "corpus")
-    assert corpus.event.values.tolist() == [1, 0]
-    assert np.isnan(corpus.rul.values).tolist() == [False, True]
+def test_of_a_life_in_two_folders_the_longer_course_is_read(tmp_path):
+    for place, last in (("Test_set", 2), ("Full_Test_Set", 3)):
+        for number in range(1, last + 1):
+            write(tmp_path / "set" / place / "Bearing1_3", number)
+    done, corpus = imported(tmp_path / "set", tmp_path / "corpus")
+    assert corpus.event.values.tolist() == [1, 1, 1]
+    assert done.warnings == (
+        "Test_set/Bearing1_3: is left out, since Full_Test_Set/Bearing1_3 holds more of the same life.",
+    )
+
+
+@pytest.mark.parametrize("inside", ["set", "set/Test_set", "set/Test_set/Bearing1_3"])
+def test_truncated_lives_are_censored_from_wherever_the_importer_is_called(tmp_path, monkeypatch, inside):
+    write(tmp_path / "set" / "Test_set" / "Bearing1_3", 1)
+    monkeypatch.chdir(tmp_path / inside)
+    _, corpus = imported(Path(), tmp_path / "corpus")
+    assert corpus.event.values.tolist() == [0]
+    assert np.isnan(corpus.rul.values).all()
 
 
 def test_missing_and_damaged_snapshots_and_wrong_clocks_are_named(tmp_path):

@@ -55,6 +55,15 @@ def test_a_link_out_of_the_folder_is_refused(tmp_path):
     assert "row 2: a.npy is a link that leads out of the folder; copy" in refusal(inside, {"path": "a.npy"})
 
 
+@pytest.mark.parametrize("other", ["a.npy", "./a.npy", "link.npy"])
+def test_a_file_under_two_classes_is_refused_with_both_rows(tmp_path, other):
+    np.save(tmp_path / "a.npy", SIGNAL)
+    (tmp_path / "link.npy").symlink_to(tmp_path / "a.npy")
+    told = refusal(tmp_path, {"path": "a.npy", "fault": "inner"}, {"path": other, "fault": "outer"})
+    assert "row 3: " in told
+    assert "row 2, and fault is outer here and inner there; remove one of the two rows." in told
+
+
 def test_files_that_differ_are_not_joined(tmp_path):
     rows = [{"path": f"{name}.npy", "recording": "r", "shaft_rpm": rpm} for name, rpm in (("a", 1500), ("b", 900))]
     assert refusal(tmp_path, *rows).endswith(

@@ -123,7 +123,7 @@ def test_specimens_belong_to_their_rig_and_a_file_that_is_listed_again_is_skippe
         (tmp_path / place).parent.mkdir(exist_ok=True)
         np.save(tmp_path / f"{place}.npy", SIGNAL)
     north, south = ({"path": "one/a.npy", "rig": "north"}, {"path": "one/b.npy", "rig": "north"}), {"rig": "south"}
-    done, corpus = imported(tmp_path, *north, south | {"path": "two/a.npy"}, south | {"path": "./one/a.npy"})
+    done, corpus = imported(tmp_path, *north, south | {"path": "two/a.npy"}, {"path": "./one/a.npy", "rig": "north"})
     assert corpus.rig.values[::2].tolist() == [0, 0, 1]
     assert corpus.specimen.values[::2].tolist() == [0, 0, 1]
     assert corpus.recording.values[::2].tolist() == [0, 1, 2]
