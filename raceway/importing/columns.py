@@ -8,7 +8,7 @@ import numpy as np
 
 from raceway.importing.axes import axes_of
 from raceway.importing.conversion import Unit
-from raceway.importing.files import ContradictionError, FloatArray, NoneChosenError, UnusableError
+from raceway.importing.files import FloatArray, UnusableError
 from raceway.importing.header import SECONDS, Header, key_of, known_unit, rounded_rate
 from raceway.importing.table import Table
 
@@ -52,7 +52,7 @@ class Values(NamedTuple):
                 return given, []
             if self.playback is None and any(SLOWEST <= rate <= FASTEST for rate, _ in stated):
                 message = f"is at {told}, and {given:g} Hz are given; correct what is given"
-                raise ContradictionError(message, "rate", key)
+                raise UnusableError(message, key, contradicted="rate")
             return given, [f"is at {told}; the given {given:g} Hz are used"]
         if not stated:
             return None, []
@@ -77,7 +77,7 @@ class Values(NamedTuple):
             raise UnusableError(message, "unit")
         if given is not None and known not in (None, given):
             message = f"states {self.named} in its header, and the unit {given} is given; correct what is given"
-            raise ContradictionError(message, "unit", "unit")
+            raise UnusableError(message, "unit", contradicted="unit")
         if given is not None:
             said = self.unit and known is None
             return given, [f"states {self.named} in its header; the given unit {given} is used"] if said else []
@@ -108,7 +108,7 @@ def signal_of(table: Table, column: int | str | None) -> Values:
             raise UnusableError(message, "column")
     if len(signals) > 1:
         message = f"has {len(columns)} columns ({_listed(header, [*columns])}) and none is chosen; choose one"
-        raise NoneChosenError(message, "column", tuple(map(header.key, axes_of(header, signals))))
+        raise UnusableError(message, "column", axes=tuple(map(header.key, axes_of(header, signals))))
     if not signals or signals[0] in times:
         message = f"has times or a counter in column {_listed(header, signals or times)}, and no signal; choose another"
         raise UnusableError(message, "column")

@@ -9,6 +9,7 @@ and each gives a warning; no label is corrected.
 
 import math
 import re
+from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
 from functools import partial
 from pathlib import Path
@@ -21,8 +22,8 @@ from gen.support.progress import Progress
 from gen.support.units import HORSEPOWER, MIL, STANDARD_GRAVITY, rpm_to_hertz
 from raceway.importing.assemble import Collection, Import, import_recordings
 from raceway.importing.columns import signal_of
-from raceway.importing.files import FloatArray, UnusableError
-from raceway.importing.matlab import read_matlab, read_number
+from raceway.importing.files import FloatArray
+from raceway.importing.matlab import read_matlab
 from raceway.importing.recordings import Candidate, Recording, files_below, name_of
 from raceway.importing.resampling import resample
 from raceway.importing.table import table_of
@@ -184,13 +185,14 @@ def _read(path: Path, number: int, specimen: int, motor_load: int) -> Recording:
     fault, diameter, clock, _ = SPECIMENS[specimen]
     held = _HELD_AS.get(number, number)
     warnings: list[str] = []
-    signal = signal_of(table_of(read_matlab(path, f"X{held:03d}_DE_time")), None).values * STANDARD_GRAVITY
+    _, values, numbers = read_matlab(path, f"X{held:03d}_DE_time")
+    signal = signal_of(table_of(values), None).values * STANDARD_GRAVITY
     if held != number:
         warnings.append(f"holds the variable X{held:03d}_DE_time, as published for recording {number}")
     if fault == "healthy":
         signal, warning = _at_12_khz(signal)
         warnings.append(warning)
-    shaft_rpm, complaints = _labelled_rpm(path, f"X{held:03d}RPM", _NOMINAL_RPM[motor_load])
+    shaft_rpm, complaints = _labelled_rpm(numbers, f"X{held:03d}RPM", _NOMINAL_RPM[motor_load])
     recording = Recording(
         number=number,
         rig=0,
@@ -224,12 +226,10 @@ def _at_12_khz(signal: FloatArray) -> tuple[FloatArray, str]:
     return slower, f"its {signal.size} samples are taken as recorded at 48 kHz and {sentence}"
 
 
-def _labelled_rpm(path: Path, variable: str, nominal: int) -> tuple[float, tuple[str, ...]]:
+def _labelled_rpm(numbers: Mapping[str, float], variable: str, nominal: int) -> tuple[float, tuple[str, ...]]:
     """Speed in the file, or the nominal speed with a warning if the file has none or one far from it [rpm]."""
-    try:
-        shaft_rpm = read_number(path, variable)
-    except UnusableError as reason:
-        return nominal, (f"{reason}: the nominal {nominal} rpm of its motor load are used",)
-    if not abs(shaft_rpm / nominal - 1) <= _SPEED_TOLERANCE:
-        return nominal, (f"has {shaft_rpm:g} rpm in {variable}: the nominal {nominal} rpm of its motor load are used",)
-    return shaft_rpm, ()
+    shaft_rpm = numbers.get(variable, math.nan)
+    if abs(shaft_rpm / nominal - 1) <= _SPEED_TOLERANCE:
+        return shaft_rpm, ()
+    held = f"has {shaft_rpm:g} rpm in {variable}" if variable in numbers else f"has no {variable}"
+    return nominal, (f"{held}: the nominal {nominal} rpm of its motor load are used",)

@@ -24,11 +24,14 @@ _WITH_REASON = (ValueError, OSError, EOFError, Warning)  # of a library; the tex
 class UnusableError(Exception):
     """Reason why a file cannot be used; its text has no full stop, because a sentence about the file goes on after it.
 
-    ``key`` names what the caller has to give, such as ``column``; the reason then goes on with "with column".
+    ``key`` names what the caller has to give, such as ``column``; the reason then goes on with "with column". ``axes`` are the signals
+    of one sensor, as the key takes them, where none of several is chosen. ``contradicted`` is the rate, unit or sensitivity that is given,
+    while the file states another.
     """
 
-    def __init__(self, reason: str, key: str = "") -> None:
+    def __init__(self, reason: str, key: str = "", *, axes: tuple[str, ...] = (), contradicted: str = "") -> None:
         super().__init__(reason, key)
+        self.axes, self.contradicted = axes, contradicted
 
     def told(self, options: Mapping[str, str]) -> str:
         """Reason with the name of the option that gives the key."""
@@ -37,22 +40,6 @@ class UnusableError(Exception):
 
     def __str__(self) -> str:
         return self.told({})
-
-
-class NoneChosenError(UnusableError):
-    """A file with several signals of which none is chosen; ``axes`` are those of one sensor as the key takes them, if it has such."""
-
-    def __init__(self, reason: str, key: str, axes: tuple[str, ...]) -> None:
-        super().__init__(reason, key)
-        self.axes = axes
-
-
-class ContradictionError(UnusableError):
-    """A file that states another value than the one that is given as ``option``: rate, unit or sensitivity."""
-
-    def __init__(self, reason: str, option: str, key: str = "") -> None:
-        super().__init__(reason, key)
-        self.option = option
 
 
 def read_numpy(path: Path) -> NDArray[Any]:

@@ -4,14 +4,13 @@ Data sets name the same variable differently in every file. So a name can have a
 in the file.
 """
 
-import math
 import re
 import struct
 from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -19,9 +18,10 @@ from numpy.typing import NDArray
 
 from gen.corpus.hdf5 import LIBRARY_LOCK, ForeignStorageError, own_dataset
 from raceway.importing.axes import axes_of
-from raceway.importing.files import NoneChosenError, UnusableError, guarded
+from raceway.importing.files import UnusableError, guarded
 from raceway.importing.header import Header, unit_said
-from raceway.importing.table import Table, as_columns, table_of
+from raceway.importing.numerals import number_in
+from raceway.importing.table import Table, table_of
 
 _FEWEST = 100  # values of a signal; speeds and rates have one
 _REAL = "biuf"  # kinds of NumPy types
@@ -30,8 +30,16 @@ _RATE = re.compile(r"sr|fs|samp(?:le|ling)?_?(?:rate|freq(?:uency)?)", re.IGNORE
 _BYTES_OF_LEVEL_4 = (8, 4, 4, 2, 2, 1)  # of a value, by the type of the numbers
 
 
-def read_matlab(path: Path, variable: str | None) -> NDArray[Any]:
-    """Numbers, or text as an array of one string; ``"bearing.gs"`` is a field of a structure.
+class Held(NamedTuple):
+    """A variable, real numbers or text, and the first of the few numbers in each other variable, by their names."""
+
+    name: str
+    values: NDArray[Any]
+    numbers: Mapping[str, float]
+
+
+def read_matlab(path: Path, variable: str | None) -> Held:
+    """Variable of a MATLAB file; ``"bearing.gs"`` is a field of a structure, ``"Y[6].Data"`` one of its seventh element.
 
     Parameters
     ----------
@@ -48,39 +56,24 @@ def read_matlab(path: Path, variable: str | None) -> NDArray[Any]:
     OSError
         If the file cannot be opened.
     """
-    return _read(path, variable)[1]
-
-
-def read_matlab_table(path: Path, variable: str | None) -> Table:
-    """Table in a variable, with the sample rates that variables beside it or of the whole file state; errors as in :func:`read_matlab`."""
-    name, values, scalars = _read(path, variable)
-    near = {key: number for key, number in scalars.items() if key.rpartition(".")[0] in ("", name.rpartition(".")[0])}
-    rates = dict.fromkeys(number for key, number in near.items() if _RATE.fullmatch(key.rpartition(".")[2]))
-    speeds = {key: number for key, number in near.items() if key.lower().endswith("rpm")}
-    own = {key: number for key, number in speeds.items() if key[: -len("rpm")] and name.startswith(key[: -len("rpm")])}
-    (rpm,) = (own or speeds).values() if len(own or speeds) == 1 else (None,)
-    return table_of(values)._replace(header=Header(rates=tuple(rates)), rpm=rpm)
-
-
-def _read(path: Path, variable: str | None) -> tuple[str, NDArray[Any], dict[str, float]]:
-    """Name and values of a variable, and all single numbers of the file by name."""
     with guarded(path, "MATLAB"):
         with LIBRARY_LOCK:
             in_hdf5 = h5py.is_hdf5(path)
         return _read_hdf5(path, variable) if in_hdf5 else _read_level_5(path, variable)
 
 
-def read_number(path: Path, variable: str | None) -> float:
-    """Number in a file, which can be a text or the first of several; NaN if it is neither. Errors as in :func:`read_matlab`."""
-    value = read_matlab(path, variable)
-    try:
-        return float(value.item() if value.size == 1 else as_columns(value)[0, 0])
-    except ValueError:
-        return math.nan
+def read_matlab_table(path: Path, variable: str | None) -> Table:
+    """Table in a variable, with sample rates and speed that variables beside it or of the whole file state."""
+    name, values, numbers = read_matlab(path, variable)
+    near = {key: number for key, number in numbers.items() if key.rpartition(".")[0] in ("", name.rpartition(".")[0])}
+    rates = dict.fromkeys(number for key, number in near.items() if _RATE.fullmatch(key.rpartition(".")[2]))
+    speeds = {key[:-3]: number for key, number in near.items() if key.lower().endswith("rpm")}
+    own = [number for start, number in speeds.items() if start and name.startswith(start)] or [*speeds.values()]
+    return table_of(values)._replace(header=Header(rates=tuple(rates)), rpm=own[0] if len(own) == 1 else None)
 
 
 def _content(path: Path) -> dict[str, Any]:
-    """Variables, and in place of structures their fields, as ``"bearing.gs"`` or ``"Y[6].Data"``."""
+    """Variables, and in place of structures their fields."""
     from scipy.io import loadmat  # loads scipy.sparse
     from scipy.io.matlab import matfile_version
 
@@ -116,30 +109,28 @@ def _check_level_4(path: Path) -> None:
             stream.seek(length + size, 1)
 
 
-def _read_level_5(path: Path, variable: str | None) -> tuple[str, NDArray[Any], dict[str, float]]:
-    variables = _content(path)
-    arrays = {key: np.asarray(value) for key, value in variables.items() if _is_array(value, _REAL)}
-    name = _whole_name(variable) or _only({key: value.size for key, value in arrays.items()}, variable)
+def _read_level_5(path: Path, variable: str | None) -> Held:
+    variables = {key: np.asarray(value) for key, value in _content(path).items() if not isinstance(value, list)}
+    sizes = {key: value.size for key, value in variables.items() if value.dtype.kind in _REAL}
+    name = _whole_name(variable) or _only(sizes, variable)
     if name not in variables:
-        message = f"holds {listing([*variables])}, not {name}"
-        raise UnusableError(message)
-    if not _is_array(variables[name], _REAL + "U"):
-        message = f"holds {name}, but neither real numbers nor text in it"
-        raise UnusableError(message)
-    scalars = {key: float(value.item()) for key, value in arrays.items() if value.size == 1}
-    return name, np.asarray(variables[name]), scalars
+        raise UnusableError(f"holds {listing([*variables])}, not {name}")
+    if variables[name].dtype.kind not in _REAL + "U":
+        raise UnusableError(f"holds {name}, but neither real numbers nor text in it")
+    few = {
+        key: value.flat[0]
+        for key, value in variables.items()
+        if value.dtype.kind in _REAL + "U" and 0 < value.size < _FEWEST
+    }
+    numbers = {key: number_in(value) if isinstance(value, str) else float(value) for key, value in few.items()}
+    return Held(name, variables[name], {key: number for key, number in numbers.items() if number is not None})
 
 
 def _whole_name(variable: str | None) -> str | None:
     return None if variable is None or "*" in variable else variable
 
 
-def _is_array(value: Any, kinds: str) -> bool:
-    """Whether a value is an array of one of the kinds of NumPy types; a list is a cell with structures in it."""
-    return not isinstance(value, list) and np.asarray(value).dtype.kind in kinds
-
-
-def _read_hdf5(path: Path, variable: str | None) -> tuple[str, NDArray[Any], dict[str, float]]:
+def _read_hdf5(path: Path, variable: str | None) -> Held:
     with LIBRARY_LOCK, h5py.File(path, "r") as file:
         sizes = _sizes(file)
         name = _whole_name(variable) or _only(sizes, variable)
@@ -155,11 +146,11 @@ def _read_hdf5(path: Path, variable: str | None) -> tuple[str, NDArray[Any], dic
             message = f"holds {name}, but it is not real numbers"
             raise UnusableError(message)
         if dataset.attrs.get("MATLAB_empty"):  # it holds its dimensions
-            return name, np.empty(0), {}
+            return Held(name, np.empty(0), {})
         values = np.asarray(dataset)
-        single = {key: own_dataset(file, key.replace(".", "/")) for key, size in sizes.items() if size == 1}
-        scalars = {key: float(np.asarray(number).item()) for key, number in single.items()}
-        return name, _text(values) if _is_text(dataset) else values, scalars
+        few = {key: own_dataset(file, key.replace(".", "/")) for key, size in sizes.items() if 0 < size < _FEWEST}
+        numbers = {key: float(np.asarray(number).flat[0]) for key, number in few.items()}
+        return Held(name, _text(values) if _is_text(dataset) else values, numbers)
 
 
 def _is_text(dataset: h5py.Dataset) -> bool:
@@ -195,11 +186,9 @@ def _only(held: Mapping[str, int], pattern: str | None) -> str:
         return names[0]
     wanted = f"variable with {_FEWEST} numbers or more" if pattern is None else f"variable {pattern}"
     if not names:
-        message = f"holds {listing([*held])}, and no {wanted}; name one"
-    else:
-        message = f"holds {listing(names)}, more than one {wanted}; name one"
-        raise NoneChosenError(message, "variable", _axes(held, names) if pattern is None else ())
-    raise UnusableError(message, "variable")
+        raise UnusableError(f"holds {listing([*held])}, and no {wanted}; name one", "variable")
+    axes = _axes(held, names) if pattern is None else ()
+    raise UnusableError(f"holds {listing(names)}, more than one {wanted}; name one", "variable", axes=axes)
 
 
 def _axes(held: Mapping[str, int], names: Sequence[str]) -> tuple[str, ...]:

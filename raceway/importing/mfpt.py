@@ -18,7 +18,7 @@ from gen.support.units import POUND_FORCE, STANDARD_GRAVITY
 from raceway.importing.assemble import Collection, Import, import_recordings
 from raceway.importing.columns import signal_of
 from raceway.importing.files import UnusableError
-from raceway.importing.matlab import read_matlab, read_number
+from raceway.importing.matlab import read_matlab
 from raceway.importing.recordings import Candidate, Recording, files_below, name_of
 from raceway.importing.resampling import resample
 from raceway.importing.table import table_of
@@ -82,9 +82,9 @@ def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Pr
 
 
 def _read(path: Path, fault: str, number: int) -> Recording:
-    signal = signal_of(table_of(read_matlab(path, "bearing.gs")), None).values * STANDARD_GRAVITY
-    fs = _number(path, "bearing.sr")
-    # two sample rates were published, one twice the other
+    _, values, numbers = read_matlab(path, "bearing.gs")
+    signal = signal_of(table_of(values), None).values * STANDARD_GRAVITY
+    fs, rate, load = (numbers.get(f"bearing.{name}", math.nan) for name in ("sr", "rate", "load"))
     factor = round(fs / FS) if math.isfinite(fs) else 0
     if factor < 1 or factor * FS != fs:
         message = f"was sampled at {fs:g} Hz, which is not a multiple of {FS:g} Hz"
@@ -93,7 +93,6 @@ def _read(path: Path, fault: str, number: int) -> Recording:
     if factor > 1:
         signal, sentence = resample(signal, fs, FS)
         warnings.append(sentence)
-    rate, load = _number(path, "bearing.rate"), _number(path, "bearing.load") * POUND_FORCE
     if not rate > 0:
         rate = _NOMINAL_RATE
         warnings.append(f"has no shaft rate: the nominal {_NOMINAL_RATE:g} Hz are used")
@@ -108,15 +107,7 @@ def _read(path: Path, fault: str, number: int) -> Recording:
         shaft_rate=rate,
         fault=fault,
         signal=signal,
-        load=load,
+        load=load * POUND_FORCE,
         warnings=tuple(warnings),
     )
     return recording if fault == "healthy" else recording._replace(n_spalls=1, width=math.nan, depth=math.nan)
-
-
-def _number(path: Path, variable: str) -> float:
-    """Number in a file, which some files hold as text; NaN if it is missing or not a number."""
-    try:
-        return read_number(path, variable)
-    except UnusableError:
-        return math.nan

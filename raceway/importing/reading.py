@@ -13,8 +13,7 @@ from raceway.importing.recorded import ACCELERATION, Recorded
 from raceway.importing.signals import (
     SUFFIXES,
     Reader,
-    SeveralSignalsError,
-    StatedOtherwiseError,
+    RefusedError,
     is_known,
     read_signal,
     reader,
@@ -82,11 +81,14 @@ def read_as_stated(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, 
         try:
             recorded, used, told = _channels(path, reading, read)
             return recorded, used, (*told, *reversed(notes))
-        except StatedOtherwiseError as error:
-            value = getattr(reading, error.option)
+        except RefusedError as error:
+            option = error.reason.contradicted
+            if not option:
+                raise
+            value = getattr(reading, option)
             said = value if isinstance(value, str) else f"{value:g}"
-            notes.append(f"{path.name}: it states otherwise than --{error.option} {said}, and is read as it states.")
-            reading = reading._replace(**{error.option: None})
+            notes.append(f"{path.name}: it states otherwise than --{option} {said}, and is read as it states.")
+            reading = reading._replace(**{option: None})
 
 
 def read_recording(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, tuple[str, ...]]":
@@ -100,10 +102,10 @@ def read_recording(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, 
 def _channels(path: Path, reading: "Reading", read: Reader) -> "tuple[Recorded, Reading, tuple[str, ...]]":
     try:
         return _read(path, reading, read)
-    except SeveralSignalsError as error:
-        if reading.channels or not error.axes:
+    except RefusedError as error:
+        axes = error.reason.axes
+        if reading.channels or not axes:
             raise
-        axes = error.axes
     recorded, used, notes = _read(path, reading._replace(channels=axes), read)
     name, *others = axes
     if others:

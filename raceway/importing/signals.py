@@ -20,9 +20,7 @@ from raceway.importing.conversion import (
     volts_per_acceleration,
 )
 from raceway.importing.files import (
-    ContradictionError,
     FloatArray,
-    NoneChosenError,
     UnusableError,
     read_numpy,
     read_wav,
@@ -46,20 +44,12 @@ _SIGNATURES = {
 _AS_HERE: Mapping[str, str] = MappingProxyType({})
 
 
-class StatedOtherwiseError(CorpusError):
-    """A file that states another value than the one that is given as ``option``: rate, unit or sensitivity."""
+class RefusedError(CorpusError):
+    """A sentence on a file, and the reason, which tells what is contradicted and which signals are axes of one sensor."""
 
-    def __init__(self, message: str, option: str) -> None:
+    def __init__(self, message: str, reason: UnusableError) -> None:
         super().__init__(message)
-        self.option = option
-
-
-class SeveralSignalsError(CorpusError):
-    """A file with several signals of which none is chosen; ``axes`` are the columns or variables that are axes of one sensor, if any."""
-
-    def __init__(self, message: str, axes: tuple[str, ...]) -> None:
-        super().__init__(message)
-        self.axes = axes
+        self.reason = reason
 
 
 class Place(NamedTuple):
@@ -140,11 +130,8 @@ def read_signal(
     Raises
     ------
     CorpusError
-        If the file cannot be read or holds no such signal, or unit and sensitivity do not belong together.
-    SeveralSignalsError
-        If the file has several signals and none is chosen.
-    StatedOtherwiseError
-        If the file states another rate, unit or kind of unit than the given rate, unit or sensitivity.
+        If the file cannot be read or holds no such signal, or unit and sensitivity do not belong together; a :class:`RefusedError`, which
+        is one, if the file states another rate, unit or kind of unit than is given, or none of its signals is chosen.
     """
     with as_sentences(path, options):
         values = (read or reader(path))(Place(variable, column, delimiter, decimal))
@@ -160,7 +147,7 @@ def acceleration(
     used, of_unit = content.stated_unit(unit)
     problem = unit_problem(used, sensitivity)
     if problem is not None and unit is None and known_unit(content.unit) is not None and sensitivity is not None:
-        raise ContradictionError(problem, "sensitivity")
+        raise UnusableError(problem, contradicted="sensitivity")
     if problem is not None:
         raise UnusableError(problem)
     scale = Scale(used, sensitivity)
@@ -183,13 +170,7 @@ def as_sentences(path: Path, options: Mapping[str, str]) -> Iterator[None]:
     try:
         yield
     except UnusableError as reason:
-        message = f"{path}: {reason.told(options)}."
-        match reason:
-            case ContradictionError():
-                raise StatedOtherwiseError(message, reason.option) from None
-            case NoneChosenError():
-                raise SeveralSignalsError(message, reason.axes) from None
-        raise CorpusError(message) from None
+        raise RefusedError(f"{path}: {reason.told(options)}.", reason) from None
     except (OSError, MemoryError) as error:
         message = f"{path}: {reason_of(error)}."
         raise CorpusError(message) from None

@@ -141,25 +141,16 @@ class Body(NamedTuple):
             line = re.search(r"in line (\d+)", str(error))
             if line is None:
                 raise
-            raise self.flaw(int(line[1]) - 1, 0, None, "has not as many fields as the rows before") from None
+            raise self.flaw(int(line[1]) - 1, 0) from None
 
-    def flaw(self, row: int, column: int, counted: NDArray[np.bool_] | None, reason: str = "") -> UnusableError:
+    def flaw(self, row: int, column: int) -> UnusableError:
         """Reason why a row, counted from 0, cannot be used."""
         line = self.content[self.start : self.end].split(b"\n", row + 1)[row].decode()
-        fields = next(split([f"{line}\n"], self.mark)).fields
-        if not any(fields):
-            column, reason = 0, "has an empty line among its rows"
-        elif not reason and column < len(fields) and is_number(fields[column]):
-            reason = "has a number that is written in another way than those before"
-        elif not reason and (is_row(fields) or is_flawed_row(fields)):
-            reason = "has no number"
-        elif not reason:
-            column, reason = 0, "has text among its rows"
-        lost = self.height - row if counted is None else np.count_nonzero(counted[row:])
+        text = " ".join(next(split([f"{line}\n"], self.mark)).fields)
         where = (
-            f"in {self.place(self.number + row, column)} ({' '.join(fields)!r:.60}), where {lost} rows would be lost"
+            f"in {self.place(self.number + row, column)} ({text!r:.60}), where {self.height - row} lines would be lost"
         )
-        return UnusableError(f"{reason} {where}; correct the file, or cut it there")
+        return UnusableError(f"has no row like the others {where}; correct the file, or cut it there")
 
 
 def read_table(content: bytes, mark: str, decimal: str | None, place: Place) -> Table:
@@ -191,14 +182,12 @@ def read_table(content: bytes, mark: str, decimal: str | None, place: Place) -> 
     point = decimal or ("," if "," in marks.values() and "." not in marks.values() else ".")
     frame = body.parsed(width, point)
     read = {n: _numbers(frame[n], point) for n in starts}
-    counted = np.any([np.isfinite(values) for values in read.values()], axis=0)
-    _check_rows(frame, counted, read, body)
-    flaws = {}
-    for n, values in read.items():
-        row = _first(~np.isfinite(values))
-        if row is not None:
-            flaws[n], read[n] = body.flaw(row, n, counted), values[:row]
-    return Table(read, header, flaws, {} if decimal else marks, body.notes)
+    wrong = {n: int(np.argmin(np.isfinite(values))) for n, values in read.items() if not np.isfinite(values).all()}
+    row = min(wrong.values()) if wrong and mark == BLANK else _first_text(frame[0], read.get(0))
+    if row is not None:  # text begins the row, or a missing field between blanks moves the others
+        raise body.flaw(row, 0)
+    flaws = {n: body.flaw(row, n) for n, row in wrong.items()}
+    return Table(read | {n: read[n][: wrong[n]] for n in wrong}, header, flaws, {} if decimal else marks, body.notes)
 
 
 def _body(content: bytes, number: int, mark: str, place: Place) -> Body:
@@ -255,22 +244,11 @@ def _check_beginning(
         raise UnusableError(f"has signs apart from their numbers from {where} on; export them side by side")
 
 
-def _check_rows(frame: pd.DataFrame, counted: NDArray[np.bool_], read: Mapping[int, FloatArray], body: Body) -> None:
-    """Refuse text at the beginning of a row, and between blanks a missing field, which moves the others."""
-    open_ = ~np.isfinite(read[0]) if 0 in read else np.ones(len(frame), bool)
-    beginnings = frame[0][open_].astype(str).str.strip()
-    rows = np.flatnonzero(open_)
-    text = next((int(row) for row, field in zip(rows, beginnings, strict=True) if field and not is_value(field)), None)
-    if text is not None:
-        raise body.flaw(text, 0, counted)
-    last = frame.iloc[:, -1]
-    if body.mark == BLANK and (last.dtype.kind == "O" and (last == "").any()):
-        raise body.flaw(int(np.argmax(last == "")), 0, counted, "has not as many fields as the rows before")
-
-
-def _first(wrong: NDArray[np.bool_]) -> int | None:
-    """Number of the first row that is wrong."""
-    return int(np.argmax(wrong)) if wrong.any() else None
+def _first_text(column: "pd.Series[Any]", numbers: FloatArray | None) -> int | None:
+    """First row of the first column that holds neither a number nor a time stamp, nor is empty."""
+    rows = [*range(len(column))] if numbers is None else np.flatnonzero(~np.isfinite(numbers)).tolist()
+    texts = column.iloc[rows].astype(str).str.strip()
+    return next((row for row, text in zip(rows, texts, strict=True) if text and not is_value(text)), None)
 
 
 def _numbers(column: "pd.Series[Any]", point: str) -> FloatArray:

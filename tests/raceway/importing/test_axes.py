@@ -7,7 +7,7 @@ import pytest
 
 from raceway.importing.axes import axes_of
 from raceway.importing.header import Header, unit_said
-from raceway.importing.signals import SeveralSignalsError, read_signal
+from raceway.importing.signals import RefusedError, read_signal
 from tests.raceway.importing.file_writers import T, X, Y, array, mat, text, wav
 
 Z = np.roll(X, 7)
@@ -67,9 +67,9 @@ def test_a_file_of_several_signals_names_its_axes_as_they_are_chosen(name, conte
         content(path)
     else:
         path.write_text(content, encoding="utf-8")
-    with pytest.raises(SeveralSignalsError) as refused:
+    with pytest.raises(RefusedError) as refused:
         read_signal(path)
-    assert refused.value.axes == axes
+    assert refused.value.reason.axes == axes
     columns = [int(one) if one.isdecimal() else one for one in axes]
     named = name == "fields.mat"
     found = [read_signal(path, **{"variable" if named else "column": one}).values for one in columns]

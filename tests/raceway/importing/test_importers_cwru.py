@@ -172,7 +172,7 @@ def test_28_mil_files_hold_other_numbers_and_no_speed_and_both_are_told(source, 
     assert corpus.shaft_rate.values[0] == pytest.approx(1772 / 60)
     told = " ".join(done.warnings)
     assert "3002_0.mat: holds the variable X057_DE_time, as published for recording 3002." in told
-    assert "not X057RPM: the nominal 1772 rpm of its motor load are used." in told
+    assert "has no X057RPM: the nominal 1772 rpm of its motor load are used." in told
     assert "3001-3004: a bearing of another maker" in told
 
 

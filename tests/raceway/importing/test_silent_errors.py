@@ -84,7 +84,7 @@ REFUSED = {  # content or writer, what is given, part of the sentence
     "old.xls": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), {}, "is an Excel file of the form before 2007; save it as .xlsx."),
     "many_rows.xlsx": (workbook({"a": "<row><c><v>1</v></c></row>" * 1_100_000}), {},
         "rows, and one of Excel has at most 1048576; export it again."),
-    "overload_in_times.csv": (changed(PLAIN, 600, "OVL,0.5"), {}, "has no number in line 600"),
+    "overload_in_times.csv": (changed(PLAIN, 600, "OVL,0.5"), {}, "has no row like the others in line 600"),
 }  # fmt: skip
 
 
