@@ -10,7 +10,7 @@ from raceway.importing.axes import axes_of
 from raceway.importing.conversion import Unit
 from raceway.importing.files import FloatArray, UnusableError
 from raceway.importing.header import SECONDS, Header, key_of, known_unit, rounded_rate
-from raceway.importing.table import Table
+from raceway.importing.table import NumberTable
 
 SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
 _SAME_RATE = 0.01  # relative
@@ -22,19 +22,14 @@ _MOST_NAMED = 12
 class Values(NamedTuple):
     """Values of a signal in the unit of its file, shape (time,), with what the file states of them.
 
-    ``rates`` are sample rates [Hz] and where they are stated, ``playback`` one in whose place another can be given; ``unit`` is as the
-    file writes it, and ``named`` tells where; ``absolute`` is False for shares of the full scale of a converter; ``notes`` are sentences
-    without their end; ``rpm`` is the speed of the shaft.
+    ``rates`` are sample rates [Hz] and where they are stated; ``unit`` is as the file writes it, and ``named`` tells where.
     """
 
     values: FloatArray
-    rates: tuple[tuple[float, str], ...] = ()
-    playback: float | None = None
-    unit: str = ""
-    named: str = ""
-    absolute: bool = True
-    notes: tuple[str, ...] = ()
-    rpm: float | None = None
+    rates: tuple[tuple[float, str], ...]
+    unit: str
+    named: str
+    table: NumberTable
 
     def rate(self, given: float | None, key: str) -> tuple[float | None, list[str]]:
         """Sample rate to be used, or None; and a sentence without its end if another one is stated.
@@ -44,13 +39,13 @@ class Values(NamedTuple):
         UnusableError
             If statements contradict each other or what is given, or the rate is beyond 500 Hz to 1 MHz and is not given.
         """
-        stated = self.rates or (() if self.playback is None else ((self.playback, "header"),))
+        stated = self.rates or (() if self.table.playback is None else ((self.table.playback, "header"),))
         told = " and ".join(f"{rate:g} Hz by its {source}" for rate, source in stated)
         fitting = [rate for rate, _ in stated if given is not None and math.isclose(given, rate, rel_tol=_SAME_RATE)]
         if given is not None:
             if fitting or not stated:
                 return given, []
-            if self.playback is None and any(SLOWEST <= rate <= FASTEST for rate, _ in stated):
+            if self.table.playback is None and any(SLOWEST <= rate <= FASTEST for rate, _ in stated):
                 message = f"is at {told}, and {given:g} Hz are given; correct what is given"
                 raise UnusableError(message, key, contradicted="rate")
             return given, [f"is at {told}; the given {given:g} Hz are used"]
@@ -83,10 +78,10 @@ class Values(NamedTuple):
             return given, [f"states {self.named} in its header; the given unit {given} is used"] if said else []
         if known is not None:
             return known, []
-        return "m/s2", ["it states no unit, and m/s2 is assumed"] if self.absolute else []
+        return "m/s2", ["it states no unit, and m/s2 is assumed"] if self.table.absolute else []
 
 
-def signal_of(table: Table, column: int | str | None) -> Values:
+def signal_of(table: NumberTable, column: int | str | None) -> Values:
     """Values of the chosen column, or of the only one that holds no times.
 
     Raises
@@ -131,16 +126,7 @@ def signal_of(table: Table, column: int | str | None) -> Values:
         rates += [(rate, f"times in column {name}")] if rate else []
     own = header.unit_of(signals[0])
     named = f"column {header.name(signals[0])}" if own else header.unit
-    return Values(
-        columns[signals[0]],
-        tuple(rates),
-        table.playback,
-        own or header.unit,
-        named,
-        table.absolute,
-        table.notes,
-        table.rpm,
-    )
+    return Values(columns[signals[0]], tuple(rates), own or header.unit, named, table)
 
 
 def is_even(values: FloatArray) -> bool:

@@ -27,17 +27,12 @@ class Scale(NamedTuple):
 
     def __str__(self) -> str:
         """Words for the data card."""
-        match self.unit:
-            case None:
-                return "stated in the files"
-            case "m/s2":
-                return "m/s^2"
-            case "mm/s2":
-                return "mm/s^2"
-            case "g" | "mg":
-                return f"{self.unit}, 1 g = {STANDARD_GRAVITY} m/s^2"
-            case _:
-                return f"{self.unit}, {1000 * (self.sensitivity or np.nan):g} mV per m/s^2"
+        if self.unit is None:
+            return "stated in the files"
+        if self.unit in VOLTAGES:
+            return f"{self.unit}, {1000 * (self.sensitivity or np.nan):g} mV per m/s^2"
+        gravity = f", 1 g = {STANDARD_GRAVITY} m/s^2" if self.unit in ("g", "mg") else ""
+        return f"{self.unit.replace('2', '^2')}{gravity}"
 
 
 def volts_per_acceleration(per_g: float | None, per_m_s2: float | None) -> float | None:

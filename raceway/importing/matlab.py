@@ -21,7 +21,7 @@ from raceway.importing.axes import axes_of
 from raceway.importing.files import UnusableError, guarded
 from raceway.importing.header import Header, unit_said
 from raceway.importing.numerals import number_in
-from raceway.importing.table import Table, table_of
+from raceway.importing.table import NumberTable, table_of
 
 _FEWEST = 100  # values of a signal; speeds and rates have one
 _REAL = "biuf"  # kinds of NumPy types
@@ -62,7 +62,7 @@ def read_matlab(path: Path, variable: str | None) -> Held:
         return _read_hdf5(path, variable) if in_hdf5 else _read_level_5(path, variable)
 
 
-def read_matlab_table(path: Path, variable: str | None) -> Table:
+def read_matlab_table(path: Path, variable: str | None) -> NumberTable:
     """Table in a variable, with sample rates and speed that variables beside it or of the whole file state."""
     name, values, numbers = read_matlab(path, variable)
     near = {key: number for key, number in numbers.items() if key.rpartition(".")[0] in ("", name.rpartition(".")[0])}

@@ -11,7 +11,7 @@ from typing import Any
 from gen.support.limits import check_limit
 from raceway.importing.files import UnusableError, guarded
 from raceway.importing.numerals import is_number
-from raceway.importing.table import Table, read_table
+from raceway.importing.table import NumberTable, read_table
 
 _CELL = re.compile(rb"r\s*=\s*[\"']([A-Za-z]{1,3})(\d{1,7})[\"']")
 _CELL_BYTES = 32  # that the library takes for each cell of the rectangle around all cells
@@ -19,7 +19,7 @@ _MOST_ROWS = 1_048_576
 _CHUNK, _OVERLAP = 4_000_000, 20  # bytes
 
 
-def read_sheet(path: Path, sheet: str | None) -> Table:
+def read_sheet(path: Path, sheet: str | None) -> NumberTable:
     """Table in a sheet of an Excel file, by default the visible one that is active, or else the first visible one.
 
     Raises

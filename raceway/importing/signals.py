@@ -29,7 +29,7 @@ from raceway.importing.files import (
 from raceway.importing.header import known_unit
 from raceway.importing.matlab import read_matlab_table
 from raceway.importing.sheets import read_sheet
-from raceway.importing.table import Table, read_text, table_of
+from raceway.importing.table import NumberTable, read_text, table_of
 
 WITHOUT_UNITS = (".mat", ".npy", ".wav")
 _BINARY = (*WITHOUT_UNITS, ".xlsx")
@@ -101,7 +101,7 @@ def read_signal(
     Parameters
     ----------
     path : Path
-        A ``.csv``, ``.txt``, ``.tsv``, ``.dat``, ``.xlsx``, ``.mat``, ``.npy`` or ``.wav`` file.
+        A ``.csv``, ``.txt``, ``.tsv``, ``.dat``, ``.lvm``, ``.xlsx``, ``.mat``, ``.npy`` or ``.wav`` file.
     variable : str, optional
         Name of the variable in a MATLAB file; ``run.x`` is a field of a structure. By default the only signal in the file. Of an Excel
         file the sheet, by default the visible one that is active, or else the first visible one.
@@ -152,8 +152,9 @@ def acceleration(
         raise UnusableError(problem)
     scale = Scale(used, sensitivity)
     signal = accelerations(content.values, scale)
-    told = *content.notes, *notes, *of_unit, *doubts(content.values, signal, scale, absolute=content.absolute)
-    return Signal(signal, fs, told, used, content.rpm)
+    table = content.table
+    told = *table.notes, *notes, *of_unit, *doubts(content.values, signal, scale, absolute=table.absolute)
+    return Signal(signal, fs, told, used, table.rpm)
 
 
 def read_shape(path: Path, place: Place, rate: float | None, options: Mapping[str, str] = _AS_HERE) -> Signal:
@@ -161,7 +162,7 @@ def read_shape(path: Path, place: Place, rate: float | None, options: Mapping[st
     with as_sentences(path, options):
         content = reader(path)(place)
         fs, notes = content.rate(rate, "rate")
-    return Signal(content.values, fs, tuple(f"{path.name}: {note}." for note in (*content.notes, *notes)), "m/s2")
+    return Signal(content.values, fs, tuple(f"{path.name}: {note}." for note in (*content.table.notes, *notes)), "m/s2")
 
 
 @contextmanager
@@ -182,7 +183,7 @@ def reader(path: Path) -> Reader:
     It raises an :class:`UnusableError` if the file is empty, of an unknown type, damaged or has no such signal, and an :class:`OSError`
     if it cannot be opened.
     """
-    tables: dict[Place, Table] = {}
+    tables: dict[Place, NumberTable] = {}
 
     def read(place: Place) -> Values:
         which = place._replace(column=None)
@@ -199,7 +200,7 @@ def reader(path: Path) -> Reader:
     return read
 
 
-def _table(path: Path, place: Place) -> Table:
+def _table(path: Path, place: Place) -> NumberTable:
     match _kind(path):
         case ".npy":
             return table_of(read_numpy(path))

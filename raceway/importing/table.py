@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from raceway.importing.files import FloatArray, UnusableError, guarded
 from raceway.importing.header import Header, header_of
 from raceway.importing.numerals import AS_PYTHON, PATTERNS, decimal_marks, is_number
-from raceway.importing.text import BLANK, Line, first_lines, is_value, mark_between, split, text_of
+from raceway.importing.text import BLANK, TextLine, first_lines, is_value, mark_between, split, text_of
 
 _MOST_COLUMNS, _AXES = 64, 3  # of a table without names; beyond three axes of a sensor they may be windows
 _LEAST_LENGTH, _LEAST_OF_CHANNELS = 8, 100  # of the longer axis, which is time, in widths of the shorter one
@@ -30,11 +30,11 @@ _NO_VALUE = re.compile(
     re.IGNORECASE,
 )
 _DIGIT = re.compile(r"[-+.,]?\d")
-Place = Callable[[int, int], str]
+Where = Callable[[int, int], str]
 """Words on where a field is, by the number of its line and of its column."""
 
 
-class Table(NamedTuple):
+class NumberTable(NamedTuple):
     """Columns that begin with numbers, by their number from 0, each up to its first flaw.
 
     ``flaws`` are reasons why columns cannot be used; ``marks`` are the decimal marks with which columns that have such marks can be read;
@@ -52,7 +52,7 @@ class Table(NamedTuple):
     rpm: float | None = None
 
 
-def read_text(path: Path, mark: str | None = None, decimal: str | None = None) -> Table:
+def read_text(path: Path, mark: str | None = None, decimal: str | None = None) -> NumberTable:
     """Table in a text, with a ``mark`` between its columns and a ``decimal`` mark, which are by default those that suit its first lines.
 
     Raises
@@ -65,9 +65,9 @@ def read_text(path: Path, mark: str | None = None, decimal: str | None = None) -
         return read_table(content, mark or mark_between(first_lines(content)), decimal, lambda line, _: f"line {line}")
 
 
-def table_of(values: NDArray[Any]) -> Table:
+def table_of(values: NDArray[Any]) -> NumberTable:
     """Table without names, whose longer axis is time."""
-    return Table(dict(enumerate(as_columns(values).astype(np.float64, copy=False))))
+    return NumberTable(dict(enumerate(as_columns(values).astype(np.float64, copy=False))))
 
 
 def as_columns(values: NDArray[Any]) -> NDArray[Any]:
@@ -119,7 +119,7 @@ class Body(NamedTuple):
     end: int
     number: int
     mark: str
-    place: Place
+    place: Where
     notes: tuple[str, ...] = ()
 
     @property
@@ -153,7 +153,7 @@ class Body(NamedTuple):
         return UnusableError(f"has no row like the others {where}; correct the file, or cut it there")
 
 
-def read_table(content: bytes, mark: str, decimal: str | None, place: Place) -> Table:
+def read_table(content: bytes, mark: str, decimal: str | None, place: Where) -> NumberTable:
     """Columns of a table in UTF-8 with a ``mark`` between them; ``decimal`` is by default the mark that suits its first lines.
 
     Raises
@@ -187,10 +187,12 @@ def read_table(content: bytes, mark: str, decimal: str | None, place: Place) -> 
     if row is not None:  # text begins the row, or a missing field between blanks moves the others
         raise body.flaw(row, 0)
     flaws = {n: body.flaw(row, n) for n, row in wrong.items()}
-    return Table(read | {n: read[n][: wrong[n]] for n in wrong}, header, flaws, {} if decimal else marks, body.notes)
+    return NumberTable(
+        read | {n: read[n][: wrong[n]] for n in wrong}, header, flaws, {} if decimal else marks, body.notes
+    )
 
 
-def _body(content: bytes, number: int, mark: str, place: Place) -> Body:
+def _body(content: bytes, number: int, mark: str, place: Where) -> Body:
     """Rows from the line with a number on, without notes and empty lines at the end."""
     start = 0
     for _ in range(number - 1):
@@ -214,7 +216,7 @@ def _body(content: bytes, number: int, mark: str, place: Place) -> Body:
 
 
 def _check_beginning(
-    above: Sequence[Line],
+    above: Sequence[TextLine],
     rows: Sequence[Sequence[str]],
     columns: Sequence[Sequence[str]],
     numeric: Iterable[int],

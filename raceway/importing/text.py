@@ -27,7 +27,7 @@ STAMP = re.compile(
 """A time stamp, or a number that a sheet holds as text."""
 
 
-class Line(NamedTuple):
+class TextLine(NamedTuple):
     """A line of a table: its number from 1, and its fields without blanks around them."""
 
     number: int
@@ -90,13 +90,13 @@ def first_lines(content: bytes) -> list[str]:
     return [f"{line.decode()}\n" for line in lines]
 
 
-def split(lines: Iterable[str], mark: str) -> Iterator[Line]:
+def split(lines: Iterable[str], mark: str) -> Iterator[TextLine]:
     """Fields of lines; a field in quotes can hold marks, and in a header line breaks."""
     reader = csv.reader((_BLANKS.sub(" ", line.strip()) for line in lines) if mark == BLANK else lines, delimiter=mark)
     number = 1
     for fields in reader:
         plain = [" ".join(field.split()) if "\n" in field else field.strip() for field in fields]
-        yield Line(number, _with_units(plain) if mark == BLANK else plain)
+        yield TextLine(number, _with_units(plain) if mark == BLANK else plain)
         number = reader.line_num + 1
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.io
 
+from gen.corpus import open_corpus
 from gen.support.errors import CorpusError
 from raceway.importing import import_generic, read_signal
 from raceway.importing.reading import OPTIONS
@@ -114,6 +115,16 @@ def test_a_corpus_takes_the_rate_from_the_times_and_names_its_own_keys(tmp_path)
     ):
         with pytest.raises(CorpusError, match=sentence):
             import_generic(table, tmp_path / "refused", window=0.02, common=keys)
+
+
+def test_a_corpus_takes_the_unit_from_the_header_and_assumes_none(tmp_path):
+    (tmp_path / "a.csv").write_text(THREE)
+    (tmp_path / "b.csv").write_text(THREE.replace(" [g]", ""))
+    table = write_labels(tmp_path, [{"path": "a.csv"}, {"path": "b.csv"}], **LABELS, column="DE")
+    done = import_generic(table, tmp_path / "corpus", window=0.05)
+    assert done.skipped == ("b.csv:DE: states no unit; give it with unit; skipped.",)
+    with open_corpus(done.path) as corpus:
+        np.testing.assert_allclose(corpus.acceleration[0, 0], 9.80665 * X, rtol=1e-6)
 
 
 def test_an_import_warns_of_what_is_left_out_and_of_a_unit_that_is_read_as_another(tmp_path):
