@@ -14,6 +14,7 @@ from raceway.importing.table import NumberTable
 
 SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
 _SAME_RATE = 0.01  # relative
+_SOUND = 11_025.0  # Hz; sound cards and phones record at its multiples
 _JITTER = 0.05  # of a step
 _FEW, _MANY = 0.01, 0.1  # of the steps
 _MOST_NAMED = 12
@@ -56,7 +57,10 @@ class Values(NamedTuple):
             beyond = "" if SLOWEST <= min(rates) <= max(rates) <= FASTEST else f", beyond {SLOWEST:g} Hz to 1 MHz"
             message = f"is at {told}{beyond}; give the sample rate"
             raise UnusableError(message, key)
-        return rates[0], []
+        of_sound = not self.rates and rates[0] % _SOUND == 0
+        return rates[0], [
+            f"its header states {rates[0]:g} Hz, as for sound; give the rate of the recording if it is another"
+        ] if of_sound else []
 
     def stated_unit(self, given: Unit | None) -> tuple[Unit, list[str]]:
         """Unit to be used, and a sentence without its end if none or another one is stated.

@@ -66,6 +66,7 @@ def test_integers_of_a_wav_file_are_shares_of_its_full_scale(tmp_path, dtype, sc
     np.testing.assert_array_equal(found.values, (counts - silence) / scale)
     assert found.fs == 44_100
     assert found.warnings == (
+        "a.wav: its header states 44100 Hz, as for sound; give the rate of the recording if it is another.",
         "a.wav: it holds integers, whose full scale is taken as 1, so that its level is not absolute.",
     )
 
