@@ -111,6 +111,7 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
     if not signals or signals[0] in times:
         message = f"has times or a counter in column {_listed(header, signals or times)}, and no signal; choose another"
         raise UnusableError(message, "column")
+    # times are checked also where the signal is chosen: a gap in them is one in the signal
     used = [*signals, *times]
     flaw = next((table.flaws[n] for n in used if n in table.flaws), None)
     if flaw is not None:

@@ -166,6 +166,7 @@ def read_table(content: bytes, mark: str, decimal: str | None, place: Where) -> 
     if first is None:
         message = f"has no row of numbers among its first {min(len(lines), _HEADER_LINES)} lines; export a row of numbers for each sample"
         raise UnusableError(message)
+    # the lines above the first row are its header, and those below the last one notes
     above = [line for line in lines[:first] if any(line.fields)]
     rows = [line.fields for line in lines[first:] if is_row(line.fields)]
     body = _body(content, lines[first].number, mark, place)
@@ -178,10 +179,12 @@ def read_table(content: bytes, mark: str, decimal: str | None, place: Where) -> 
     columns = [[fields[n] if n < len(fields) else "" for fields in rows] for n in range(width)]
     starts = {n: [*filter(is_number, fields)] for n, fields in enumerate(columns) if any(map(is_number, fields))}
     _check_beginning(above, rows, columns, starts, body)
+    # one column whose numbers have one reading tells the decimal mark of all
     marks = {n: decimal_marks(numbers) for n, numbers in starts.items() if re.search("[.,]", "".join(numbers))}
     point = decimal or ("," if "," in marks.values() and "." not in marks.values() else ".")
     frame = body.parsed(width, point)
     read = {n: _numbers(frame[n], point) for n in starts}
+    # a column is used up to the first row in which it holds no number, and refused if it is asked for
     wrong = {n: int(np.argmin(np.isfinite(values))) for n, values in read.items() if not np.isfinite(values).all()}
     row = min(wrong.values()) if wrong and mark == BLANK else _first_text(frame[0], read.get(0))
     if row is not None:  # text begins the row, or a missing field between blanks moves the others
