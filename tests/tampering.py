@@ -7,11 +7,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 from gen.corpus.files import append_checksum, remove_checksum
 from gen.corpus.index import corpus_attributes
 from gen.corpus.manifest import write_manifest
-from gen.corpus.unicode_text import write_unicode
 from gen.support.errors import CorpusError
 
 
@@ -49,6 +49,4 @@ def seal(folder):
     write_manifest(folder, content)
     with suppress(CorpusError), edited(folder / "index.nc") as index:
         attributes = corpus_attributes(content, None, folder)
-        for name in attributes.keys() & index.attrs.keys():
-            del index.attrs[name]
-        write_unicode(index, attributes)
+        index.attrs.update({name: np.bytes_(text.encode()) for name, text in attributes.items()})

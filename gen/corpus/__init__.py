@@ -7,18 +7,15 @@ codecs        codecs of stored signals
 fault_classes names of the fault classes, and their codes
 schema        dimensions, variables, units and roles
 simulated     further variables that readers know
-hdf5          lock of the HDF5 library, refusal of links to other files
-unicode_text  global attributes with letters beyond ASCII
-layout        allowed shapes, types and attributes in a file
+trust         the one look at a file before anything reads it; lock of the libraries
 files         atomic writing, checksums
 locking       one call at a time writes into a folder
 outputs       places of results, none of them in a corpus
 signals       records that cannot be used
 facts         what a corpus holds, counted from its variables
 part          one file of records
-open_files    files that are open, a few at a time
-blocks        stored records of a file, some at a time
-reading       records as a Dataset, read lazily
+reading       values of a file by plain slices, some records at a time
+lazy          records as a Dataset, read lazily, with a few files open
 publication   licence, creators and references of a corpus
 manifest      files of a corpus with size and hash, and its facts
 acdd          global attributes of a published corpus
@@ -28,7 +25,7 @@ new           a new corpus, part by part
 where         conditions on records: parsed, never run
 choice        choice of records and channels
 items         records one by one or in batches, for training
-joining       several corpora with the same variables and new numbers
+numbering     numbers of machines, bearings and recordings
 validation    all checks of a corpus
 description   page about the format
 ============= =============================================================

@@ -1,14 +1,4 @@
 from .acdd import publication_attributes as publication_attributes
-from .blocks import (
-    RecordBlock as RecordBlock,
-    read_channel as read_channel,
-    read_classes as read_classes,
-    read_columns as read_columns,
-    read_texts as read_texts,
-    read_units as read_units,
-    stored_blocks as stored_blocks,
-    stored_columns as stored_columns,
-)
 from .choice import operating_variables as operating_variables
 from .codecs import CODECS as CODECS, Codec as Codec
 from .description import format_page as format_page
@@ -52,9 +42,8 @@ from .finishing import (
     remove_parts as remove_parts,
     remove_temporary_files as remove_temporary_files,
 )
-from .hdf5 import LIBRARY_LOCK as LIBRARY_LOCK
 from .index import corpus_name as corpus_name, open_corpus as open_corpus
-from .layout import stored_signal as stored_signal
+from .lazy import open_part as open_part
 from .locking import lock as lock
 from .manifest import (
     INDEX_NAME as INDEX_NAME,
@@ -73,7 +62,6 @@ from .manifest import (
     write_manifest as write_manifest,
 )
 from .new import NewCorpus as NewCorpus, is_single_file as is_single_file, new_corpus as new_corpus
-from .open_files import file_facts as file_facts
 from .outputs import (
     GENERATOR as GENERATOR,
     check_new as check_new,
@@ -86,7 +74,15 @@ from .outputs import (
 )
 from .part import PartRow as PartRow, part_name as part_name, part_number as part_number, write_part as write_part
 from .publication import Creator as Creator, Publication as Publication, read_publication as read_publication
-from .reading import open_part as open_part
+from .reading import (
+    RecordBlock as RecordBlock,
+    file_facts as file_facts,
+    read_attributes as read_attributes,
+    read_channel as read_channel,
+    read_classes as read_classes,
+    read_columns as read_columns,
+    stored_blocks as stored_blocks,
+)
 from .schema import (
     DRAWS as DRAWS,
     FORMAT as FORMAT,
@@ -112,4 +108,5 @@ from .simulated import (
     LIFE as LIFE,
     SIMULATED as SIMULATED,
 )
+from .trust import LIBRARY_LOCK as LIBRARY_LOCK
 from .validation import validate_corpus as validate_corpus

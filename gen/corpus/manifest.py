@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from gen.corpus.blocks import RecordBlock, blocks_in_memory, blocks_of
 from gen.corpus.files import (
     INDEX_NAME,
     MANIFEST_NAME,
@@ -25,9 +24,9 @@ from gen.corpus.files import (
     stored_checksum,
     write_text_durably,
 )
-from gen.corpus.open_files import file_facts
 from gen.corpus.part import PartRow, part_number
 from gen.corpus.publication import Publication
+from gen.corpus.reading import RecordBlock, blocks_of, file_facts
 from gen.corpus.schema import FORMAT, RECIPE_TEXT
 from gen.corpus.signals import Count, SignalCounts, sum_counts
 from gen.support.errors import CorpusError
@@ -356,7 +355,7 @@ def record_blocks(corpus: "Path | str | xr.Dataset", check: Check = "sha256") ->
     It raises the errors of :func:`corpus_files`.
     """
     if not isinstance(corpus, Path | str):
-        return blocks_in_memory(corpus)
+        return blocks_of(corpus, corpus.sizes["record"])
     path = Path(corpus).absolute()
     files, manifest = corpus_files(path, check), read_manifest(path, check)
     counts = [row.records for row in manifest.parts] or [manifest.records]

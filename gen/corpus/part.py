@@ -2,8 +2,7 @@
 
 import json
 import re
-import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
@@ -15,15 +14,14 @@ from pydantic import Field
 
 from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.files import append_checksum, whole_or_not_at_all
-from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.schema import SIGNAL
+from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
 from gen.corpus.signals import Count, SignalCounts, count_verdicts, judge
-from gen.corpus.unicode_text import set_attributes, write_unicode
+from gen.corpus.trust import LIBRARY_LOCK
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_INCOMPRESSIBLE = 7.8  # bits per byte
+_TEXT_RECORDS = 256  # records whose text forms one chunk
 _NAME = re.compile(r"part-([0-9]{5,9})(-[0-9]{1,6})?\.nc")
 
 
@@ -57,9 +55,6 @@ def part_number(name: str) -> int | None:
     return None if match is None else int(match[1])
 
 
-Chunks = Mapping[tuple[int, ...], bytes]
-
-
 def write_part(dataset: "xr.Dataset", path: Path, codec: Codec = "zlib") -> PartRow:
     """Write records as a part, atomically, with one chunk per record and channel; the attribute ``signals`` counts unusable records.
 
@@ -70,105 +65,94 @@ def write_part(dataset: "xr.Dataset", path: Path, codec: Codec = "zlib") -> Part
     CorpusError
         If writing fails, with the reason that the system gives.
     """
-    signal = dataset[SIGNAL].values
-    signals = count_verdicts(judge(signal))
-    chunks = {at: deflate(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
-    with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
-        with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
-            attributes = {name: dataset.attrs[name] for name in sorted(map(str, dataset.attrs))}
-            texts = set_attributes(file, attributes | {"signals": json.dumps(signals._asdict())})
-            for dimension, size in dataset.sizes.items():
-                file.createDimension(str(dimension), size)
-            # all variables are declared before any is written: alternating takes 50 % longer
-            labels = " ".join(sorted(str(label) for label in set(dataset.coords) - set(dataset.dims)))
-            declared = [_declare(file, str(name), dataset, codec, labels) for name in dataset.variables]
-            for stored, values in declared:
-                if stored.name != SIGNAL or not chunks:
-                    stored[:] = values
-        if chunks or texts:
-            with h5py.File(temporary, "r+") as file:
-                write_unicode(file, texts)
-                _write_chunks(chunks, file)
+    signals = count_verdicts(judge(dataset[SIGNAL].values))
+    facts = {name: dataset.attrs[name] for name in sorted(map(str, dataset.attrs))}
+    with whole_or_not_at_all(path) as temporary:
+        columns = {str(name): _encoded(variable) for name, variable in dataset.variables.items()}
+        write_netcdf(columns, facts | {"signals": json.dumps(signals._asdict())}, temporary, codec)
         digest = append_checksum(temporary)
-    return PartRow(path.name, len(signal), path.stat().st_size, digest, signals)
+    return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, digest, signals)
+
+
+def write_netcdf(
+    columns: Mapping[str, "xr.Variable"],
+    attributes: Mapping[str, Any],
+    path: Path,
+    codec: Codec = "zlib",
+    blocks: Sequence[slice] = (slice(None),),
+) -> None:
+    """Write variables as they are stored, some records at a time, and global attributes.
+
+    Text is stored as fixed-length characters: HDF5 2.2 can crash on variable-length strings after another file was closed. So global
+    attributes with letters beyond ASCII, which netCDF4 writes with variable length, are written by h5py.
+    """
+    beyond = {name: text for name, text in attributes.items() if isinstance(text, str) and not text.isascii()}
+    labels = sorted(name for name, of in columns.items() if of.dtype.kind in "SU" and name not in SIGNAL_DIMS)
+    with LIBRARY_LOCK, netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+        file.setncatts({name: value for name, value in attributes.items() if name not in beyond})
+        for dimension, size in {dim: size for of in columns.values() for dim, size in of.sizes.items()}.items():
+            file.createDimension(str(dimension), size)
+        # all variables are declared before any is written: alternating takes 50 % longer
+        declared = {name: _declare(file, name, of, codec, labels) for name, of in columns.items()}
+        for block in blocks:
+            for name, stored in declared.items():
+                if name not in SIGNAL_DIMS:
+                    stored[block] = _characters(columns[name][block])
+                elif block == blocks[0]:
+                    stored[:] = _characters(columns[name])
+    write_texts(path, beyond)
+
+
+def _encoded(variable: "xr.Variable") -> "xr.Variable":
+    """Variable with its texts in UTF-8, as wide as the longest of them."""
+    if variable.dtype.kind not in "OUT":
+        return variable
+    return type(variable.to_base_variable())(variable.dims, np.char.encode(variable.values.astype(str)), variable.attrs)
+
+
+def _characters(variable: "xr.Variable") -> NDArray[Any]:
+    """Values of a variable; of text, one character per column."""
+    values, width = variable.values, _width(variable.dtype)
+    if width is None:
+        return values
+    encoded = values if values.dtype.kind == "S" else np.char.encode(values)
+    return encoded.astype(f"S{width}").view("S1").reshape(len(values), width)
+
+
+def _width(dtype: np.dtype[Any]) -> int | None:
+    """Characters of a stored text; None for numbers. Text of a file is read with as many characters as it has bytes."""
+    return {"S": dtype.itemsize, "U": dtype.itemsize // 4}.get(dtype.kind)
+
+
+def write_texts(path: Path, attributes: Mapping[str, str]) -> None:
+    """Write global attributes of a file in fixed-length UTF-8; those that it has are replaced."""
+    if attributes:
+        with LIBRARY_LOCK, h5py.File(path, "r+") as file:
+            for name, text in attributes.items():
+                file.attrs[name] = np.bytes_(text.encode())
 
 
 def _declare(
-    file: netCDF4.Dataset, name: str, dataset: "xr.Dataset", codec: Codec, labels: str
-) -> tuple[netCDF4.Variable, NDArray[Any]]:
-    """Declare a variable, and return it with its values; ``labels`` are the text variables that belong to all others.
-
-    Text is stored as fixed-length characters: HDF5 2.2 can crash on variable-length strings after another file was closed.
-    """
-    variable = dataset.variables[name]
-    values, dimensions, attributes = variable.values, tuple(map(str, variable.dims)), dict(variable.attrs)
+    file: netCDF4.Dataset, name: str, variable: "xr.Variable", codec: Codec, labels: Sequence[str]
+) -> netCDF4.Variable:
+    """Declare a variable; ``labels`` are the text variables that belong to all numbers of the records."""
+    dtype, dimensions, attributes = variable.dtype, tuple(map(str, variable.dims)), dict(variable.attrs)
     storage: dict[str, Any] = {"fill_value": attributes.pop("_FillValue", False)}
     if name == SIGNAL:
-        storage |= {"chunksizes": (1, 1, values.shape[2]), **CODECS[codec].options}
-        if values.dtype.kind == "f":
+        storage |= {"chunksizes": (1, 1, variable.shape[2]), **CODECS[codec].options}
+        if dtype.kind == "f":
             storage["fill_value"] = np.nan
     elif name == "elapsed_time":
         storage |= CODECS["zlib"].options
-    elif values.dtype.kind in "OU":
-        values = np.array([text.encode() for text in values], "S")
-        values = values.view("S1").reshape(len(values), -1)
+    elif (width := _width(dtype)) is not None:
+        file.createDimension(f"{name}_length", width)
         dimensions += (f"{name}_length",)
-        file.createDimension(dimensions[-1], values.shape[1])
-        storage |= {"zlib": True, "complevel": 1}
-        attributes["_Encoding"] = "utf-8"
-    if name in dataset.data_vars:
-        attributes["coordinates"] = labels
-    stored = file.createVariable(name, values.dtype, dimensions, **storage)
+        storage |= {"zlib": True, "complevel": 1, "chunksizes": (min(_TEXT_RECORDS, len(variable)), width)}
+        dtype, attributes["_Encoding"] = np.dtype("S1"), "utf-8"
+    if name not in (*labels, *SIGNAL_DIMS):
+        attributes["coordinates"] = " ".join(labels)
+    stored = file.createVariable(name, dtype, dimensions, **storage)
     stored.set_auto_maskandscale(False)
     stored.set_auto_chartostring(False)
     stored.setncatts(attributes)
-    return stored, values
-
-
-def _write_chunks(chunks: Chunks, file: h5py.File) -> None:
-    """Write compressed chunks of the signal directly: the zlib filter of HDF5 takes more than twice as long."""
-    stored: Any = file[SIGNAL]
-    for (record, channel), chunk in chunks.items():
-        stored.id.write_direct_chunk((record, channel, 0), chunk)
-
-
-def deflate(samples: NDArray[Any]) -> bytes:
-    r"""Samples after the shuffle of HDF5 as a zlib stream, of about the size of level 1.
-
-    The lower bytes of a noisy signal cannot be compressed: planes with evenly distributed bytes are stored as they are. The other planes
-    are run-length coded, because only runs repeat in them.
-
-    >>> zlib.decompress(deflate(np.array([1, 2, 3], np.int16)))
-    b'\x01\x02\x03\x00\x00\x00'
-    """
-    planes = np.ascontiguousarray(samples.view(np.uint8).reshape(len(samples), -1).T)
-    pieces = [b"\x78\x01"]
-    for plane in planes:
-        level = 0 if _entropy(plane[:: 1 + len(plane) // 4096]) > _INCOMPRESSIBLE else 1
-        coder = zlib.compressobj(level, zlib.DEFLATED, -zlib.MAX_WBITS, strategy=zlib.Z_RLE)
-        pieces += coder.compress(plane), coder.flush(zlib.Z_FULL_FLUSH)
-    return b"".join([*pieces, b"\x03\x00", zlib.adler32(planes.data).to_bytes(4, "big")])
-
-
-def inflate(chunk: bytes, samples: int) -> NDArray[np.int16]:
-    """Counts from a zlib stream of their shuffled bytes, as from :func:`deflate`; ValueError if their number is not ``samples``.
-
-    >>> inflate(deflate(np.array([1, -2, 300], np.int16)), 3)
-    array([  1,  -2, 300], dtype=int16)
-    """
-    stream = zlib.decompressobj()
-    planes = stream.decompress(chunk, 2 * samples + 1)
-    if len(planes) != 2 * samples or not stream.eof:
-        raise ValueError(f"a chunk does not hold {samples} samples")
-    low, high = np.frombuffer(planes, np.uint8).reshape(2, samples)
-    counts = high.view(np.int8).astype(np.int16)
-    counts <<= 8
-    counts |= low
-    return counts
-
-
-def _entropy(values: NDArray[np.uint8]) -> float:
-    """Entropy of bytes [bit per byte]."""
-    counts = np.bincount(values)
-    shares = counts[counts > 0] / len(values)
-    return -float(shares @ np.log2(shares))
+    return stored

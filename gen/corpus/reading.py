@@ -1,190 +1,155 @@
-"""Lazy reading of the records of a corpus as an xarray Dataset.
+"""Values of files of records by plain slices of h5py, without xarray: for features, checks, indexes and summaries."""
 
-Datasets hold paths instead of handles, so they can be pickled, sent to dask workers and shared with forked processes.
-"""
-
-import math
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
-from xarray.backends import BackendArray, BackendEntrypoint
-from xarray.core import indexing
 
-from gen.corpus.blocks import inflate_all, stored_chunks
-from gen.corpus.layout import (
-    PACKING,
-    Packing,
+from gen.corpus.codecs import Codec
+from gen.corpus.fault_classes import own_codes
+from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, class_names, operating_problems
+from gen.corpus.trust import (
+    ZSTD,
     attributes_of,
+    filters_of,
     is_bare_dimension,
     is_text,
-    is_utf8,
-    plain_attributes,
+    library_errors,
+    open_trusted,
+    own_dataset,
+    packing_of,
+    read_values,
 )
-from gen.corpus.open_files import OpenFile, Source, close, open_source, source_of
-from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, with_own_codes
-from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
+if TYPE_CHECKING:
+    import xarray as xr
 
-class _Column(BackendArray):
-    """Stored values of a per-record variable or of an axis."""
-
-    def __init__(self, source: Source, name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
-        self.source, self.name, self.shape, self.dtype = source, name, shape, dtype
-
-    def __getitem__(self, key: indexing.ExplicitIndexer) -> NDArray[Any]:
-        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.BASIC, self._read)
-
-    def _read(self, key: tuple[int | slice, ...]) -> NDArray[Any]:
-        counts = [
-            len(range(*item.indices(size))) if isinstance(item, slice) else 1
-            for item, size in zip(key, self.shape, strict=True)
-        ]
-        check_limit(
-            "file_bytes", self.dtype.itemsize * math.prod(counts), f"{self.source.path}: {self.name} has", CorpusError
-        )
-        with open_source(self.source) as file:
-            values = np.asarray(file.dataset(self.name)[key])
-        if values.dtype == np.dtype("S1") and not is_utf8(values):
-            raise CorpusError(
-                f"{self.source.path}: {self.name} has text that is not UTF-8; make or copy the corpus again."
-            )
-        return values
+_BLOCK_SAMPLES = 10_000_000
+_BLOCK_RECORDS = 256
 
 
-class _Signal(BackendArray):
-    """Decoded signal (record, channel, elapsed_time) of consecutive parts."""
+class RecordBlock(NamedTuple):
+    """Consecutive records of a file, or of a Dataset in memory."""
 
-    def __init__(self, parts: Sequence[Source], counts: Sequence[int], row: tuple[int, int], packing: Packing) -> None:
-        self.parts, self.packing = tuple(parts), packing
-        self.starts = np.concatenate([[0], np.cumsum(counts)])
-        self.shape, self.dtype = (int(self.starts[-1]), *row), packing.decoded
-
-    def __getitem__(self, key: indexing.ExplicitIndexer) -> NDArray[Any]:
-        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.OUTER, self._read)
-
-    def _read(self, key: tuple[int | slice | NDArray[np.integer[Any]], ...]) -> NDArray[Any]:
-        """Read runs of consecutive records of a part in one call, in whole chunks of one record and channel."""
-        chosen = [_numbers_of(item, size) for size, item in zip(self.shape, key, strict=True)]
-        records, channels, samples = map(np.atleast_1d, chosen)
-        parts = np.searchsorted(self.starts, records, side="right") - 1
-        ends = np.flatnonzero((np.diff(records) != 1) | (np.diff(parts) != 0)) + 1
-        whole = len(samples) == self.shape[2] and bool((np.diff(samples) == 1).all())
-        wanted = range(channels[0], channels[0] + 1) if len(channels) == 1 else range(self.shape[1])
-        values = np.empty((len(records), len(wanted), self.shape[2]), self.dtype)
-        for start, stop in zip([0, *ends], [*ends, len(records)], strict=True):
-            if start == stop:
-                continue
-            first = int(records[start] - self.starts[parts[start]])
-            self._decode(int(parts[start]), range(first, first + stop - start), wanted, values[start:stop])
-        values = values if len(channels) == 1 else values[:, channels]
-        values = values if whole else values[:, :, samples]
-        return values.reshape([len(item) for item in chosen if item.ndim])
-
-    def _decode(self, part: int, records: range, channels: range, out: NDArray[Any]) -> None:
-        """Decode consecutive records of a part into ``out``. Chunks are inflated without the lock, so that threads run in parallel."""
-        with open_source(self.parts[part]) as file:
-            stored, shape, packing, deflated = file.signal()
-            if (shape, packing) != ((self.starts[part + 1] - self.starts[part], *self.shape[1:]), self.packing):
-                raise CorpusError(
-                    f"{self.parts[part].path}: its signal has another shape or type than the corpus; do not trust this corpus."
-                )
-            if not deflated:
-                self.packing.decode(stored[records.start : records.stop, channels.start : channels.stop], out)
-                return
-            chunks = stored_chunks(stored, records, channels)
-        inflating = inflate_all(chunks, self.shape[2], self.parts[part].path)
-        for place, counts in zip(np.ndindex(out.shape[:2]), inflating, strict=True):
-            self.packing.decode(counts, out[place])
+    file: "Path | xr.Dataset"
+    first: int
+    stop: int
 
 
-def _numbers_of(key: int | slice | NDArray[np.integer[Any]], size: int) -> NDArray[np.integer[Any]]:
-    """Numbers of the items that a key selects from ``size`` items."""
-    if isinstance(key, slice):
-        return np.arange(*key.indices(size))
-    return np.asarray(key) + size * (np.asarray(key) < 0)
+def blocks_of(file: "Path | xr.Dataset", records: int) -> list[RecordBlock]:
+    """All records of a file, or of a Dataset in memory, in blocks that fit the memory of a task."""
+    cuts = [(first, min(first + _BLOCK_RECORDS, records)) for first in range(0, records, _BLOCK_RECORDS)]
+    if isinstance(file, Path):
+        return [RecordBlock(file, first, stop) for first, stop in cuts]
+    return [RecordBlock(file.isel(record=slice(first, stop)), 0, stop - first) for first, stop in cuts]
 
 
-class _Records(BackendEntrypoint):
-    """Backend with which xarray opens a file of records, or an index with its parts."""
-
-    open_dataset_parameters = ("filename_or_obj", "drop_variables", "parts", "counts")
-
-    def open_dataset(  # type: ignore[override]
-        self,
-        filename_or_obj: Any,
-        *,
-        drop_variables: Any = None,
-        parts: Sequence[Path],
-        counts: Sequence[int] | None,
-    ) -> xr.Dataset:
-        """Variables of one file with the signal of ``parts``; ``counts`` are their numbers of records."""
-        source, sources = source_of(filename_or_obj), [source_of(path) for path in parts]
-        with open_source(sources[0]) as file:
-            stored, (count, channels, samples), packing, _ = file.signal()
-            attributes = attributes_of(stored)
-        counts = [count] if counts is None else counts
-        signal = _Signal(sources, counts, (channels, samples), packing)
-        encoding = {name: attributes.pop(name) for name in PACKING if name in attributes}
-        attributes.pop("coordinates", None)
-        with open_source(source) as file:
-            variables = _variables(file, source, dict(zip(SIGNAL_DIMS, signal.shape, strict=True)))
-            facts = attributes_of(file.handle)
-        texts = [name for name, variable in variables.items() if variable.ndim == 2]
-        described = xr.decode_cf(xr.Dataset(variables, attrs=facts), decode_times=False).set_coords(texts)
-        lazy = indexing.LazilyIndexedArray(signal)
-        records = with_own_codes(described, source.path).assign(
-            {SIGNAL: xr.Variable(SIGNAL_DIMS, lazy, attributes, {"dtype": packing.dtype, **encoding})}
-        )
-        records.set_close(partial(close, (source, *sources)))
-        return records
+@contextmanager
+def opened(path: Path | str) -> Iterator[h5py.File]:
+    """A file for one look, under the lock of the libraries; all their errors become a CorpusError."""
+    with library_errors(path), open_trusted(path) as file:
+        yield file
 
 
-def open_records(path: Path, parts: Sequence[Path], counts: Sequence[int] | None = None) -> xr.Dataset:
-    """Open the per-record variables of ``path`` with the signal of ``parts``, lazily.
+def variables_of(file: h5py.File) -> dict[str, h5py.Dataset]:
+    """All variables of a file that passed except its signal, by name."""
+    stored = {name: own_dataset(file, name) for name in map(str, file) if name != SIGNAL}
+    return {name: variable for name, variable in stored.items() if not is_bare_dimension(variable)}
 
-    ``counts`` are the numbers of records of the parts if ``path`` is their index; without them ``path`` is the only part.
 
-    Raises
-    ------
-    CorpusError
-        If a file is missing or unreadable, or has links, values in other files or unknown dimensions.
+def file_facts(path: Path) -> tuple[dict[str, Any], tuple[int, int, int]]:
+    """Global attributes of a file of records, and the shape of its signal; CorpusError if it is none."""
+    with opened(path) as file:
+        return attributes_of(file), own_dataset(file, SIGNAL).shape
+
+
+def read_attributes(path: Path) -> dict[str, dict[str, Any]]:
+    """Attributes of each per-record variable of a file, by name."""
+    with opened(path) as file:
+        return {name: attributes_of(stored) for name, stored in variables_of(file).items() if name not in SIGNAL_DIMS}
+
+
+def read_columns(
+    path: Path, names: Iterable[str] | None = None, first: int = 0, stop: int | None = None
+) -> dict[str, NDArray[Any]]:
+    """Values of variables of a file by name, of all its records or of some; without ``names`` those of all per-record variables.
+
+    Faults have the codes of this process.
     """
-    records: Any = xr.open_dataset(path, engine=_Records, parts=parts, counts=counts)
-    return records
+    with opened(path) as file:
+        stored = variables_of(file)
+        names = [name for name in stored if name not in SIGNAL_DIMS] if names is None else names
+        columns = {
+            name: column_values(stored[name], first, len(stored[name]) if stop is None else stop) for name in names
+        }
+        if "fault" in columns:
+            classes = class_names(attributes_of(stored["fault"]))
+            columns["fault"] = own_codes(columns["fault"], classes, path, attributes_of(file))
+        return columns
 
 
-def open_part(path: Path) -> xr.Dataset:
-    """Records of one file, decoded to m s-2 and read lazily.
-
-    Raises
-    ------
-    CorpusError
-        If the file is missing or is not a file of records.
-    """
-    return open_records(path, [path])
+def read_classes(path: Path) -> dict[int, str]:
+    """Names of the fault classes by their codes in a file, which may not be those of this process."""
+    return class_names(read_attributes(path)["fault"])
 
 
-def _variables(file: OpenFile, source: Source, sizes: dict[str, int]) -> dict[str, xr.Variable]:
-    """All variables of a file except the signal."""
-    variables: dict[str, xr.Variable] = {}
-    for name in map(str, file.handle):
-        if name != SIGNAL and not is_bare_dimension(file.dataset(name)):
-            variables[name] = _variable(source, file.dataset(name), name, sizes)
-    return variables
+def column_type(stored: h5py.Dataset) -> np.dtype[Any]:
+    """Type of the values of a variable; of text, the number of characters is that of the stored bytes."""
+    if not is_text(stored):
+        return stored.dtype.newbyteorder("=")
+    check_limit("file_bytes", 4 * stored.shape[1], "a text has", ValueError)
+    return np.dtype(f"U{max(1, stored.shape[1])}")
 
 
-def _variable(source: Source, stored: h5py.Dataset, name: str, sizes: dict[str, int]) -> xr.Variable:
-    """Variable of one value per record, or an axis of the signal."""
-    dimension = name if name in SIGNAL_DIMS else "record"
-    text = is_text(stored, name, dimension, sizes[dimension])
-    check_limit("file_bytes", stored.shape[-1] if text else 0, f"{source.path}: a text in {name} has", CorpusError)
-    attributes = plain_attributes(stored, name)
-    array = indexing.LazilyIndexedArray(_Column(source, name, stored.shape, stored.dtype))
-    return xr.Variable((dimension, f"{name}_length") if text else (dimension,), array, attributes)
+def column_values(stored: h5py.Dataset, first: int, stop: int) -> NDArray[Any]:
+    """Values of some records of a variable, with the codes of the file: all reads of labels go through this function."""
+    values = read_values(stored, slice(first, stop))
+    if not is_text(stored):
+        return values.astype(column_type(stored), copy=False)
+    rows = (
+        np.ascontiguousarray(values).view(f"S{values.shape[1]}")[:, 0] if values.size else np.zeros(len(values), "S1")
+    )
+    return np.char.decode(rows, "utf-8").astype(column_type(stored))
+
+
+def codec_of(path: Path) -> Codec:
+    """Codec of the signal of a file."""
+    with opened(path) as file:
+        filters = filters_of(own_dataset(file, SIGNAL))
+    return "zstd" if ZSTD in filters else "zlib" if filters else "none"
+
+
+def read_channel(
+    block: RecordBlock, channel: int, names: Iterable[str]
+) -> tuple[NDArray[np.float32], list[NDArray[Any]]]:
+    """Signal of one channel of a block in single precision, shape (record, elapsed_time) [m s-2], and columns by name."""
+    if not isinstance(block.file, Path):
+        signal = block.file[SIGNAL].values[:, channel].astype(np.float32, copy=False)
+        return signal, [block.file[name].values for name in names]
+    with opened(block.file) as file:
+        stored, labels = own_dataset(file, SIGNAL), variables_of(file)
+        values = read_values(stored, slice(block.first, block.stop), slice(channel, channel + 1))[:, 0]
+        packing = packing_of(stored)
+        columns = {name: column_values(labels[name], block.first, block.stop) for name in names}
+        for problem in operating_problems(columns):
+            raise ValueError(problem.removesuffix("."))
+    if "scale_factor" not in packing:
+        return values, [*columns.values()]
+    signal = np.multiply(values, packing["scale_factor"], dtype=np.float32, casting="same_kind")
+    signal[values == packing["_FillValue"]] = np.nan
+    return signal, [*columns.values()]
+
+
+def stored_blocks(path: Path) -> Iterator[NDArray[Any]]:
+    """Stored signal of a file in blocks of records: counts of the converter, or accelerations [m s-2]."""
+    first, (records, channels, samples) = 0, file_facts(path)[1]
+    step = max(1, _BLOCK_SAMPLES // max(1, channels * samples))
+    for first in range(0, records, step):
+        with opened(path) as file:
+            block = read_values(own_dataset(file, SIGNAL), slice(first, min(first + step, records)))
+        yield block

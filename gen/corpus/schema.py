@@ -189,17 +189,14 @@ def with_own_codes(records: "xr.Dataset", place: object) -> "xr.Dataset":
 
 def add_class_names(records: "xr.Dataset") -> None:
     """Add the coordinates ``fault_name`` and ``split_name``: classes in words, which no corpus holds and which have no role."""
-    import xarray as xr
-
     for name in NAMED:
         names = class_names(records[name].attrs)
-        words = np.empty(max(names) + 1, object)
-        words[[*names]] = [*names.values()]
-        # otherwise pandas looks at every object: 0.5 s for 100,000 records
-        named = xr.Variable(
-            records[name].dims, words[records[name].values], {"long_name": f"name of the {name}"}, fastpath=True
+        words = np.array([names.get(code, "") for code in range(max(names) + 1)])
+        records.coords[f"{name}_name"] = (
+            records[name].dims,
+            words[records[name].values],
+            {"long_name": f"name of the {name}"},
         )
-        records.coords[f"{name}_name"] = named
 
 
 def listed_flags(names: Mapping[int, str]) -> str:
@@ -345,9 +342,9 @@ def _values_problems(known: Variable | None, name: str, array: "xr.Variable") ->
     # a variable of somebody else may have any type and unit
     if known is None:
         return []
-    kind = "O" if known.dtype == "str" else np.dtype(known.dtype).kind
-    if array.dtype.kind != kind:
-        return [f"{name} is of type {array.dtype}, not {'text' if kind == 'O' else np.dtype(known.dtype)}."]
+    kinds = "OUT" if known.dtype == "str" else np.dtype(known.dtype).kind
+    if array.dtype.kind not in kinds:
+        return [f"{name} is of type {array.dtype}, not {'text' if kinds == 'OUT' else np.dtype(known.dtype)}."]
     if array.attrs.get("units") != known.units:
         return [f"{name} is in {array.attrs.get('units')!r}, not {known.units!r}."]
     if flags != dict(known.flags):

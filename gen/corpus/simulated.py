@@ -4,13 +4,11 @@ All others are declared beside the stage or mechanism of the simulator that know
 from the corpus.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 from gen.corpus.fault_classes import UNKNOWN
-from gen.corpus.schema import DRAWS, SCHEMA, Variable, class_names
+from gen.corpus.schema import DRAWS, SCHEMA, Variable
 
 UNJUDGED = 2
 """Value of ``detectable`` of a fault that was not judged."""
@@ -51,17 +49,3 @@ def with_values(**values: Callable[[Any], Any] | None) -> tuple[Variable, ...]:
     """Variables of the format, each with the function that a stage of the simulator has for its value."""
     known = {variable.name: variable for variable in SCHEMA + SIMULATED}
     return tuple(known[name]._replace(value=value) for name, value in values.items())
-
-
-def unknown_value(dtype: np.dtype[Any], attributes: Mapping[Any, Any]) -> Any:
-    """Value of a variable in records of a corpus that lacks it: empty text, NaN, ``unjudged`` or ``unknown`` of a class, or else -1.
-
-    >>> unknown_value(np.dtype("f8"), {}), unknown_value(np.dtype("i4"), {}), unknown_value(np.dtype("O"), {})
-    (nan, -1, '')
-    """
-    if dtype.kind == "f":
-        return np.nan
-    if dtype.kind not in "iu":
-        return ""
-    names = class_names(attributes).items()
-    return next((code for code, name in names if name in ("unjudged", UNKNOWN)), -1)

@@ -1,6 +1,5 @@
 """Validation of a corpus: its files, the format of its variables, and the agreement of index, manifest and parts."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,9 +7,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus.blocks import blocks_of, stored_blocks, stored_columns
 from gen.corpus.index import corpus_attributes, open_corpus
-from gen.corpus.layout import is_utf8
 from gen.corpus.manifest import (
     INDEX_NAME,
     MANIFEST_NAME,
@@ -20,7 +17,7 @@ from gen.corpus.manifest import (
     read_manifest,
     recipe_text,
 )
-from gen.corpus.open_files import file_facts
+from gen.corpus.reading import blocks_of, file_facts, read_columns, stored_blocks
 from gen.corpus.signals import VERDICTS, SignalCounts, count_verdicts, counts_in_words, judge
 from gen.support.errors import CorpusError
 
@@ -64,43 +61,26 @@ def _records_problems(path: Path, manifest: Manifest) -> list[str]:
     first, problems = 0, list[str]()
     if path.is_file():
         for block in blocks_of(path, manifest.records):
-            problems += _text_problems(path, stored_columns(path, block.first, block.stop))
-        return problems + _signal_problems(path, manifest.signals)
+            read_columns(path, first=block.first, stop=block.stop)
+        return _signal_problems(path, manifest.signals)
     # one part at a time, so that memory does not grow with the corpus
     for row in manifest.parts:
         file = path / "parts" / row.name
-        columns = stored_columns(file)
-        index = stored_columns(path / INDEX_NAME, first, first + row.records)
+        columns, index = read_columns(file), read_columns(path / INDEX_NAME, first=first, stop=first + row.records)
         problems += [
             f"{file}: {name} differs from {INDEX_NAME}; make or copy the corpus again."
-            for name in _other(columns, index)
+            for name in sorted(columns.keys() | index.keys())
+            if name not in columns or name not in index or not _same(columns[name], index[name])
         ]
-        problems += _text_problems(file, columns)
         problems += [*_origin_problems(file, manifest), *_signal_problems(file, row.signals)]
         first += row.records
     return problems
 
 
-def _text_problems(file: Path, columns: Mapping[str, NDArray[Any]]) -> list[str]:
-    """Variables with text that cannot be read."""
-    unreadable = [name for name, values in columns.items() if values.dtype.kind == "S" and not is_utf8(values)]
-    return [f"{file}: {name} has text that is not UTF-8; make or copy the corpus again." for name in unreadable]
-
-
-def _other(part: Mapping[str, NDArray[Any]], index: Mapping[str, NDArray[Any]]) -> list[str]:
-    """Names of the variables of a part that are not those of the index, value for value."""
-    names = sorted(part.keys() | index.keys())
-    return [name for name in names if name not in part or name not in index or not _same(part[name], index[name])]
-
-
 def _same(part: NDArray[Any], index: NDArray[Any]) -> bool:
-    """Whether values are equal; text of a part is as wide as its longest, that of the index as wide as the longest of all."""
-    if part.dtype != index.dtype or part.ndim != index.ndim or len(part) != len(index):
-        return False
-    if part.ndim == 1:
-        return np.array_equal(part, index, equal_nan=part.dtype.kind == "f")
-    width = part.shape[1]
-    return np.array_equal(part, index[:, :width]) and not index[:, width:].view(np.uint8).any()
+    """Whether values and their kind are equal; text of the index can be wider."""
+    same_type = part.dtype == index.dtype or part.dtype.kind == index.dtype.kind == "U"
+    return same_type and np.array_equal(part, index, equal_nan=part.dtype.kind == "f")
 
 
 def _origin_problems(file: Path, manifest: Manifest) -> list[str]:

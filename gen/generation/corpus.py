@@ -27,11 +27,11 @@ from gen.corpus import (
     finish_file,
     is_single_file,
     lock,
+    read_columns,
     read_manifest,
     remove_left_behind_of,
     remove_parts,
     row_of,
-    stored_columns,
     write_durably,
     write_part,
     writing,
@@ -264,7 +264,7 @@ def _kept(recipe: Recipe, folder: Path, part: int) -> Outcome | None:
         return None
     attributes, _ = file_facts(path)
     # a part with the name of this one may be of another size of the corpus
-    numbers = stored_columns(path)["recording"]
+    numbers = read_columns(path, ["recording"])["recording"]
     expected = recipe.records_of_part(part)
     # the same recipe, sources and libraries give the same bytes
     same = all(attributes.get(name) == text for name, text in facts_as_attributes(made_by(recipe)).items())

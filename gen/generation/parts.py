@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus.joining import NUMBERS
+from gen.corpus.numbering import NUMBERS
 from gen.corpus.schema import add_class_names
 from gen.generation.facts import failures_of, part_attributes
 from gen.generation.labels import part_dataset

@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus import SIGNAL, open_corpus
-from gen.corpus.joining import NUMBERS
+from gen.corpus.numbering import NUMBERS
 from gen.generation.parts import decoded, labelled
 from gen.generation.undetected import made_from
 from gen.scenarios import Scenario, read_scenarios

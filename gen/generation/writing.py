@@ -23,7 +23,7 @@ from gen.corpus import (
     make_dataset,
     new_corpus,
 )
-from gen.corpus.joining import new_numbers
+from gen.corpus.numbering import new_numbers
 from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
 from gen.generation.corpus import facts_of
 from gen.generation.facts import part_attributes, part_file

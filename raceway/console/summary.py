@@ -23,17 +23,16 @@ from gen.corpus import (
     fault_counts,
     file_facts,
     file_problems,
+    read_attributes,
     read_columns,
     read_manifest,
-    read_texts,
-    read_units,
     split_counts,
     step_complaint,
     text_counts,
     unit_counts,
 )
 from gen.corpus.facts import OF_FAULTS
-from gen.corpus.schema import operating_problems
+from gen.corpus.schema import operating_problems, stored_unit
 from gen.support.errors import CorpusError
 from gen.support.units import READABLE, range_text
 from raceway.console import show
@@ -49,7 +48,9 @@ _SHOWN = [
     "recording",
     "shaft_rate",
     "load",
+    "bearing",
 ]
+_IF_PRESENT = (*OF_FAULTS, "event", "clipped", "step_error", "oversampling")
 
 
 def describe(directory: Path, where: str | None = None) -> dict[str, Any]:
@@ -79,10 +80,9 @@ def describe(directory: Path, where: str | None = None) -> dict[str, Any]:
     return facts
 
 
-def _labels(files: Mapping[Path, int], severities: Iterable[str]) -> Columns:
-    """Numbers that ``info`` shows; ``files`` are those that hold them, with their numbers of records."""
-    known = (*severities, *OF_FAULTS, "event", "clipped", "step_error", "oversampling")
-    parts = [read_columns(file, records, _SHOWN, known) for file, records in files.items()]
+def _labels(files: Iterable[Path], wanted: Iterable[str]) -> Columns:
+    """Variables that ``info`` shows, from the files that hold them."""
+    parts = [read_columns(file, wanted) for file in files]
     labels = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     for problem in operating_problems(labels):
         raise CorpusError(f"{next(iter(files))}: {problem}")
@@ -93,31 +93,28 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
     """Contents of a corpus, read without xarray; of an unfinished corpus those of its finished parts."""
     for problem in file_problems(directory, manifest, "size"):
         raise CorpusError(problem)
-    parts = {directory / "parts" / row.name: row.records for row in manifest.parts} or {directory: manifest.records}
+    parts = [directory / "parts" / row.name for row in manifest.parts] or [directory]
     # the index has the labels of all parts; without it, each part has its own
-    whole = manifest.complete and directory.is_dir()
-    files = {directory / INDEX_NAME: manifest.records} if whole else parts
-    measured = read_units(next(iter(files)), "label").items()
-    sizes = {name: unit for name, unit in measured if unit in READABLE}
-    # labels alone: no signal is read
-    labels, first = _labels(files, sizes), next(iter(parts))
-    _, (_, channels, samples) = file_facts(first)
-    fs = float(labels["sample_rate"][0])
-    bearings = np.array([name for file, records in files.items() for name in read_texts(file, "bearing", records)])
+    files = [directory / INDEX_NAME] if manifest.complete and directory.is_dir() else parts
+    known = read_attributes(files[0])
+    measured = {name: stored_unit(of) for name, of in known.items() if of.get("role") == "label"}
+    sizes = {name: unit for name, unit in measured.items() if unit in READABLE}
+    labels = _labels(files, [*_SHOWN, *sizes, *(name for name in _IF_PRESENT if name in known)])
+    samples, fs = file_facts(parts[0])[1][2], float(labels["sample_rate"][0])
     # counts of the chosen records
     if where is not None:
         chosen = _chosen(directory, where)
-        labels, bearings = {name: values[chosen] for name, values in labels.items()}, bearings[chosen]
+        labels = {name: values[chosen] for name, values in labels.items()}
     units = unit_counts(labels)
     return {
         "chosen": units.records,
-        "channels": read_texts(first, "channel", channels),
+        "channels": read_columns(parts[0], ["channel"])["channel"].tolist(),
         "sample_rate": fs,
         "duration": samples / fs,
         "samples": samples,
         "classes": class_counts(labels["fault"]),
         "splits": split_counts(labels["split"]),
-        "bearings": text_counts(bearings.tolist()),
+        "bearings": text_counts(labels["bearing"].tolist()),
         "rigs": units.rigs,
         "specimens": units.specimens,
         "lives": _lives(labels),

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.hdf5 import LIBRARY_LOCK, ForeignStorageError, own_dataset
+from gen.corpus.trust import LIBRARY_LOCK, ForeignStorageError, own_dataset
 from raceway.importing.axes import axes_of
 from raceway.importing.files import UnusableError, guarded
 from raceway.importing.header import Header, unit_said

@@ -16,18 +16,19 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from xarray.conventions import encode_cf_variable
 
 from gen.corpus.acdd import publication_attributes
 from gen.corpus.choice import channel_names, chosen_channels, chosen_records
 from gen.corpus.index import open_corpus
-from gen.corpus.joining import check_fit, check_repeats, new_numbers, sample_digests, with_same_variables
-from gen.corpus.layout import PACKING, stored_signal
 from gen.corpus.manifest import COUNTED, Manifest, read_manifest, recipe_text
+from gen.corpus.numbering import new_numbers
 from gen.corpus.publication import Publication
 from gen.corpus.schema import SIGNAL
 from gen.corpus.where import nearest
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
+from raceway.sharing.joining import check_fit, check_repeats, sample_digests, with_same_variables
 
 _MOST_IN_BLOCK = 1024  # records; scenarios are text of some kilobytes a record
 _SPAN = 8  # times the records of a block; variables are read with those of the records between the chosen ones
@@ -50,13 +51,7 @@ class Block(NamedTuple):
 
     def as_stored(self) -> xr.Dataset:
         """Records as they are stored (:func:`gen.corpus.make_dataset`): counts with their scale, or single precision."""
-        signal = self.dataset[SIGNAL].variable
-        values, scale = stored_signal(signal)
-        packing = {name: signal.encoding[name] for name in PACKING if name in signal.encoding}
-        # h5py gives values with their byte order stated, of which netCDF4 warns
-        values = values.astype(np.float32 if scale is None else np.int16)
-        attributes = signal.attrs if scale is None else signal.attrs | packing
-        return self.dataset.assign({SIGNAL: (signal.dims, values, attributes)})
+        return self.dataset.assign({SIGNAL: encode_cf_variable(self.dataset[SIGNAL].variable)})
 
 
 @dataclass(frozen=True)

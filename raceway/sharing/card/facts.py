@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 import xarray as xr
 
@@ -19,14 +18,13 @@ from gen.corpus.facts import (
     unit_counts,
     units_in_several_splits,
 )
-from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.manifest import RECIPE_NAME, Manifest
-from gen.corpus.schema import ROLES, SIGNAL, SPLITS, stored_unit
+from gen.corpus.reading import codec_of
+from gen.corpus.schema import ROLES, SPLITS, stored_unit
 from gen.corpus.signals import counts_in_words
 
 MOST_NAMES = 12  # bearings named on the card; the others are counted
 _NEW = "../again"
-_ZSTD = 32015  # number of the filter, registered with The HDF Group
 
 
 def card_facts(corpus: xr.Dataset, manifest: Manifest) -> dict[str, Any]:
@@ -115,8 +113,7 @@ def rebuilding(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
 
 def needs_plugin(part: Path) -> bool:
     """Whether the signals of a file can be read with the zstd filter of HDF5 alone."""
-    with LIBRARY_LOCK, h5py.File(part, "r", locking=False) as file:
-        return own_dataset(file, SIGNAL).id.get_create_plist().get_filter_by_id(_ZSTD) is not None
+    return codec_of(part) == "zstd"
 
 
 def _variables(corpus: xr.Dataset) -> list[tuple[str, list[str]]]:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from gen.corpus.blocks import read_classes
 from gen.corpus.fault_classes import FAULTS
 from gen.corpus.files import CARD_NAME, CARD_SUFFIX, corpus_around, place_of, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import RECIPE_NAME, Manifest, corpus_files, read_manifest, recipe_text
+from gen.corpus.reading import read_classes
 from gen.corpus.schema import listed_flags
 from gen.support.errors import CorpusError
 from raceway.sharing.card import additions

@@ -132,7 +132,7 @@ def test_rows_are_in_the_order_of_the_corpus(corpus, table):
 
 
 def test_a_single_file_is_worked_on_block_by_block(tmp_path, table, monkeypatch):
-    monkeypatch.setattr("gen.corpus.blocks._BLOCK_RECORDS", 4)
+    monkeypatch.setattr("gen.corpus.reading._BLOCK_RECORDS", 4)
     done = []
     found = feature_table(make_corpus(tmp_path / "c.nc"), progress=lambda *counts: done.append(counts))
     xr.testing.assert_equal(found, table)

@@ -113,7 +113,7 @@ REFUSED = {
     "the manifest is a pipe": (lambda c: make_pipe(c / "manifest.json"), r"manifest\.json: is not a plain file"),
     "the manifest counts other records": (lambda c: edit_manifest(c, records=8), r"it counts 8 records, its parts 9"),
     "the manifest counts a part wrongly": (
-        lambda c: edit_manifest(c, {0: {"records": 4}}, records=10), r"index\.nc: .* shape \(9,\), not one value for each record",
+        lambda c: edit_manifest(c, {0: {"records": 4}}, records=10), r"index\.nc: .*conflicting sizes for dimension 'record'",
     ),
     "the manifest lists a part twice": (
         lambda c: edit_manifest(c, {1: {"name": part_name(0)}}), r"it lists part-00000\.nc more than once",

@@ -3,7 +3,6 @@
 import shutil
 import subprocess
 import sys
-import zlib
 from pathlib import Path
 
 import netCDF4
@@ -24,11 +23,9 @@ from gen.corpus import (
     read_manifest,
     validate_corpus,
 )
-from gen.corpus.part import deflate
 from gen.support.errors import CorpusError
 from tests.corpora import EXTRA, FS, SIZES, columns, dataset, physical, write_parts
 
-law = settings(max_examples=10)
 FORMS = ("c", "c.nc")
 """Names of a folder and of a single file."""
 
@@ -116,16 +113,3 @@ def test_a_missing_or_unknown_column_is_named(columns_change):
     columns_change(some)
     with pytest.raises(CorpusError, match=r"columns \['(bpfi|colour)'\] are either missing or not described"):
         make_dataset(np.zeros((2, 1, 5), np.int16), FS, ("a",), some, extra=EXTRA, counts_per_unit=1.0, attributes={})
-
-
-@law
-@given(st.integers(0, 2**32 - 1), st.integers(1, 9000), st.floats(0, 9000), st.sampled_from([np.int16, np.float32]))
-def test_compressed_samples_are_a_zlib_stream_of_their_shuffled_bytes(seed, n, level, kind):
-    samples = (level * np.random.default_rng(seed).standard_normal(n)).clip(-32767, 32767).astype(kind)
-    shuffled = samples.view(np.uint8).reshape(n, -1).T.tobytes()
-    assert zlib.decompress(deflate(samples)) == shuffled
-    assert len(deflate(samples)) <= len(zlib.compress(shuffled, 1)) * 1.02 + 40
-
-
-def test_what_needs_no_bits_takes_none():
-    assert len(deflate(np.zeros(12_800, np.int16))) < 200

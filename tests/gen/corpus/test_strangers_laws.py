@@ -1,6 +1,7 @@
 """Laws of files from strangers, with right checksums: what leads out of a file or is not in the format is refused in one sentence."""
 
 import shutil
+import zlib
 from contextlib import suppress
 from itertools import product
 from pathlib import Path
@@ -11,8 +12,8 @@ import pytest
 
 from features.table.corpora import feature_table
 from gen.corpus import SIGNAL, open_corpus, part_name, read_manifest, validate_corpus
-from gen.corpus.part import deflate
 from gen.support.errors import CorpusError, RacewayError
+from raceway.console.summary import describe
 from raceway.sharing.card.additions import CardAdditions, CardPicture, write_additions
 from tests.corpora import write_corpus
 from tests.tampering import edit_manifest, edited, seal
@@ -92,6 +93,8 @@ def assert_a_sentence(corpus, sentence=""):
     assert not any("\n" in problem for problem in found)
     with suppress(CorpusError):
         open_corpus(corpus).load()
+    with suppress(CorpusError):
+        describe(corpus)
     with suppress(RacewayError):
         feature_table(corpus, groups=("time",))
 
@@ -117,6 +120,17 @@ def wide_text(file):
     """Terabytes of text that a file of some kilobytes declares."""
     del file["draws"]
     file.create_dataset("draws", (9, 10**12), "S1", chunks=(1, 4096))
+
+
+def a_dimension(file):
+    """A second name of what holds the size of a dimension, which is no value of any record."""
+    del file["rig"]
+    file["rig"] = file["draws_length"]
+
+
+def short_text(file):
+    """A chunk of text that HDF5 would read beyond its end."""
+    file["draws"].id.write_direct_chunk((0, 0), zlib.compress(b"x"))
 
 
 def no_utf8(file):
@@ -160,6 +174,8 @@ def reshaped(file, name, values):
 ODD = {
     "text of variable length": text_type,
     "text of a terabyte": wide_text,
+    "a dimension for a label": a_dimension,
+    "a chunk of text that is too short": short_text,
     "no variables": without_variables,
     "odd dimensions": odd_dimensions,
     "a label with two dimensions": two_dimensions,
@@ -217,11 +233,16 @@ def test_what_is_not_in_the_format_is_refused_and_never_an_internal_error(copied
         assert_a_sentence(corpus)
 
 
+def deflated(samples):
+    """A chunk as HDF5 writes it: shuffled bytes in a zlib stream."""
+    return zlib.compress(samples.view(np.uint8).reshape(len(samples), -1).T.tobytes())
+
+
 CHUNKS = {
     "no stream": (b"no zlib stream", 0),
-    "too short": (deflate(np.zeros(49, np.int16)), 0),
-    "too long": (deflate(np.zeros(5000, np.int16)), 0),
-    "cut short": (deflate(np.arange(50, dtype=np.int16))[:-4], 0),
+    "too short": (deflated(np.zeros(49, np.int16)), 0),
+    "too long": (deflated(np.zeros(5000, np.int16)), 0),
+    "cut short": (deflated(np.arange(50, dtype=np.int16))[:-4], 0),
     "without its filters": (np.zeros(50, np.int16).tobytes(), 3),
 }
 
@@ -234,10 +255,10 @@ def test_a_damaged_chunk_is_refused_when_it_is_read_and_found_by_validation(copi
         file[SIGNAL].id.write_direct_chunk((1, 0, 0), content, left_out)
     if corpus.is_dir():
         seal(corpus)
-    assert_a_sentence(corpus, "damaged (")
+    assert_a_sentence(corpus, "(damaged: a chunk")
     with open_corpus(corpus) as found:
         found[SIGNAL][0].load()
-        with pytest.raises(CorpusError, match=r"\.nc: damaged \(.*\); generate or copy it again"):
+        with pytest.raises(CorpusError, match=r"\.nc: not a readable file of a corpus \(damaged: a chunk"):
             found[SIGNAL][1].load()
 
 

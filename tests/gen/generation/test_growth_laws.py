@@ -2,23 +2,8 @@
 
 import shutil
 
-import pytest
-
-from gen.corpus import RECIPE_NAME, part_name, read_manifest, recipe_text
-from gen.corpus.index import corpus_attributes, write_index
+from gen.corpus import RECIPE_NAME, part_name, read_manifest
 from gen.corpus.manifest import facts_of_parts, write_manifest
-from tests.corpora import write_corpus
-
-
-@pytest.mark.parametrize("held", [1, 10**9])
-def test_the_index_has_the_same_bytes_however_many_parts_are_copied_together(tmp_path, monkeypatch, held):
-    write_corpus(tmp_path / "c", [3, 1, 4, 1, 5])
-    manifest, before = read_manifest(tmp_path / "c"), (tmp_path / "c" / "index.nc").read_bytes()
-    facts = manifest.model_dump(mode="json", by_alias=True, exclude_unset=True) | {"publication": manifest.publication}
-    attributes = corpus_attributes(facts_of_parts(manifest.parts, facts), recipe_text(tmp_path / "c"), tmp_path)
-    monkeypatch.setattr("gen.corpus.index._COPIED_BYTES", held)
-    write_index(tmp_path / "c", manifest.parts, attributes)
-    assert (tmp_path / "c" / "index.nc").read_bytes() == before
 
 
 def test_parts_beyond_the_hundred_thousandth_are_in_the_order_of_their_records(copied):

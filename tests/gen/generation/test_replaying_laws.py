@@ -19,7 +19,7 @@ from gen import (
     write_corpus,
 )
 from gen.corpus import FAULTS, SIGNAL, finish_corpus, part_name, write_part
-from gen.corpus.joining import NUMBERS
+from gen.corpus.numbering import NUMBERS
 from gen.support.errors import CorpusError, RecipeError
 from gen.support.yaml_files import parse_yaml
 from tests import corpora

@@ -4,10 +4,10 @@ import shutil
 
 import numpy as np
 import pytest
+from xarray.conventions import encode_cf_variable
 
 from gen import open_corpus, validate_corpus
 from gen.corpus import SIGNAL, Publication, open_part, read_manifest
-from gen.corpus.layout import stored_signal
 from gen.support.errors import CorpusError
 from raceway import copy, publish
 from tests import corpora
@@ -26,7 +26,7 @@ def contents(path, records=slice(None)):
     """Values of all variables of some records, with the stored counts in place of accelerations."""
     with open_corpus(path) as corpus:
         some = corpus.isel(record=records).load()
-        signal = stored_signal(some[SIGNAL].variable)[0]
+        signal = encode_cf_variable(some[SIGNAL].variable).values
         return {str(name): some[name].values for name in some.variables if name != SIGNAL} | {SIGNAL: signal}
 
 

@@ -9,13 +9,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.choice import channel_names, per_record
+from gen.corpus.fault_classes import UNKNOWN
 from gen.corpus.schema import SIGNAL, class_names, listed_flags
 from gen.corpus.signals import VERDICTS, judge
-from gen.corpus.simulated import unknown_value
 from gen.support.errors import CorpusError
 
-NUMBERS = ("rig", "specimen", "recording", "pair")
-"""Variables that get new numbers when corpora are joined."""
 _WITHOUT_CONTENT = [VERDICTS.index(verdict) for verdict in ("dead", "constant", "not_finite")]
 
 Named = tuple[str, xr.Dataset]
@@ -63,7 +61,7 @@ def _storage(corpus: xr.Dataset) -> str:
 def with_same_variables(corpora: Sequence[Named]) -> tuple[list[xr.Dataset], tuple[str, ...]]:
     """Corpora with all per-record variables of any of them, and the names of those that one or more lack.
 
-    A corpus that lacks a variable gets :func:`gen.corpus.simulated.unknown_value` for all its records. Attributes of the signal are kept
+    A corpus that lacks a variable gets :func:`unknown_value` for all its records. Attributes of the signal are kept
     if they are the same in all corpora, and channels and times are those of the first.
 
     Raises
@@ -125,41 +123,18 @@ def _with_attributes(variable: xr.Variable, attributes: Mapping[Any, Any]) -> xr
     return view
 
 
-def new_numbers(identities: Sequence[str]) -> dict[str, NDArray[np.int32]]:
-    """Rig, specimen, recording and pair of each record, from the identities of all records that are joined.
+def unknown_value(dtype: np.dtype[Any], attributes: Mapping[Any, Any]) -> Any:
+    """Value of a variable in records of a corpus that lacks it: empty text, NaN, ``unjudged`` or ``unknown`` of a class, or else -1.
 
-    An identity is the name of the corpus that numbered the record first, and its four numbers there. Records of one corpus have these
-    numbers; those of several are numbered anew, in the order in which each rig, specimen ... first occurs. -1 stands for none.
-
-    >>> new_numbers(["a/7/8/5/-1", "b/7/9/6/-1", "a/7/8/6/-1"])["rig"]
-    array([0, 1, 0], dtype=int32)
-
-    Raises
-    ------
-    CorpusError
-        If a text is no identity.
+    >>> unknown_value(np.dtype("f8"), {}), unknown_value(np.dtype("i4"), {}), unknown_value(np.dtype("O"), {})
+    (nan, -1, '')
     """
-    rows = [text.rsplit("/", len(NUMBERS)) for text in identities]
-    try:
-        numbers = np.array([row[1:] for row in rows]).astype(np.int32).reshape(len(rows), len(NUMBERS))
-    except (ValueError, OverflowError):
-        wrong = next((text for text in identities if text.count("/") < len(NUMBERS)), identities[0])
-        raise CorpusError(f"identity: {wrong!r} is no corpus with four numbers; make the corpus again.") from None
-    names, corpus = np.unique([row[0] for row in rows], return_inverse=True)
-    return {
-        # records of one corpus get their first numbers back
-        name: values if len(names) == 1 else _dense(corpus, values)
-        for name, values in zip(NUMBERS, numbers.T, strict=True)
-    }
-
-
-def _dense(corpus: NDArray[np.intp], values: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Numbers from 0 for pairs of a corpus and a number, in the order in which each pair first occurs; -1 for a number below 0."""
-    numbers, is_number = np.full(len(values), -1, np.int32), values >= 0
-    pairs = np.stack([corpus, values], axis=1)[is_number]
-    _, first, inverse = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
-    numbers[is_number] = np.argsort(np.argsort(first))[inverse.reshape(-1)]
-    return numbers
+    if dtype.kind == "f":
+        return np.nan
+    if dtype.kind not in "iu":
+        return ""
+    names = class_names(attributes).items()
+    return next((code for code, name in names if name in ("unjudged", UNKNOWN)), -1)
 
 
 def sample_digests(signal: NDArray[Any]) -> NDArray[np.bytes_]:

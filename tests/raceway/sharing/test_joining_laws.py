@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import gen
 from gen import generate, open_corpus, validate_corpus
 from gen.corpus import SCHEMA, SIGNAL, Publication, identity, make_dataset, new_corpus, read_manifest
-from gen.corpus.joining import NUMBERS, new_numbers
+from gen.corpus.numbering import NUMBERS, new_numbers
 from gen.support.errors import CorpusError
 from raceway import copy, publish
 from tests import corpora, tone_corpora
