@@ -62,6 +62,14 @@ def variables_of(file: h5py.File) -> dict[str, h5py.Dataset]:
     return {name: variable for name, variable in stored.items() if not is_bare_dimension(variable)}
 
 
+def _variable(file: h5py.File, name: str) -> h5py.Dataset:
+    """One of :func:`variables_of`."""
+    stored = own_dataset(file, name)
+    if is_bare_dimension(stored):
+        raise KeyError(name)
+    return stored
+
+
 def file_facts(path: Path) -> tuple[dict[str, Any], tuple[int, int, int]]:
     """Global attributes of a file of records, and the shape of its signal; CorpusError if it is none."""
     with opened(path) as file:
@@ -132,10 +140,10 @@ def read_channel(
         signal = block.file[SIGNAL].values[:, channel].astype(np.float32, copy=False)
         return signal, [block.file[name].values for name in names]
     with opened(block.file) as file:
-        stored, labels = own_dataset(file, SIGNAL), variables_of(file)
+        stored = own_dataset(file, SIGNAL)
         values = read_values(stored, slice(block.first, block.stop), slice(channel, channel + 1))[:, 0]
         packing = packing_of(stored)
-        columns = {name: column_values(labels[name], block.first, block.stop) for name in names}
+        columns = {name: column_values(_variable(file, name), block.first, block.stop) for name in names}
         for problem in operating_problems(columns):
             raise ValueError(problem.removesuffix("."))
     if "scale_factor" not in packing:
