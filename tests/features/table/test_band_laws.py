@@ -72,6 +72,7 @@ def test_a_model_keeps_its_band_and_refuses_features_of_another(tmp_path):
     )
     assert model.score(tmp_path / "corpus").records == 48
     with pytest.raises(
-        CorpusError, match=r"computed from 300-5000 Hz, .* trained on 100-1800 Hz; .* --band 100 1800\.$"
+        CorpusError,
+        match=r"computed from 300-5000 Hz, .* trained on 100-1800 Hz; compute them with the band \(100, 1800\)\.$",
     ):
         predict(feature_table(tmp_path / "corpus"), model)

@@ -125,7 +125,7 @@ def test_a_shaft_harmonic_raises_the_tonality():
 
 
 def test_the_page_lists_every_measure_with_its_unit_meaning_and_classes():
-    page = (ROOT / "docs" / "transfer.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "comparing.md").read_text(encoding="utf-8")
     for measure in MEASURES:
         classes = f" ({', '.join(measure.classes)})" if measure.classes else ""
         assert f"| `{measure.name}` | {measure.unit} | {measure.meaning}{classes} |" in page
