@@ -5,6 +5,7 @@ module        responsibility
 ============= ========================================================
 columns       columns with safe names, and the page about a copy
 copying       chosen records of one or several corpora, block by block
+joining       several corpora with the same variables and new numbers
 parquet_files Parquet
 huggingface   Parquet by split with the card of the Hugging Face hub
 forms         all forms; ``copy``
