@@ -13,10 +13,9 @@ import xarray as xr
 
 from gen.corpus import open_corpus, read_manifest, read_publication, sha256, validate_corpus
 from gen.generation.corpus import generate
-from raceway import publish
+from raceway import describe, publish
 from raceway.importing import import_generic
 from raceway.sharing.card.page import card_folder
-from raceway.sharing.croissant import write_croissant
 from tests.labels import write_labels
 
 FACTS = {
@@ -42,7 +41,9 @@ OF_THE_WHOLE = {
 @pytest.fixture(scope="module")
 def simulated(write_recipe, tmp_path_factory):
     folder = tmp_path_factory.mktemp("simulated")
-    return generate(write_recipe(folder / "small.yaml", {"publication": FACTS}), folder / "corpus", records=8).path
+    made = generate(write_recipe(folder / "small.yaml", {"publication": FACTS}), folder / "corpus", records=8).path
+    describe(made)
+    return made
 
 
 @pytest.fixture(scope="module")
@@ -58,8 +59,7 @@ def imported(tmp_path_factory):
 def single(imported):
     """The imported corpus in a single file."""
     path = publish_import(imported.parent, "corpus.nc")
-    card_folder(path).mkdir()
-    write_croissant(path)
+    describe(path)
     return path
 
 
