@@ -44,14 +44,18 @@ def test_a_file_is_read_as_it_was_written_and_a_unit_that_it_does_not_state_is_t
     )  # these state one that is not read
 
 
-@pytest.mark.parametrize("name", REFUSED)
-def test_a_file_that_leaves_something_open_is_refused_with_the_option(tmp_path, name):
-    content, given, sentence = REFUSED[name]
-    write(tmp_path / name, content)
+def assert_refused(path, content, given, sentence):
+    """The file is refused with one sentence that says so."""
+    write(path, content)
     with pytest.raises(CorpusError) as refused:
-        read_signal(tmp_path / name, **given, options=OPTIONS)
+        read_signal(path, **given, options=OPTIONS)
     assert sentence in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_file_that_leaves_something_open_is_refused_with_the_option(tmp_path, name):
+    assert_refused(tmp_path / name, *REFUSED[name])
 
 
 def test_notes_and_the_sheet_that_was_chosen_are_told(tmp_path):

@@ -18,7 +18,7 @@ from raceway.importing.reading_options import Reading
 from tests.labels import write_labels
 from tests.raceway.importing.file_writers import FS, N, T, X, Y, array, changed, excel, mat, text, workbook
 from tests.raceway.importing.people_files import AT, LVM, ONE_LVM, PLAIN
-from tests.raceway.importing.test_people_files import write
+from tests.raceway.importing.test_people_files import assert_refused, write
 
 WITHOUT_TIMES = {"columns": "No"}
 CHINESE = "时间（s）,加速度（g）\n"
@@ -90,12 +90,7 @@ REFUSED = {  # content or writer, what is given, part of the sentence
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_a_file_that_leaves_something_open_is_refused(tmp_path, name):
-    content, given, sentence = REFUSED[name]
-    write(tmp_path / name, content)
-    with pytest.raises(CorpusError) as refused:
-        read_signal(tmp_path / name, **given, options=OPTIONS)
-    assert sentence in str(refused.value)
-    assert "\n" not in str(refused.value)
+    assert_refused(tmp_path / name, *REFUSED[name])
 
 
 def test_the_speed_that_belongs_to_the_variable_is_read(tmp_path):
