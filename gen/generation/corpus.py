@@ -274,7 +274,7 @@ def _kept(recipe: Recipe, folder: Path, part: int) -> Outcome | None:
 
 
 def _finish(target: Path, folder: Path, text: bytes, outcomes: list[Outcome], facts: dict[str, Any]) -> Generated:
-    """Write recipe, index, manifest and data card of the finished parts, or a single file of them."""
+    """Write recipe, index and manifest of the finished parts, or a single file of them."""
     rows = [outcome.row for outcome in outcomes if outcome.row is not None]
     if not rows:
         raise CorpusError(f"{target}: no record could be simulated; {outcomes[0].failures[0]}")

@@ -27,10 +27,11 @@ def describe(path: Path | str) -> None:
     """
     path = Path(path)
     check_card(path)
-    with writing(folder := card_folder(path)):
-        folder.mkdir(exist_ok=True)
+    manifest, folder = read_manifest(path), card_folder(path)
     if path.is_file():  # card.json tells the folder of a card from one that holds something else
-        write_additions(folder, read_additions(folder, read_manifest(path)))
+        with writing(folder):
+            folder.mkdir(exist_ok=True)
+        write_additions(folder, read_additions(folder, manifest))
     write_card(path)
     write_croissant(path)
 

@@ -220,3 +220,9 @@ def test_a_card_of_another_content_is_removed_and_a_changed_croissant_is_found(c
     finish_corpus(copied_folder, read_manifest(copied_folder).parts, title="Another")
     assert not croissant.exists()
     assert not (copied_folder / "README.md").exists()
+
+
+def test_a_folder_that_is_no_corpus_gets_no_card(tmp_path):
+    with pytest.raises(CorpusError, match="no such folder or file"):
+        describe(tmp_path / "nowhere")
+    assert [*tmp_path.iterdir()] == []
