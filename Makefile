@@ -44,7 +44,7 @@ tests: $(VENV)/installed
 
 generated: $(VENV)/installed
 	$(BIN)/python -m gen.pages .
-	$(BIN)/python -m raceway.pages docs/features.md
+	$(BIN)/python -m raceway.feature_pages docs/features.md
 
 # the feature table that ships with Raceway, from which the reference model is trained
 reference: $(VENV)/installed

@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.speed import real_corpora
 from features import feature_table
-from features.baselines.colour import COUNTED, distance
+from features.baselines.colour_distance import COUNTED, distance
 from features.baselines.records import feature_rows
 from features.signal.rows import group_means
 from features.table.recording_speeds import recording_numbers

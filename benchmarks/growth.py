@@ -28,7 +28,7 @@ from benchmarks.pairs import Line, Row
 from benchmarks.pipeline import SHORT, variant
 from gen.corpus import PartRow, part_name, read_manifest
 from gen.generation import corpus as making
-from gen.generation.facts import part_file
+from gen.generation.identity import part_file
 from gen.recipe import Recipe
 
 PARTS = (100, 1000)

@@ -18,10 +18,10 @@ import numpy as np
 
 from benchmarks.pairs import Line, Skipped, interleaved, row
 from benchmarks.seed import N_BALLS, SPACING, FloatArray, Seed, seed_of, seed_records
-from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import lay_out
 from gen.physics.kernel.decimate import Decimation, Single, Stage, decimation
 from gen.physics.kernel.layout import Batch, Shape
+from gen.physics.kernel_input import KernelInput
 from gen.recipe import read_recipe
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.batches import batches, integrate_batch

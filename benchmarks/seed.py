@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.bearing import orders
-from gen.physics.inputs import KernelInput
+from gen.physics.kernel_input import KernelInput
 from gen.physics.rotor import as_columns, rest
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios

@@ -26,7 +26,7 @@ from features.baselines.calibration import UNCALIBRATED
 from features.baselines.predictions import predictions
 from features.baselines.records import all_records
 from features.baselines.scores import Scores, score
-from features.table.files import read_table, write_table
+from features.table.table_files import read_table, write_table
 from raceway.importing import import_cwru, import_generic
 
 RECIPE, SEEDS, UNSEEN = "domain_randomised", (20260, 20261), 20299

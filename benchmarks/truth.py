@@ -10,7 +10,7 @@ from pathlib import Path
 
 from benchmarks.pairs import Line, interleaved, row
 from gen.corpus import write_part
-from gen.generation.parts import make_part
+from gen.generation.make_part import make_part
 from gen.recipe import Recipe, read_recipe
 
 SETTINGS = {

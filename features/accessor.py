@@ -14,13 +14,13 @@ import xarray as xr
 from features.signal.cyclic import enhanced_envelope_spectrum, spectral_coherence
 from features.signal.envelopes import band_envelope_spectrum
 from features.signal.impulsive import kurtogram, spectral_kurtosis
-from features.signal.motion import HIGH_PASS, displacement, velocity
 from features.signal.orders import order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
 from features.signal.spectra import cepstrum, psd
+from features.signal.velocity import HIGH_PASS, displacement, velocity
 from features.table.band import DEFAULT_BAND
 from gen.corpus import class_counts, unit_counts
-from gen.support.shown import Shown
+from gen.support.display import Shown
 
 TIME = "elapsed_time"
 

@@ -1,7 +1,7 @@
 """Table of the fault classes: the lines and features that tell a class, and its words in sentences.
 
 A plug-in adds a row by an entry point of the group ``raceway.classes``, which has the name of the class; rows of plug-ins are loaded when
-they are first read. Codes of classes are in `gen.corpus.fault_classes`, colours in `raceway.reports.colours`.
+they are first read. Codes of classes are in `gen.corpus.fault_classes`, colours in `raceway.reports.class_colours`.
 
 A ball spall strikes both races in each spin, so its fundamental line is twice the ball spin frequency ``bsf``.
 """

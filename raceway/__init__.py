@@ -2,21 +2,21 @@
 
 From Python, ``raceway.reference_model()`` is its model, and ``raceway.show_progress()`` shows the progress of a call.
 
-=========== ========================================================================
-module      responsibility
-=========== ========================================================================
-console     options, results, progress, errors
-kept_models models trained on a recipe and kept per user; the reference model is one
-pages       tables and picture of docs/features.md
-importing   a job: recordings of people in the format of corpora
-comparing   a job: synthetic records against real ones
-lives       a job: remaining life of bearings run to failure
-diagnosis   a job: what is wrong with a recording
-sharing     a job: corpora copied, described and published
-reports     a job: pages and pictures of corpora and scores
-commands    one function per command
-cli         the group of all commands, and the entry point
-=========== ========================================================================
+============= ========================================================================
+module        responsibility
+============= ========================================================================
+console       options, results, progress, errors
+kept_models   models trained on a recipe and kept per user; the reference model is one
+feature_pages tables and picture of docs/features.md
+importing     a job: recordings of people in the format of corpora
+comparing     a job: synthetic records against real ones
+lives         a job: remaining life of bearings run to failure
+diagnosis     a job: what is wrong with a recording
+sharing       a job: corpora copied, described and published
+reports       a job: pages and pictures of corpora and scores
+commands      one function per command
+cli           the group of all commands, and the entry point
+============= ========================================================================
 """
 
 import lazy_loader

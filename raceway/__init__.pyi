@@ -1,4 +1,4 @@
-from .console.progress import show_progress as show_progress
+from .console.progress_bar import show_progress as show_progress
 from .diagnosis import diagnose as diagnose
 from .kept_models import reference_model as reference_model
 from .lives.prognosis import score_lives as score_lives

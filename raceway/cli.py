@@ -10,17 +10,17 @@ from typing import Any, NoReturn
 import click
 
 from raceway.commands import (
-    benchmarking,
-    corpora,
-    doctor,
-    feature_tables,
-    models,
-    plotting,
+    benchmark_commands,
+    corpus_commands,
+    doctor_command,
+    feature_commands,
+    model_commands,
+    plot_commands,
 )
 from raceway.comparing import compare_command
 from raceway.console.ending import BAD_INPUT, NoReader, exit_code
+from raceway.console.interruption import listen_for_signals
 from raceway.console.plugin_commands import PluginGroup, keep_examples
-from raceway.console.signals import listen_for_signals
 from raceway.diagnosis import diagnose_command
 from raceway.importing import import_commands
 from raceway.lives import lives_commands
@@ -29,31 +29,31 @@ from raceway.sharing import card_command, copy_command
 
 GROUPS: Mapping[str, tuple[click.Command, ...]] = {
     "Make corpora": (
-        corpora.recipes,
-        corpora.plan,
-        corpora.generate,
+        corpus_commands.recipes,
+        corpus_commands.plan,
+        corpus_commands.generate,
         import_commands.import_,
         copy_command.copy,
         card_command.card,
     ),
     "Look at them": (
-        corpora.info,
-        corpora.validate,
-        corpora.replay,
-        plotting.plot,
+        corpus_commands.info,
+        corpus_commands.validate,
+        corpus_commands.replay,
+        plot_commands.plot,
         explore_command.explore,
         lives_commands.life,
         compare_command.compare,
     ),
     "Learn from them": (
-        feature_tables.features,
-        models.train,
-        models.evaluate,
-        benchmarking.benchmark,
+        feature_commands.features,
+        model_commands.train,
+        model_commands.evaluate,
+        benchmark_commands.benchmark,
         lives_commands.prognose,
         diagnose_command.diagnose,
     ),
-    "Raceway itself": (doctor.doctor,),
+    "Raceway itself": (doctor_command.doctor,),
 }
 """Commands in the order of the work."""
 

@@ -28,7 +28,7 @@ from gen.corpus import write_durably
 from gen.support.errors import CorpusError
 from gen.support.sources import hash_sources
 from raceway.console.options import USUAL, Team
-from raceway.console.progress import notice, notice_compilation, progress
+from raceway.console.progress_bar import notice, notice_compilation, progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -85,7 +85,7 @@ def recipe_tables(recipe: Path | str, team: Team = USUAL) -> "list[xr.Dataset]":
     RecipeError, SimulationError, CorpusError
         As `make_table`.
     """
-    from features.table.files import read_table
+    from features.table.table_files import read_table
     from gen.recipe import read_recipe
 
     shipped = read_table(SHIPPED_TABLE)
@@ -97,7 +97,7 @@ def recipe_tables(recipe: Path | str, team: Team = USUAL) -> "list[xr.Dataset]":
 
 def write_reference_table(output: Path) -> None:
     """Write the feature table of the reference model."""
-    from features.table.files import write_table
+    from features.table.table_files import write_table
     from gen.recipe import read_recipe, shipped_recipes
 
     write_table(reference_table(read_recipe(shipped_recipes()[REFERENCE])), output)
@@ -264,8 +264,8 @@ def _seal_text(path: Path) -> bytes:
 
 def kept_path(recipe: Path | str, estimator: str = DEFAULT_ESTIMATOR) -> Path:
     """File of the kept model of a recipe, whether it exists or not."""
-    from features.baselines.sources import score_sources
-    from gen.generation.sources import sources_sha256
+    from features.baselines.score_sources import score_sources
+    from gen.generation.record_sources import sources_sha256
     from gen.recipe import find_recipe
 
     made_from = [hashlib.sha256(find_recipe(recipe).read_bytes()).hexdigest()]  # reading it takes 0.3 s

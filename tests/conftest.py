@@ -84,7 +84,7 @@ def quick_estimators() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def two_processes() -> Iterator[Client]:
     """Client of two processes, started once: it takes seconds until they have loaded the simulator."""
-    with connected(2, "gen.generation.parts") as client:
+    with connected(2, "gen.generation.make_part") as client:
         assert isinstance(client, Client)
         client.wait_for_workers(2)
         SHARED.update(worker_processes())

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from gen.physics.inputs import KernelInput, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES, compiled_to_disk
 from gen.physics.kernel.integrate import prepare, to_next_knot
@@ -19,6 +18,7 @@ from gen.physics.kernel.layout import (
 )
 from gen.physics.kernel.step import advance
 from gen.physics.kernel.turning import N_ANGLES, STRIDE
+from gen.physics.kernel_input import KernelInput, at_rest
 from tests.reference import Trip
 
 EVERY_ACCELERATION = np.eye(AXES)

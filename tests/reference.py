@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
-from gen.physics.inputs import KernelInput, Spall, Turning
 from gen.physics.kernel import decimate
 from gen.physics.kernel.drop import RAISED_EDGE
 from gen.physics.kernel.layout import (
@@ -27,6 +26,7 @@ from gen.physics.kernel.layout import (
 )
 from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
 from gen.physics.kernel.turning import STRIDE
+from gen.physics.kernel_input import KernelInput, Spall, Turning
 from gen.physics.rotor import Machine
 
 

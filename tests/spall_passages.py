@@ -17,7 +17,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from gen.physics.bearing import Bearing, orders
-from gen.physics.inputs import KernelInput
+from gen.physics.kernel_input import KernelInput
 from gen.physics.rotor import Machine, as_columns, ball_forces, rest
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import largest_drop_over

@@ -9,9 +9,9 @@ from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import LINE_EXPONENT
-from gen.physics.inputs import ROUND, KernelInput, Spall, Turning, Waviness
 from gen.physics.kernel.drop import PROFILES as EVERY_PROFILE
 from gen.physics.kernel.layout import n_process_terms
+from gen.physics.kernel_input import ROUND, KernelInput, Spall, Turning, Waviness
 from gen.physics.rotor import Machine, sensor_springs
 
 PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular")

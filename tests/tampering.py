@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from gen.corpus.files import append_checksum, remove_checksum
+from gen.corpus.disk import append_checksum, remove_checksum
 from gen.corpus.index import corpus_attributes
 from gen.corpus.manifest import write_manifest
 from gen.support.errors import CorpusError

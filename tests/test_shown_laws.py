@@ -7,7 +7,7 @@ import pytest
 import features.accessor  # noqa: F401
 import gen
 from features.baselines import Model, Scores
-from gen.support.shown import Shown
+from gen.support.display import Shown
 
 SCORES = Scores(
     0.75, 0.7, 0.8, ("healthy", "inner"), ("healthy", "inner", "ball"), ((4, 0, 0), (1, 2, 1)), 8, (0.6, 0.9)

@@ -2,9 +2,9 @@
 
 ``feature table -> labelled_records -> splits by specimen or rig -> Predictions -> Scores``
 
-================= ==================================================================================
+================= ========================================================================================
 module            responsibility
-================= ==================================================================================
+================= ========================================================================================
 names             names of baselines and tracks
 records           labelled rows of a feature table, and the groups that they belong to
 own               classifiers of the user, taught by class names
@@ -12,7 +12,7 @@ estimators        the registry of baselines, from majority class to ensemble
 calibration       calibrated probabilities, and thresholds of answers
 references        features relative to healthy records of the same rig
 reference_choice  records tested against a reference, without those that belong to it
-colour            distance of the colour of a record from healthy recordings of its rig
+colour_distance   distance of the colour of a record from healthy recordings of its rig
 predictions       predicted classes of records and of whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
 detection         detection of faults by their width, and against false alarms
@@ -26,11 +26,11 @@ model_file        the only module that reads and writes archives of skops
 classifying       predictions of a fitted model for feature tables and waveforms
 models            training, evaluation, saving, loading
 unlabelled        answers for recordings whose class is not known
-sources           hash of the sources that make features and scores
+score_sources     hash of the sources that make features and scores
 results           scores of every baseline with controls, and on other corpora
 submissions       predictions of a cross-validation in a file, and their scores
 results_file      results as JSON, of which later results take over the rows that are not altered
-================= ==================================================================================
+================= ========================================================================================
 """
 
 import lazy_loader

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from features.baselines.calibration import Calibration
-from features.baselines.colour import Colour
+from features.baselines.colour_distance import Colour
 from features.baselines.estimators import class_probabilities
 from features.baselines.predictions import Predictions, impulsiveness_of, predictions
 from features.baselines.records import FloatArray, feature_rows, title_of

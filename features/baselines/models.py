@@ -41,16 +41,16 @@ from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.table.band import DEFAULT_BAND, Band, band_of
 from features.table.channels import channels_of
-from features.table.corpora import feature_table
+from features.table.corpus_features import feature_table
 from features.table.definitions import GROUPS
 from features.table.durations import durations_of, suited
 from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS, UNKNOWN_CODE, check_result, corpus_name
+from gen.support.display import Shown
 from gen.support.errors import CorpusError
 from gen.support.executor import Workers, connected
 from gen.support.plugins import missing_distributions, plugin_versions
 from gen.support.progress import Progress, counter
-from gen.support.shown import Shown
 
 FORMAT = 7
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from features.baselines.calibration import IMPULSIVENESS, Calibration, calibrate, combine
-from features.baselines.colour import Colour
+from features.baselines.colour_distance import Colour
 from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY

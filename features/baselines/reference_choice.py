@@ -13,8 +13,8 @@ from features.baselines.records import FloatArray, feature_rows, record_digests,
 from features.baselines.references import SAME_SPEED, by_rig, healthy_records
 from features.table.band import DEFAULT_BAND, Band
 from features.table.indicators import Orders
+from features.table.recording_features import recording_table
 from features.table.recording_speeds import recording_numbers
-from features.table.recordings import recording_table
 from gen.corpus import UNKNOWN_CODE, corpus_name, open_corpus
 from gen.support.errors import CorpusError
 from gen.support.units import from_si

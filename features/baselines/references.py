@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from features.baselines.colour import COUNTED, ENERGIES, Colour, scatter_of
+from features.baselines.colour_distance import COUNTED, ENERGIES, Colour, scatter_of
 from features.baselines.records import (
     FloatArray,
     IntArray,

@@ -26,18 +26,18 @@ from features.baselines.records import (
     labelled_records,
     records_of,
 )
+from features.baselines.score_sources import score_sources
 from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import Widths, uncovered_in_splits
-from features.baselines.sources import score_sources
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
 from features.baselines.tracks import Split
 from features.table.definitions import measured_quantity
 from features.table.waveforms import Waveforms
 from gen.corpus import class_counts, unit_counts
+from gen.support.display import Shown
 from gen.support.errors import CorpusError
 from gen.support.executor import run
 from gen.support.progress import Progress, counter
-from gen.support.shown import Shown
 
 _CASES = ("grouped", "leaky", "null", "tests")
 BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)

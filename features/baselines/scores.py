@@ -21,7 +21,7 @@ from features.baselines.predictions import Predictions
 from features.baselines.records import FloatArray, IntArray, Records
 from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY
-from gen.support.shown import Shown
+from gen.support.display import Shown
 
 HEALTHY_CODE = FAULTS.index(HEALTHY)
 BINS = 10  # of the reliability diagram

@@ -2,15 +2,15 @@
 
 The names that an analyst calls are at the top: ``from features import signal; signal.order_spectrum(y, per_turn)``.
 
-============ ======================================================================
+============ ========================================================================================
 module       responsibility
-============ ======================================================================
+============ ========================================================================================
 arguments    arguments of the public functions: records, numbers and bands, or a sentence
 rows         compilation of loops over records, sums in a fixed order, windows
 spectra      power spectra, cepstra, Fourier coefficients, whitening
 demodulation analytic signals of bands, envelope spectra and their floor
 orders       signals at equal angles of the shaft in place of equal times, their spectra and averages
-motion       velocity and displacement, and their level
+velocity     velocity and displacement, and their level
 lines        levels of fault lines and combs at orders of the shaft
 speed        shaft speed that fits fault lines and shaft harmonics together
 tracking     course of the shaft speed of a run-up, where it can be believed
@@ -20,7 +20,7 @@ shape        impulsiveness, slow fluctuation, statistics of the waveform
 cyclic       spectral coherence, enhanced envelope spectrum, and their thresholds
 envelopes    envelope spectrum of a band of records
 impulsive    kurtogram, spectral kurtosis, band in which a fault line stands out
-============ ======================================================================
+============ ========================================================================================
 """
 
 import lazy_loader

@@ -1,4 +1,4 @@
-from .motion import (
+from .velocity import (
     displacement as displacement,
     velocity as velocity,
     velocity_rms as velocity_rms,

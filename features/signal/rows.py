@@ -13,7 +13,7 @@ from numba import njit
 from numpy.typing import DTypeLike, NDArray
 from packaging.version import Version
 
-from gen.support.kernels import keep_on_disk
+from gen.support.kernel_cache import keep_on_disk
 from gen.support.sources import hash_sources
 
 BoolArray = NDArray[np.bool_]

@@ -2,21 +2,21 @@
 
 ``signals -> indicators, shaft speed -> table (record, feature) -> files``
 
-================ =================================================================================
-module           responsibility
-================ =================================================================================
-band             band of frequencies that features are computed from [pure]
-channels         channel of a corpus by name or number
-durations        durations of records, and the model that suits them [pure]
-definitions      name, unit, meaning, formula and range of every feature [pure]
-indicators       the feature vector of records, in four groups [pure]
-speed            shaft speed of a recording, from its windows [pure]
-recording_speeds shaft speed of every recording of a corpus, and warnings of wrong labels
-corpora          corpus -> feature table, part by part
-recordings       feature table of one recording that lies in no corpus
-files            feature tables on disk
-transformer      the feature vector as a scikit-learn transformer
-waveforms        signals of a corpus as an array that is read when it is indexed
-network_input    envelope levels at multiples of the fault orders, for networks [pure]
-================ =================================================================================
+================== =================================================================================
+module             responsibility
+================== =================================================================================
+band               band of frequencies that features are computed from [pure]
+channels           channel of a corpus by name or number
+durations          durations of records, and the model that suits them [pure]
+definitions        name, unit, meaning, formula and range of every feature [pure]
+indicators         the feature vector of records, in four groups [pure]
+speed_search       shaft speed of a recording, from its windows [pure]
+recording_speeds   shaft speed of every recording of a corpus, and warnings of wrong labels
+corpus_features    corpus -> feature table, part by part
+recording_features feature table of one recording that lies in no corpus
+table_files        feature tables on disk
+transformer        the feature vector as a scikit-learn transformer
+waveforms          signals of a corpus as an array that is read when it is indexed
+network_input      envelope levels at multiples of the fault orders, for networks [pure]
+================== =================================================================================
 """

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray
 from features.signal.speed import DISAGREEMENT, EVIDENCE, ShaftSpeed, find_speed
-from features.table.speed import line_levels
+from features.table.speed_search import line_levels
 from gen.corpus import RecordBlock, read_channel
 from gen.support.units import from_si
 

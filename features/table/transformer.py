@@ -19,7 +19,7 @@ from features.signal.rows import FloatArray
 from features.table.band import DEFAULT_BAND, checked_band
 from features.table.definitions import GROUPS
 from features.table.indicators import Orders, feature_names, indicators
-from features.table.speed import shaft_speed
+from features.table.speed_search import shaft_speed
 
 _FLOATS = (np.float64, np.float32)  # types of signals that are not converted
 

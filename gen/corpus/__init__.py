@@ -1,20 +1,20 @@
 """The corpus format: netCDF-4 files of records, one alone or several in a folder.
 
-============= =============================================================
+============= ======================================================================
 module        responsibility
-============= =============================================================
+============= ======================================================================
 codecs        codecs of stored signals
 fault_classes names of the fault classes, and their codes
 schema        dimensions, variables, units and roles
 simulated     further variables that readers know
 trust         the one look at a file before anything reads it; lock of the libraries
-files         atomic writing, checksums
+disk          atomic writing, checksums
 locking       one call at a time writes into a folder
 outputs       places of results, none of them in a corpus
-signals       records that cannot be used
-facts         what a corpus holds, counted from its variables
+unusable      records that cannot be used
+contents      what a corpus holds, counted from its variables
 part          one file of records
-reading       values of a file by plain slices, some records at a time
+slices        values of a file by plain slices, some records at a time
 lazy          records as a Dataset, read lazily, with a few files open
 publication   licence, creators and references of a corpus
 manifest      files of a corpus with size and hash, and its facts
@@ -28,7 +28,7 @@ items         records one by one or in batches, for training
 numbering     numbers of machines, bearings and recordings
 validation    all checks of a corpus
 description   page about the format
-============= =============================================================
+============= ======================================================================
 """
 
 import lazy_loader

@@ -8,7 +8,7 @@ from .fault_classes import (
     UNKNOWN as UNKNOWN,
     UNKNOWN_CODE as UNKNOWN_CODE,
 )
-from .facts import (
+from .contents import (
     UNITS as UNITS,
     FaultCounts as FaultCounts,
     by_class as by_class,
@@ -22,7 +22,7 @@ from .facts import (
     unit_counts as unit_counts,
     units_in_several_splits as units_in_several_splits,
 )
-from .files import (
+from .disk import (
     check_name as check_name,
     plain_file as plain_file,
     remove_left_behind as remove_left_behind,
@@ -74,7 +74,7 @@ from .outputs import (
 )
 from .part import PartRow as PartRow, part_name as part_name, part_number as part_number, write_part as write_part
 from .publication import Creator as Creator, Publication as Publication, read_publication as read_publication
-from .reading import (
+from .slices import (
     RecordBlock as RecordBlock,
     file_facts as file_facts,
     read_attributes as read_attributes,
@@ -98,7 +98,7 @@ from .schema import (
     identity as identity,
     make_dataset as make_dataset,
 )
-from .signals import (
+from .unusable import (
     SignalCounts as SignalCounts,
     complaint as complaint,
     counts_in_words as counts_in_words,

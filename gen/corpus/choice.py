@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus.facts import extent
+from gen.corpus.contents import extent
 from gen.corpus.schema import SPLITS
 from gen.corpus.where import label_columns, nearest, records_where
 from gen.support.errors import CorpusError

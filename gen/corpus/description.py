@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 from gen.corpus.fault_classes import BUILT_IN
 from gen.corpus.schema import FORMAT, ROLES, SCHEMA, SIGNAL, Variable, listed_flags
-from gen.corpus.signals import CLIPPED_SHARE
 from gen.corpus.simulated import LIFE
+from gen.corpus.unusable import CLIPPED_SHARE
 
 _FORMAT = f"""# The corpus format, version {FORMAT}
 

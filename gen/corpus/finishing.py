@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from gen.corpus.files import CARD_NAME, CROISSANT_NAME, remove_left_behind
+from gen.corpus.disk import CARD_NAME, CROISSANT_NAME, remove_left_behind
 from gen.corpus.index import corpus_attributes, join_parts, write_index
 from gen.corpus.manifest import (
     INDEX_NAME,
@@ -16,7 +16,7 @@ from gen.corpus.manifest import (
     write_manifest,
 )
 from gen.corpus.part import PartRow
-from gen.corpus.signals import SignalCounts
+from gen.corpus.unusable import SignalCounts
 
 
 def finish_corpus(directory: Path, rows: Iterable[PartRow], **facts: Any) -> SignalCounts:

@@ -13,7 +13,7 @@ import h5py
 import xarray as xr
 
 from gen.corpus.acdd import publication_attributes
-from gen.corpus.files import append_checksum, remove_checksum, whole_or_not_at_all
+from gen.corpus.disk import append_checksum, remove_checksum, whole_or_not_at_all
 from gen.corpus.lazy import open_part, open_records, stored_records
 from gen.corpus.manifest import (
     INDEX_NAME,
@@ -24,7 +24,6 @@ from gen.corpus.manifest import (
     read_manifest,
 )
 from gen.corpus.part import PartRow, write_netcdf, write_texts
-from gen.corpus.reading import codec_of
 from gen.corpus.schema import (
     RECIPE_TEXT,
     SIGNAL,
@@ -34,6 +33,7 @@ from gen.corpus.schema import (
     schema_problems,
 )
 from gen.corpus.simulated import LIFE, SIMULATED
+from gen.corpus.slices import codec_of
 from gen.corpus.trust import LIBRARY_LOCK
 from gen.support.errors import CorpusError
 

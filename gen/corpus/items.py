@@ -19,8 +19,8 @@ from gen.corpus.index import open_corpus
 from gen.corpus.manifest import Check
 from gen.corpus.schema import SIGNAL, class_names
 from gen.corpus.where import nearest
+from gen.support.display import Shown
 from gen.support.errors import CorpusError
-from gen.support.shown import Shown
 
 Transform = Callable[[NDArray[np.float32]], Any]
 Item = tuple[Any, Any]

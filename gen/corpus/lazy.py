@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
-from gen.corpus.files import Stamp, stamp
-from gen.corpus.reading import column_type, column_values, variables_of
+from gen.corpus.disk import Stamp, stamp
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, with_own_codes
+from gen.corpus.slices import column_type, column_values, variables_of
 from gen.corpus.trust import attributes_of, library_errors, open_trusted, own_dataset, packing_of, read_values
 from gen.support.errors import CorpusError
 

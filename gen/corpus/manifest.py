@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from gen.corpus.files import (
+from gen.corpus.disk import (
     INDEX_NAME,
     MANIFEST_NAME,
     RECIPE_NAME,
@@ -26,9 +26,9 @@ from gen.corpus.files import (
 )
 from gen.corpus.part import PartRow, part_number
 from gen.corpus.publication import Publication
-from gen.corpus.reading import RecordBlock, blocks_of, file_facts
 from gen.corpus.schema import FORMAT, RECIPE_TEXT
-from gen.corpus.signals import Count, SignalCounts, sum_counts
+from gen.corpus.slices import RecordBlock, blocks_of, file_facts
+from gen.corpus.unusable import Count, SignalCounts, sum_counts
 from gen.support.errors import CorpusError
 from gen.support.executor import cores
 from gen.support.limits import check_limit

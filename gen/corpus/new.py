@@ -8,7 +8,7 @@ from typing import Any
 import xarray as xr
 
 from gen.corpus.codecs import Codec
-from gen.corpus.files import (
+from gen.corpus.disk import (
     remove_left_behind_of,
     temporary_beside,
     whole_folder_or_none,

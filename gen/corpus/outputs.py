@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from gen.corpus.files import INDEX_NAME, check_name, corpus_around, place_of, write_text_durably, writing
+from gen.corpus.disk import INDEX_NAME, check_name, corpus_around, place_of, write_text_durably, writing
 from gen.corpus.locking import lock
 from gen.support.errors import CorpusError
 

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from gen.corpus.codecs import CODECS, Codec
-from gen.corpus.files import append_checksum, whole_or_not_at_all
+from gen.corpus.disk import append_checksum, whole_or_not_at_all
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
-from gen.corpus.signals import Count, SignalCounts, count_verdicts, judge
 from gen.corpus.trust import LIBRARY_LOCK
+from gen.corpus.unusable import Count, SignalCounts, count_verdicts, judge
 
 if TYPE_CHECKING:
     import xarray as xr

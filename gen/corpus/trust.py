@@ -23,7 +23,7 @@ import netCDF4  # noqa: F401 - tells HDF5 where its zstd filter is
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.files import stamp
+from gen.corpus.disk import stamp
 from gen.corpus.schema import MISSING_COUNT, SIGNAL, SIGNAL_DIMS
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit

@@ -17,8 +17,8 @@ from gen.corpus.manifest import (
     read_manifest,
     recipe_text,
 )
-from gen.corpus.reading import blocks_of, file_facts, read_columns, stored_blocks
-from gen.corpus.signals import VERDICTS, SignalCounts, count_verdicts, counts_in_words, judge
+from gen.corpus.slices import blocks_of, file_facts, read_columns, stored_blocks
+from gen.corpus.unusable import VERDICTS, SignalCounts, count_verdicts, counts_in_words, judge
 from gen.support.errors import CorpusError
 
 _MADE_BY = ("recipe_sha256", "sources_sha256")

@@ -2,23 +2,23 @@
 
 ``recipe, numbers -> make_part -> Dataset``; everything else decides which parts are made, where, and what becomes of them.
 
-=========== ==================================================================
-module      responsibility
-=========== ==================================================================
-sources     hash of the source files that make records
-facts       file name and origin of a part
-labels      variables written beside each record
-undetected  records drawn, simulated and measured; faults that cannot be seen drawn again
-step_checks some records integrated again at half their step
-parts       a part: its records and labels, from the recipe and their numbers
-compilation the kernel compiled before the first record
-target      the folder of a corpus, checked before anything is made
-corpus      a corpus, part by part
-replaying   any record made again from the scenario that it stores, bit for bit
-memory      records as one Dataset, from keys or from scenarios made by hand
-stream      records without end, straight into training
-torch_items the same for the data loader of PyTorch
-plan        counts, size and steps of a corpus before it is made
-writing     a Dataset of records as a corpus
-=========== ==================================================================
+============== =============================================================================
+module         responsibility
+============== =============================================================================
+record_sources hash of the source files that make records
+identity       file name and origin of a part
+labels         variables written beside each record
+undetected     records drawn, simulated and measured; faults that cannot be seen drawn again
+step_checks    some records integrated again at half their step
+make_part      a part: its records and labels, from the recipe and their numbers
+compilation    the kernel compiled before the first record
+target         the folder of a corpus, checked before anything is made
+corpus         a corpus, part by part
+replaying      any record made again from the scenario that it stores, bit for bit
+memory         records as one Dataset, from keys or from scenarios made by hand
+stream         records without end, straight into training
+torch_items    the same for the data loader of PyTorch
+plan           counts, size and steps of a corpus before it is made
+writing        a Dataset of records as a corpus
+============== =============================================================================
 """

@@ -6,7 +6,7 @@ from gen.measurement.measure import compile_measuring
 from gen.mechanisms.mechanism import mechanisms_of
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
-from gen.simulation.kernels import is_compiled, load_kernel
+from gen.simulation.compiled_kernel import is_compiled, load_kernel
 from gen.support.garbage import keep_garbage
 
 

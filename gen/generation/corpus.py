@@ -36,20 +36,20 @@ from gen.corpus import (
     write_part,
     writing,
 )
-from gen.generation.facts import failures_of, made_by, part_file
-from gen.generation.sources import sources_sha256
+from gen.generation.identity import failures_of, made_by, part_file
+from gen.generation.record_sources import sources_sha256
 from gen.generation.target import check_parts, check_same, claim, part_numbers, prepare, records_of, remove_other_parts
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
+from gen.support.display import Shown
 from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.executor import Workers, connected, run, too_many
 from gen.support.plugins import plugin_versions
 from gen.support.progress import Progress, counter
-from gen.support.shown import Shown
 
 if TYPE_CHECKING:
     from distributed import Client
 
-_SIMULATOR = "gen.generation.parts"  # takes a second and a half to load
+_SIMULATOR = "gen.generation.make_part"  # takes a second and a half to load
 
 
 @dataclass(frozen=True, repr=False)
@@ -248,7 +248,7 @@ def _write(recipe: Recipe, folder: Path, code: str, part: int) -> Outcome:
             f"worker {platform.node()}: has other sources of raceway ({_code()}) than this process ({code}); install the same version on "
             "every worker."
         )
-    from gen.generation.parts import make_part  # the simulator, which takes a second and a half to load
+    from gen.generation.make_part import make_part  # the simulator, which takes a second and a half to load
 
     made = make_part(recipe, recipe.records_of_part(part))
     path = folder / "parts" / part_file(recipe, part)

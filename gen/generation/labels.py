@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from gen.corpus import DRAWS, LIFE, make_dataset
 from gen.corpus.simulated import with_values
-from gen.measurement import levels
+from gen.measurement import gains
 from gen.measurement.measure import Measured, counts_per_unit
-from gen.mechanisms import labels as mechanisms
+from gen.mechanisms import mechanism_labels as mechanisms
 from gen.recipe import Recipe
 from gen.scenarios import scenario_texts, variables
 from gen.simulation import truth
@@ -21,7 +21,7 @@ from gen.simulation import truth
 LABELS = (
     *variables.LABELS,
     *truth.LABELS,
-    *levels.LABELS,
+    *gains.LABELS,
     *mechanisms.LABELS,
     *with_values(step_error=None, draws=None),
 )
@@ -53,7 +53,7 @@ def part_dataset(
         (variables.LABELS, scenarios),
         (truth.LABELS, runs),
         (life_labels, lives),
-        (levels.LABELS, records),
+        (gains.LABELS, records),
     ):
         columns |= {label.name: label.column(rows) for label in labels}
     columns |= {label.name: [values[label.name] for values in of_mechanisms] for label in mechanisms.LABELS}

@@ -13,8 +13,8 @@ from typing import Any
 import xarray as xr
 
 from gen.corpus import RECIPE_TEXT
-from gen.generation.facts import failures_of, library_versions, part_attributes
-from gen.generation.parts import decoded, labelled, make_part
+from gen.generation.identity import failures_of, library_versions, part_attributes
+from gen.generation.make_part import decoded, labelled, make_part
 from gen.generation.undetected import made_from
 from gen.recipe import Recipe, make_recipe, recipe_text
 from gen.recipe.keywords import FaultLike

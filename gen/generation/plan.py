@@ -15,8 +15,8 @@ import numpy as np
 from gen.corpus import CODECS, FAULTS, SPLITS
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios, scenario_texts
+from gen.simulation.compiled_kernel import is_compiled
 from gen.simulation.inputs import kernel_inputs
-from gen.simulation.kernels import is_compiled
 from gen.simulation.motion import draw_motion
 from gen.simulation.steps import steps_per_sample
 from gen.support.errors import SimulationError

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gen.corpus import SIGNAL, open_corpus
 from gen.corpus.numbering import NUMBERS
-from gen.generation.parts import decoded, labelled
+from gen.generation.make_part import decoded, labelled
 from gen.generation.undetected import made_from
 from gen.scenarios import Scenario, read_scenarios
 from gen.support.errors import CorpusError

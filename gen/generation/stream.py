@@ -15,8 +15,8 @@ import xarray as xr
 
 from gen.drawing import Grid, quantities, sections_with_places
 from gen.generation.compilation import compile_kernels
-from gen.generation.facts import failures_of
-from gen.generation.parts import decoded, joined, make_part
+from gen.generation.identity import failures_of
+from gen.generation.make_part import decoded, joined, make_part
 from gen.recipe import Recipe, corpus_identity, read_recipe
 from gen.support.errors import RecipeError, SimulationError
 from gen.support.executor import run, too_many

@@ -25,7 +25,7 @@ from gen.corpus import (
     write_manifest,
     writing,
 )
-from gen.generation.facts import part_file
+from gen.generation.identity import part_file
 from gen.recipe import Recipe, read_recipe
 from gen.support.errors import CorpusError, RecipeError
 from gen.support.yaml_files import parse_yaml

@@ -8,7 +8,7 @@ another part, so that every part finds the same fault.
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from gen.measurement.lives import with_ends
+from gen.measurement.ends_of_life import with_ends
 from gen.measurement.measure import Measured, measure
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, draw_scenarios, further_ratios

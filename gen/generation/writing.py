@@ -26,7 +26,7 @@ from gen.corpus import (
 from gen.corpus.numbering import new_numbers
 from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
 from gen.generation.corpus import facts_of
-from gen.generation.facts import part_attributes, part_file
+from gen.generation.identity import part_attributes, part_file
 from gen.generation.labels import LABELS
 from gen.measurement.measure import LARGEST_COUNT
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import ifft, next_fast_len, rfft
 
-from gen.measurement.levels import Gains, rms_of
+from gen.measurement.gains import Gains, rms_of
 from gen.measurement.mixing import Parts
 from gen.physics.kernel.compiling import compiled_to_disk
 

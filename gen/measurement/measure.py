@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.simulated import UNJUDGED
+from gen.measurement.components import parts_of
+from gen.measurement.gains import Gains, bearing_over_background, fault_over_rest, gains_of
 from gen.measurement.judging import Judge, compile_judging, judges_of
-from gen.measurement.levels import Gains, bearing_over_background, fault_over_rest, gains_of
 from gen.measurement.mixing import Parts
-from gen.measurement.parts import parts_of
 from gen.measurement.rig import RigFilters, rig_filters
 from gen.mechanisms.chain.measuring_chain import disturb
 from gen.recipe import Recipe

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-from gen.mechanisms.background.lines import lines_of_machine
 from gen.mechanisms.background.noise import noise_factors
+from gen.mechanisms.background.spectral_lines import lines_of_machine
 from gen.mechanisms.path import modulation_by_shaft, transmissibility
 from gen.physics.kernel.decimate import pass_band
 from gen.recipe import Recipe

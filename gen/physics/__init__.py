@@ -18,7 +18,7 @@ lubricant    oil film and temperature: clearance, stiffness, damping
 axial        squeeze of the balls by an axial load
 profile      change of speed and load over a record
 trace        path of a ball over a measured surface, and its mean over a contact
-inputs       input of the kernel for one record
+kernel_input input of the kernel for one record
 kernel       compiled: integrates and decimates many records at once
 ============ =====================================================================
 """

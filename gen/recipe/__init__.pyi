@@ -17,4 +17,4 @@ from .shares import (
     STATIC_RATING as STATIC_RATING,
     ranges as ranges,
 )
-from .text import recipe_text as recipe_text, write_recipe as write_recipe
+from .yaml_text import recipe_text as recipe_text, write_recipe as write_recipe

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from gen.mechanisms.mechanism import mechanisms_of
 from gen.recipe.faults import fault_class
-from gen.recipe.lives import life_problems
+from gen.recipe.life_checks import life_problems
 from gen.recipe.loads import contact_angles, load_problems
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.operation import Steps, Table

@@ -10,9 +10,9 @@ from gen.drawing import plain
 from gen.recipe.checks import check_recipe
 from gen.recipe.faults import fault_class
 from gen.recipe.sections import Sections
+from gen.support.display import Shown
 from gen.support.errors import RecipeError
 from gen.support.sentences import sentences
-from gen.support.shown import Shown
 
 _NO_KEYS: Mapping[str, Any] = MappingProxyType({})
 

@@ -10,10 +10,11 @@ from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, model
 
 from gen.corpus import Codec
 from gen.drawing import Count, Name, Number, Section
+from gen.mechanisms.background.background import BackgroundSection
 from gen.mechanisms.background.machine_conditions import MachineConditions
-from gen.mechanisms.background.section import BackgroundSection
 from gen.mechanisms.chain.measuring_chain import SensorFaultsSection
 from gen.mechanisms.path import PathSection
+from gen.recipe.credits import PublicationSection
 from gen.recipe.fault_entries import FaultList, fault_entries
 from gen.recipe.faults import Fault
 from gen.recipe.life import LifeSection
@@ -25,7 +26,6 @@ from gen.recipe.machine import (
 )
 from gen.recipe.operation import OperationSection
 from gen.recipe.origin import OriginSection
-from gen.recipe.publication import PublicationSection
 from gen.recipe.sensing import PhysicalLevel, RecordingSection, SnrLevel
 
 

@@ -11,11 +11,11 @@ import numpy as np
 from gen.drawing import Level, plain, stream
 from gen.mechanisms.faults.bearing_fault import BearingFault
 from gen.physics.bearing import Bearing
-from gen.physics.inputs import Spall
+from gen.physics.kernel_input import Spall
 from gen.physics.profile import Profile
 from gen.recipe import OriginSection, Recipe, fault_class, recipe_text
+from gen.support.display import Shown
 from gen.support.errors import RecipeError, SimulationError
-from gen.support.shown import Shown
 
 STEEPEST_CONTACT = math.radians(45)
 

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import Integral, integrate
 from gen.physics.kernel.layout import Batch, Shape
-from gen.simulation.kernels import load_kernel
+from gen.physics.kernel_input import KernelInput
+from gen.simulation.compiled_kernel import load_kernel
 from gen.simulation.timeline import Timeline
 
 

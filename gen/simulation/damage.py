@@ -13,9 +13,9 @@ from gen.mechanisms.faults.worn_race import DistributedFault
 from gen.physics.bearing import Bearing, orders
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import footprints
-from gen.physics.inputs import ROUND, Spall, Waviness
 from gen.physics.kernel.compiling import compiled_to_disk
 from gen.physics.kernel.drop import GEOMETRIC, PROFILES, drop
+from gen.physics.kernel_input import ROUND, Spall, Waviness
 from gen.physics.trace import ball_path, contact_mean, rough_surface, spall_positions
 from gen.scenarios import Scenario
 

@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 
 from gen.physics.bearing import FaultOrders
-from gen.physics.inputs import KernelInput, Spall
+from gen.physics.kernel_input import KernelInput, Spall
 from gen.scenarios import Scenario
 from gen.simulation.inputs import bare_inputs, resting
 from gen.simulation.motion import draw_motion

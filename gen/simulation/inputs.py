@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from gen.physics.inputs import KernelInput, at_rest
+from gen.physics.kernel_input import KernelInput, at_rest
 from gen.scenarios import Scenario
 from gen.simulation.damage import spall_inputs, waviness_of
-from gen.simulation.machine import check_load, heaviest_ball_load, machine_of, with_axial_loads
 from gen.simulation.motion import Motion, schedule_of, turning_of
+from gen.simulation.surroundings import check_load, heaviest_ball_load, machine_of, with_axial_loads
 from gen.support.errors import SimulationError
 
 _FIRST_COORDINATE = {"shaft": 0, "housing": 2, "sensor": 4}

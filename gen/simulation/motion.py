@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from gen.physics.bearing import Bearing, FaultOrders, orders, slipping_orders
 from gen.physics.elementary import exponential, power, standard_normals
-from gen.physics.inputs import CONSTANT, Turning, walk_slip_rms
 from gen.physics.kernel.layout import (
     JITTER_TERMS,
     SLIP_FIRST,
@@ -22,6 +21,7 @@ from gen.physics.kernel.layout import (
     n_process_terms,
 )  # fmt: skip
 from gen.physics.kernel.turning import STRIDE
+from gen.physics.kernel_input import CONSTANT, Turning, walk_slip_rms
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
 from gen.simulation.timeline import Timeline, timeline

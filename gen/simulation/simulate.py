@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.inputs import KernelInput
+from gen.physics.kernel_input import KernelInput
 from gen.scenarios import Scenario, same_recording
 from gen.simulation.batches import Integration, integrate_all
 from gen.simulation.inputs import kernel_inputs, without_fault

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.inputs import KernelInput
+from gen.physics.kernel_input import KernelInput
 from gen.physics.rotor import highest_angular_frequency, highest_damping_rate, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING
 from gen.scenarios import Scenario

@@ -7,7 +7,7 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.corpus.simulated import with_values
-from gen.physics.inputs import Spall
+from gen.physics.kernel_input import Spall
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
 from gen.simulation.damage import largest_drop_over

@@ -7,9 +7,9 @@ errors         one exception class per stage; each carries one sentence
 garbage        cheaper making of many objects
 sources        hash of source files
 plugins        what other distributions add by entry points
-kernels        compiled kernels on disk, made again if they are damaged or of other sources
+kernel_cache   compiled kernels on disk, made again if they are damaged or of other sources
 progress       progress of a long call
-shown          what an object shows in print and in a notebook
+display        what an object shows in print and in a notebook
 limits         how much a file from elsewhere may ask for
 units          units of recipes and labels, turned into SI
 yaml_files     recipes and common keys of labels, read within the limits

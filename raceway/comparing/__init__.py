@@ -9,7 +9,7 @@ measures        the measured features, each with unit and definition, from array
 contrast        weighted AUC and quantiles of two samples [pure]
 windows         windows of a corpus: choice, reading in blocks, common band and rate
 comparison      a synthetic corpus against real ones, and each real one against the others
-page            page of a comparison
+comparison_page page of a comparison
 compare_command the command compare
 =============== ==========================================================================
 """

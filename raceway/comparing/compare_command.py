@@ -8,7 +8,7 @@ import click
 from raceway.console import show
 from raceway.console.corpus_table import notice_of_unknown
 from raceway.console.options import A_CORPUS, json_option, pages_option
-from raceway.console.progress import progress
+from raceway.console.progress_bar import progress
 
 if TYPE_CHECKING:
     from raceway.comparing import Comparison
@@ -53,7 +53,7 @@ def compare(
       raceway compare corpus cwru mfpt -o realism
     """
     from raceway.comparing import compare as run
-    from raceway.comparing.page import write_comparison
+    from raceway.comparing.comparison_page import write_comparison
 
     with progress("measuring", "corpora") as report:
         comparison = run(synthetic, real, top=top, window=window, records=records, progress=report)

@@ -3,12 +3,12 @@
 =============== =========================================================
 module          responsibility
 =============== =========================================================
-signals         Ctrl-C and SIGTERM end a command with one line
+interruption    Ctrl-C and SIGTERM end a command with one line
 ending          exit codes, and one sentence per error
 show            results on standard output, as text or as one JSON object
 corpus_table    the feature table of a corpus that a command names
 options         arguments and options that several commands share
-progress        progress of a long command, on standard error
+progress_bar    progress of a long command, on standard error
 summary         contents of a corpus, for ``raceway info``
 plugin_commands groups of commands to which plug-ins add theirs
 =============== =========================================================

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from raceway.console import show
 from raceway.console.options import USUAL, USUAL_ANALYSIS, Analysis, Team
-from raceway.console.progress import notice, progress
+from raceway.console.progress_bar import notice, progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,7 +24,7 @@ def table_of(
 ) -> "xr.Dataset":
     """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
     from features import feature_table
-    from features.table.corpora import band_warnings
+    from features.table.corpus_features import band_warnings
     from features.table.recording_speeds import speed_warnings
     from gen.corpus import read_manifest
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from raceway.console.signals import INTERRUPTED, leave_if_interrupted
+from raceway.console.interruption import INTERRUPTED, leave_if_interrupted
 
 OWN = ("gen", "features", "raceway")
 DONE, FOUND_WANTING, BAD_INPUT, INTERNAL_ERROR, NO_READER = 0, 1, 2, 70, 141

@@ -47,7 +47,7 @@ def text(*paragraphs: str) -> None:
 
 def facts(pairs: Mapping[str, Any]) -> None:
     """Print names and values, one pair per line; a pair with an empty value is left out."""
-    from gen.support.shown import lines  # not at the top: help needs no gen
+    from gen.support.display import lines  # not at the top: help needs no gen
 
     text(*lines(pairs))
 

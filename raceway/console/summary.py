@@ -31,7 +31,7 @@ from gen.corpus import (
     text_counts,
     unit_counts,
 )
-from gen.corpus.facts import OF_FAULTS
+from gen.corpus.contents import OF_FAULTS
 from gen.corpus.schema import operating_problems, stored_unit
 from gen.support.errors import CorpusError
 from gen.support.units import READABLE, range_text

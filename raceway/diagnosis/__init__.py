@@ -13,12 +13,12 @@ levels           rms, peak, crest factor, kurtosis and velocity
 wording          sentences
 verdict          agreement of classifier and lines
 result           a recording, and its diagnosis
-facts            facts of a diagnosis for programs and for its page
-page             page of a diagnosis
+diagnosis_facts  facts of a diagnosis for programs and for its page
+diagnosis_page   page of a diagnosis
 tables           diagnoses of a folder: table, index page and CSV file
 answer           verdict, probabilities and evidence of a recording
 arrays           one call for a recording that is at hand as an array
-corpora          verdicts on the recordings of a corpus, counted
+corpus_verdicts  verdicts on the recordings of a corpus, counted
 diagnose_command the command diagnose
 ================ ============================================================================
 """

@@ -28,7 +28,7 @@ from features.table.channels import joined_channels
 from features.table.definitions import GROUPS
 from features.table.durations import suited
 from features.table.indicators import Orders, feature_names, indicators
-from features.table.recordings import recording_table, windows_of
+from features.table.recording_features import recording_table, windows_of
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError

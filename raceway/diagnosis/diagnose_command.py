@@ -9,7 +9,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, model_option
-from raceway.console.progress import notice, notice_compilation
+from raceway.console.progress_bar import notice, notice_compilation
 from raceway.diagnosis.tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
 from raceway.importing.reading_options import Reading, reading_options, rpm_option
 
@@ -97,7 +97,7 @@ def diagnose(
     The first call trains the reference model, in some ten seconds.
     docs/diagnose.md tells how to record and how to read the page.
     """
-    from raceway.importing.reading import read_as_stated, read_recording, readings_of, recordings_in, set_aside
+    from raceway.importing.user_folder import read_as_stated, read_recording, readings_of, recordings_in, set_aside
 
     known = _bearings(bearings, speeds)
     several = recording.is_dir()
@@ -120,7 +120,7 @@ def diagnose(
     with keep_garbage():
         loaded, source = _model(model)
         from raceway.diagnosis import diagnose_recording
-        from raceway.diagnosis.facts import assumptions, diagnosis_facts
+        from raceway.diagnosis.diagnosis_facts import assumptions, diagnosis_facts
 
     found = []
     # one recording at a time, read when its turn comes
@@ -171,7 +171,7 @@ def _write_page(
     facts: list[tuple[str, str]],
 ) -> None:
     from gen.corpus import make_result_folder
-    from raceway.diagnosis.page import write_diagnosis
+    from raceway.diagnosis.diagnosis_page import write_diagnosis
 
     if not page.parent.is_dir():  # of a folder of recordings
         make_result_folder(page.parent)

@@ -1,14 +1,14 @@
 """Levels of a recording as analysts read them: rms, peak, crest factor, kurtosis, and rms of the velocity. Pure.
 
-The velocity is that of `features.signal.motion.velocity_rms`.
+The velocity is that of `features.signal.velocity.velocity_rms`.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from features.signal.motion import velocity_rms
 from features.signal.rows import FloatArray
+from features.signal.velocity import velocity_rms
 from gen.support.units import from_si
 from raceway.importing.recorded import ACCELERATION
 

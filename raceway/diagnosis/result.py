@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from features.table.indicators import Orders
-from gen.support.shown import Shown
+from gen.support.display import Shown
 from gen.support.units import from_si
 from raceway.diagnosis.evidence import Line
 from raceway.diagnosis.levels import Levels

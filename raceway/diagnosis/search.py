@@ -34,7 +34,7 @@ from features.signal.speed import (
 from features.signal.speed import TOLERANCE as LABEL_TOLERANCE
 from features.table.band import DEFAULT_BAND
 from features.table.indicators import SHORTEST, Orders
-from features.table.speed import LONGEST, level_spectra
+from features.table.speed_search import LONGEST, level_spectra
 from raceway.diagnosis.evidence import SHAFT_DRIFT, TOLERANCE, Line, side_of
 
 ANY_RATE = (5.0, 100.0)  # Hz, of a shaft whose speed is not known

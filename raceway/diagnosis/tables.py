@@ -92,7 +92,7 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
         If one of the two exists and was not made by Raceway, or the disk refuses it.
     """
     from gen.corpus import check_result, make_result_folder, write_text_durably
-    from raceway.reports.colours import FAULT_COLOURS
+    from raceway.reports.class_colours import FAULT_COLOURS
     from raceway.reports.templates import template
 
     page = template("diagnoses.html.jinja", "raceway.diagnosis").render(

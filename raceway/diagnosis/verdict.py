@@ -41,7 +41,7 @@ def judge(
 ) -> tuple[str, str]:
     """Class, "damaged" or "unsure", and for the latter a clause with the reason.
 
-    ``distance`` is that of the colour from the healthy recordings, as in `features.baselines.colour`, and ``impulsive`` is of
+    ``distance`` is that of the colour from the healthy recordings, as in `features.baselines.colour_distance`, and ``impulsive`` is of
     `features.baselines.predictions.Predictions`.
     """
     likely = max(probabilities, key=lambda name: probabilities[name])

@@ -3,4 +3,4 @@ from .cwru import import_cwru as import_cwru
 from .femto import import_femto as import_femto
 from .generic import import_generic as import_generic
 from .mfpt import import_mfpt as import_mfpt
-from .signals import Signal as Signal, read_signal as read_signal
+from .acceleration import Signal as Signal, read_signal as read_signal

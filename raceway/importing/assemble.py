@@ -19,7 +19,7 @@ from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 from gen.support.plugins import plugin_versions
 from gen.support.progress import Progress, counter
-from raceway.importing.files import UnusableError
+from raceway.importing.array_files import UnusableError
 from raceway.importing.recordings import Candidate, Record, cut, read_recording
 from raceway.sharing import describe
 

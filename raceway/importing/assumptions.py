@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.support.units import from_si
-from raceway.importing.labels import Labels
+from raceway.importing.label_keys import Labels
 
 _TOPICS = {"fault": "Class", "specimen": "Specimen", "shaft_rpm": "Shaft speed (rpm)", "load_n": "Load (N)"}
 _MOST_PATHS = 3  # shown of the files that a sentence holds for

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from raceway.importing.array_files import FloatArray, UnusableError
 from raceway.importing.axes import axes_of
 from raceway.importing.conversion import Unit
-from raceway.importing.files import FloatArray, UnusableError
 from raceway.importing.header import SECONDS, Header, key_of, known_unit, rounded_rate
 from raceway.importing.table import NumberTable
 

@@ -20,9 +20,9 @@ from gen.physics.catalogue import CATALOGUE
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from gen.support.units import HORSEPOWER, MIL, STANDARD_GRAVITY, rpm_to_hertz
+from raceway.importing.array_files import FloatArray
 from raceway.importing.assemble import Collection, Import, import_recordings
 from raceway.importing.columns import signal_of
-from raceway.importing.files import FloatArray
 from raceway.importing.matlab import read_matlab
 from raceway.importing.recordings import Candidate, Recording, files_below, name_of
 from raceway.importing.resampling import resample

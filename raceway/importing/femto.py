@@ -23,8 +23,8 @@ from gen.physics.catalogue import CATALOGUE
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from gen.support.units import STANDARD_GRAVITY, rpm_to_hertz
+from raceway.importing.array_files import UnusableError, guarded
 from raceway.importing.assemble import Collection, Import, import_recordings
-from raceway.importing.files import UnusableError, guarded
 from raceway.importing.recordings import Candidate, Recording, files_below, name_of
 
 FS = 25_600.0

@@ -16,14 +16,14 @@ from features.fault_classes import ALL_CLASSES
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from gen.support.units import rpm_to_hertz, to_si
+from raceway.importing.acceleration import acceleration, reader
+from raceway.importing.array_files import FloatArray, UnusableError
 from raceway.importing.assemble import Collection, Import, import_recordings
 from raceway.importing.assumptions import assumptions
-from raceway.importing.files import FloatArray, UnusableError
+from raceway.importing.label_keys import Labels, SensorKeys
 from raceway.importing.label_tables import read_table_of_labels
-from raceway.importing.labels import Labels, SensorKeys
 from raceway.importing.recordings import Candidate, Recording
 from raceway.importing.resampling import resample
-from raceway.importing.signals import acceleration, reader
 
 _NO_RATE = 10_000.0  # Hz, if no file states one: each is then skipped with its own reason
 _OF_A_FILE = {"path", "delimiter", "decimal", "channels", *SensorKeys.model_fields}

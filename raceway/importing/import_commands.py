@@ -8,7 +8,7 @@ import click
 from raceway.console import show
 from raceway.console.options import A_PATH, json_option, target_option
 from raceway.console.plugin_commands import PluginGroup
-from raceway.console.progress import notice, progress
+from raceway.console.progress_bar import notice, progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable

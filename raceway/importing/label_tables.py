@@ -20,10 +20,10 @@ from gen.support.limits import check_limit, limit
 from gen.support.sentences import sentences
 from gen.support.units import unit_suffix
 from gen.support.yaml_files import parse_yaml, read_yaml
-from raceway.importing.files import UnusableError, guarded, reason_of
-from raceway.importing.labels import Labels
+from raceway.importing.array_files import UnusableError, guarded, reason_of
+from raceway.importing.label_keys import Labels
 from raceway.importing.numerals import decimal_marks, is_number, number_in
-from raceway.importing.text import text_of
+from raceway.importing.text_files import text_of
 
 _TABLES = (".csv", ".txt", ".tsv")
 _MARKS = "\t;,"

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.trust import LIBRARY_LOCK, ForeignStorageError, own_dataset
+from raceway.importing.array_files import UnusableError, guarded
 from raceway.importing.axes import axes_of
-from raceway.importing.files import UnusableError, guarded
 from raceway.importing.header import Header, unit_said
 from raceway.importing.numerals import number_in
 from raceway.importing.table import NumberTable, table_of

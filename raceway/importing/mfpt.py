@@ -15,9 +15,9 @@ from pathlib import Path
 from gen.physics.catalogue import CATALOGUE
 from gen.support.progress import Progress
 from gen.support.units import POUND_FORCE, STANDARD_GRAVITY
+from raceway.importing.array_files import UnusableError
 from raceway.importing.assemble import Collection, Import, import_recordings
 from raceway.importing.columns import signal_of
-from raceway.importing.files import UnusableError
 from raceway.importing.matlab import read_matlab
 from raceway.importing.recordings import Candidate, Recording, files_below, name_of
 from raceway.importing.resampling import resample

@@ -17,7 +17,7 @@ from gen.corpus import FAULTS, SPLITS, UNKNOWN, UNKNOWN_CODE
 from gen.physics.bearing import Bearing, orders
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit, limit
-from raceway.importing.files import FloatArray, UnusableError, reason_of
+from raceway.importing.array_files import FloatArray, UnusableError, reason_of
 
 _LARGEST_ACCELERATION = 1e7  # m s-2, ten times the range of shock accelerometers
 _AS_RECORDED = ("rig", "specimen", "shaft_rate", "load", "n_spalls", "width", "depth", "angle")

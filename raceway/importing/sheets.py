@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from gen.support.limits import check_limit
-from raceway.importing.files import UnusableError, guarded
+from raceway.importing.array_files import UnusableError, guarded
 from raceway.importing.numerals import is_number
 from raceway.importing.table import NumberTable, read_table
 

@@ -5,7 +5,7 @@ module         responsibility
 ============== ========================================================
 survival       pure: survival curves of censored lives, after their age
 prognosis      estimates of remaining life, tested on other bearings
-pictures       pictures of a life
+life_pictures  pictures of a life
 lives_commands the commands life and prognose
 ============== ========================================================
 """

@@ -35,7 +35,7 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
 
     The picture has the spectra of its snapshots over its age, its rms, and the true length of its spall with the first detection.
     """
-    from raceway.lives.pictures import draw_life
+    from raceway.lives.life_pictures import draw_life
     from raceway.reports.pictures import check_picture, write_picture
 
     check_picture(output)

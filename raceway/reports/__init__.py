@@ -3,18 +3,18 @@
 =============== ==================================================================
 module          responsibility
 =============== ==================================================================
-colours         colours of the fault classes
+class_colours   colours of the fault classes
 pictures        drawings of one record, and the style of all
-shown           what is drawn: a record, or a recording of the user
+subject         what is drawn: a record, or a recording of the user
 maps            drawings of kurtograms, order maps and coherence
 views           one view of a record, over orders at any speed
 summaries       drawings of the contents of a corpus, and of scores
 curves          drawing of a learning curve
-ranking         drawing of the best features of a ranking
+ranking_picture drawing of the best features of a ranking
 sides           drawings of several sets side by side: examples, and distributions
 examples        an example of each class as a picture
 templates       templates of pages
-page            a corpus and its benchmark on one page
+report_page     a corpus and its benchmark on one page
 explore         a corpus on one page to browse
 explore_command the command explore
 =============== ==================================================================

@@ -9,7 +9,7 @@ from features.fault_classes import ALL_CLASSES, COMBS
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULT_NAMES
 from gen.support.units import from_si
-from raceway.reports.colours import FAULT_COLOURS
+from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.pictures import (
     STYLE,
     WIDTH,
@@ -19,7 +19,7 @@ from raceway.reports.pictures import (
     draw_waveform,
     picture,
 )
-from raceway.reports.shown import can_be_drawn, shown_of
+from raceway.reports.subject import can_be_drawn, shown_of
 
 CANDIDATES = 15  # records of a class among which its example is chosen
 

@@ -26,8 +26,8 @@ from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 from features.table.band import DEFAULT_BAND, Band, checked_band
 from features.table.channels import channel_number, channels_of
-from features.table.files import read_table
 from features.table.indicators import Orders
+from features.table.table_files import read_table
 from gen.corpus import (
     DRAWS,
     IDENTITY,
@@ -40,13 +40,13 @@ from gen.corpus import (
     write_text_durably,
 )
 from gen.corpus.choice import per_record
-from gen.corpus.facts import extent
+from gen.corpus.contents import extent
+from gen.support.display import visible
 from gen.support.errors import CorpusError
 from gen.support.executor import run
 from gen.support.progress import Progress, counter
-from gen.support.shown import visible
 from gen.support.units import keys_of, range_text, shown_unit
-from raceway.reports.colours import FAULT_COLOURS
+from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.maps import BRIGHTEST_DB
 from raceway.reports.pictures import (
     SEGMENT,
@@ -57,7 +57,7 @@ from raceway.reports.pictures import (
     highest_drawn_order,
     squared_envelope,
 )
-from raceway.reports.shown import can_be_drawn, check_band, shown_of
+from raceway.reports.subject import can_be_drawn, check_band, shown_of
 from raceway.reports.templates import template
 from raceway.reports.views import envelope_map
 

@@ -14,7 +14,7 @@ from raceway.console.options import (
     file_option,
     worker_options,
 )
-from raceway.console.progress import progress
+from raceway.console.progress_bar import progress
 
 
 @click.command()

@@ -1,6 +1,6 @@
 """Pictures of a record, drawn from plain arrays, and the style of all pictures.
 
-All colours, those of `raceway.reports.colours` included, are from the palette of Okabe and Ito [1]_, which
+All colours, those of `raceway.reports.class_colours` included, are from the palette of Okabe and Ito [1]_, which
 colour-blind readers can distinguish. Pictures contain numbers and class names, and no text of a corpus.
 
 .. [1] M. Okabe, K. Ito, "Color Universal Design: how to make figures and presentations that are friendly to colorblind
@@ -28,7 +28,7 @@ from gen.corpus import GENERATOR, check_result, write_durably
 from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
-from raceway.reports.colours import FAULT_COLOURS
+from raceway.reports.class_colours import FAULT_COLOURS
 
 PictureFormat = Literal["png", "svg", "pdf"]
 FORMATS: Mapping[str, PictureFormat] = {".png": "png", ".svg": "svg", ".pdf": "pdf"}

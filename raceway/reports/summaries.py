@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULT_NAMES
-from raceway.reports.colours import FAULT_COLOURS
+from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from importlib.resources import files
 import jinja2
 import numpy as np
 
-from gen.support.shown import visible
+from gen.support.display import visible
 
 
 def template(name: str, package: str = "raceway.reports") -> jinja2.Template:

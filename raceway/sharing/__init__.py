@@ -3,7 +3,7 @@
 ============= ========================================================
 module        responsibility
 ============= ========================================================
-columns       columns with safe names, and the page about a copy
+form_columns  columns with safe names, and the page about a copy
 copying       chosen records of one or several corpora, block by block
 joining       several corpora with the same variables and new numbers
 parquet_files Parquet

@@ -60,7 +60,7 @@ def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None
     Next: read DIR/README.md, then raceway copy DIR -o NAME.nc
     """
     publication = _publication(corpus, {name: value for name, value in given.items() if value})
-    from raceway.sharing.card.page import card_folder
+    from raceway.sharing.card.card_page import card_folder
     from raceway.sharing.card_pictures import complete_card
 
     added = complete_card(corpus, scores)

@@ -28,10 +28,10 @@ from gen.corpus import (
 )
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
-from raceway.reports.colours import FAULT_COLOURS
+from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.examples import chosen_example
-from raceway.reports.page import quantities
 from raceway.reports.pictures import STYLE, WIDTH, DrawnRecord, draw_envelope_spectrum, draw_waveform, picture
+from raceway.reports.report_page import quantities
 from raceway.reports.summaries import draw_content
 from raceway.sharing.card.additions import (
     PICTURES,
@@ -42,7 +42,7 @@ from raceway.sharing.card.additions import (
     read_additions,
     write_additions,
 )
-from raceway.sharing.card.page import card_folder, check_card
+from raceway.sharing.card.card_page import card_folder, check_card
 from raceway.sharing.publishing import describe
 
 DPI = 110

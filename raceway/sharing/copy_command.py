@@ -8,7 +8,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import A_CORPUS, choice_options, json_option, target_option
-from raceway.console.progress import notice, progress
+from raceway.console.progress_bar import notice, progress
 
 
 def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[str, ...]) -> dict[str, str]:

@@ -12,14 +12,14 @@ from typing import Any
 import xarray as xr
 
 from gen.corpus.acdd import content_id, license_address, publication_attributes
-from gen.corpus.files import CROISSANT_NAME, sha256, write_text_durably
+from gen.corpus.disk import CROISSANT_NAME, sha256, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
 from gen.corpus.publication import Publication
-from gen.corpus.reading import read_classes
 from gen.corpus.schema import SIGNAL, SPLITS
+from gen.corpus.slices import read_classes
+from raceway.sharing.card.card_page import card_folder
 from raceway.sharing.card.citation import bibtex
-from raceway.sharing.card.page import card_folder
 
 _PARTS = {
     "@type": "cr:FileSet",

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from gen.corpus.codecs import CODECS, Codec
-from gen.corpus.files import remove_left_behind_of, whole_folder_or_none, whole_or_not_at_all
+from gen.corpus.disk import remove_left_behind_of, whole_folder_or_none, whole_or_not_at_all
 from gen.corpus.new import NewCorpus, new_corpus
 from gen.corpus.outputs import check_new
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
-from raceway.sharing.columns import Export
 from raceway.sharing.copying import choose
+from raceway.sharing.form_columns import Export
 from raceway.sharing.huggingface import write_huggingface
 from raceway.sharing.parquet_files import write_parquet, write_parquet_file
 from raceway.sharing.publishing import describe

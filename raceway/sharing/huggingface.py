@@ -12,7 +12,7 @@ import numpy as np
 
 from gen.corpus.schema import SPLITS
 from raceway.sharing.card.markdown import plain_text
-from raceway.sharing.columns import Column, Export
+from raceway.sharing.form_columns import Column, Export
 from raceway.sharing.parquet_files import known_classes, write_shards
 
 _LICENCES = (

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gen.corpus.choice import channel_names, per_record
 from gen.corpus.fault_classes import UNKNOWN
 from gen.corpus.schema import SIGNAL, class_names, listed_flags
-from gen.corpus.signals import VERDICTS, judge
+from gen.corpus.unusable import VERDICTS, judge
 from gen.support.errors import CorpusError
 
 _WITHOUT_CONTENT = [VERDICTS.index(verdict) for verdict in ("dead", "constant", "not_finite")]

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from raceway.sharing.columns import Column, Export
 from raceway.sharing.copying import Block
+from raceway.sharing.form_columns import Column, Export
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -6,14 +6,14 @@ from typing import Any
 
 from gen.corpus import Publication
 from gen.corpus.acdd import publication_attributes
-from gen.corpus.files import remove_left_behind_of, writing
+from gen.corpus.disk import remove_left_behind_of, writing
 from gen.corpus.finishing import finish_corpus, remove_temporary_files
 from gen.corpus.index import corpus_attributes, rewrite_attributes
 from gen.corpus.locking import lock
 from gen.corpus.manifest import corpus_files, facts_of_parts, read_manifest, recipe_text
 from gen.corpus.publication import read_publication
 from raceway.sharing.card.additions import read_additions, write_additions
-from raceway.sharing.card.page import card_folder, check_card, write_card
+from raceway.sharing.card.card_page import card_folder, check_card, write_card
 from raceway.sharing.croissant import write_croissant
 
 

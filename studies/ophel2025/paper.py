@@ -16,12 +16,12 @@ from scipy.signal import get_window
 
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.inputs import KernelInput, Spall, Turning
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate
 from gen.physics.kernel.layout import n_process_terms
+from gen.physics.kernel_input import KernelInput, Spall, Turning
 from gen.physics.rotor import Machine
 
 FloatArray = NDArray[np.floating]

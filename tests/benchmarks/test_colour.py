@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.colour import distances
 from features import feature_table
-from features.baselines.colour import COUNTED
+from features.baselines.colour_distance import COUNTED
 from features.baselines.records import feature_rows
 
 

@@ -16,7 +16,7 @@ from features.table.indicators import Orders, feature_names
 from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY, UNKNOWN
 from raceway.reports import pictures
-from raceway.reports.colours import FAULT_COLOURS
+from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.pictures import DrawnRecord, draw_record, fault_lines
 from tests.paths import ROOT
 

@@ -11,7 +11,7 @@ from features.baselines.records import Records
 from features.baselines.tracks import track_splits
 from gen.support.errors import CorpusError
 from raceway.reports.pictures import picture
-from raceway.reports.ranking import draw_ranking
+from raceway.reports.ranking_picture import draw_ranking
 
 
 def table_of(fault, specimen, recording, **features):

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import gen
-from gen.generation.parts import make_part
+from gen.generation.make_part import make_part
 from gen.recipe import read_recipe
 from gen.scenarios import read_scenarios
 from gen.support.errors import RecipeError

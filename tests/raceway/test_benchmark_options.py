@@ -5,7 +5,7 @@ import json
 import pytest
 
 from features.baselines import TRACKS, cross_validate, load_maker
-from raceway.commands import benchmarking
+from raceway.commands import benchmark_commands
 
 pytestmark = pytest.mark.usefixtures("unpainted", "tables_once")
 
@@ -85,7 +85,7 @@ def test_options_that_cannot_be_used_are_refused_before_any_feature_is_computed(
     run, tiny_corpus, tmp_path, mine, monkeypatch, options, sentence
 ):
     assert mine
-    monkeypatch.setattr(benchmarking, "table_of", lambda *_: pytest.fail("features were computed"))
+    monkeypatch.setattr(benchmark_commands, "table_of", lambda *_: pytest.fail("features were computed"))
     result = run("benchmark", tiny_corpus, "-o", tmp_path / "report", *options)
     assert result.exit_code != 0
     assert sentence in str(result.exception) + result.output

@@ -12,8 +12,8 @@ from click.testing import CliRunner
 
 from features.baselines import ESTIMATORS
 from features.baselines.names import DEFAULT_ESTIMATOR
-from features.table.files import read_table
 from features.table.indicators import feature_names
+from features.table.table_files import read_table
 from gen.corpus import FAULTS, SIGNAL, open_corpus
 from gen.support.limits import VARIABLE
 from raceway.cli import GROUPS, cli

@@ -2,7 +2,7 @@
 
 from importlib.metadata import PackageNotFoundError
 
-from raceway.commands import doctor
+from raceway.commands import doctor_command
 
 
 def test_the_machine_of_the_tests_has_all_that_is_needed(told, run):
@@ -19,7 +19,7 @@ def test_a_library_that_is_missing_or_too_old_is_a_problem_with_its_remedy(run, 
             raise PackageNotFoundError
         return {"xarray": "2020.1"}.get(name, "9999")
 
-    monkeypatch.setattr(doctor, "version", found)
+    monkeypatch.setattr(doctor_command, "version", found)
     shown = run("doctor")
     assert shown.exit_code == 1
     lines = [line for line in shown.stdout.splitlines() if line and not line.startswith("fine")]

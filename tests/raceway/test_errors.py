@@ -8,7 +8,7 @@ import h5py
 import pytest
 
 from features.baselines import Model
-from features.table.files import write_table
+from features.table.table_files import write_table
 from raceway.console import ending, show
 from raceway.console.options import _Corpus
 from tests.command_tree import COMMANDS

@@ -19,7 +19,7 @@ from gen import generate
 from gen.recipe import read_recipe, shipped_recipes
 from raceway import kept_models
 from raceway.cli import cli
-from raceway.commands.models import warn_of_durations
+from raceway.commands.model_commands import warn_of_durations
 from tests.model_files import make_table
 
 pytestmark = pytest.mark.usefixtures("unpainted", "quick_estimators", "tables_once")
@@ -52,8 +52,8 @@ def test_another_recipe_other_sources_or_another_library_make_another_model(tiny
     (tmp_path / "tiny.yaml").write_text(tiny_recipe.read_text() + "\n# changed\n")
     names = {kept_models.kept_path(tiny_recipe).name, kept_models.kept_path(tmp_path / "tiny.yaml").name}
     for place, changed in (
-        ("features.baselines.sources.score_sources", lambda: "other"),
-        ("gen.generation.sources.sources_sha256", lambda: "other"),
+        ("features.baselines.score_sources.score_sources", lambda: "other"),
+        ("gen.generation.record_sources.sources_sha256", lambda: "other"),
         ("raceway.kept_models.hash_sources", lambda *_: "other"),
         ("raceway.kept_models.version", lambda name: "0.0" if name == "scipy" else version(name)),
     ):

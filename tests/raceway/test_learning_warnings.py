@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from features.baselines import Model
-from features.table.files import write_table
+from features.table.table_files import write_table
 from gen.support.errors import CorpusError
-from raceway.commands import benchmarking, feature_tables, models
+from raceway.commands import benchmark_commands, feature_commands, model_commands
 from tests.model_files import make_table
 
 SENTENCE = "warning: tested but not trained: inner 2 mm wide; the scores of these classes include extrapolation."
@@ -35,7 +35,7 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "corpus").mkdir()
 
     def returning(made):
-        for module in (feature_tables, models, benchmarking):
+        for module in (feature_commands, model_commands, benchmark_commands):
             monkeypatch.setattr(module, "table_of", lambda *_: made)
         monkeypatch.setattr("raceway.diagnosis.count_verdicts", lambda *_: {})  # the folder has no recordings
         return tmp_path / "corpus"
@@ -45,7 +45,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_parquet_without_pyarrow_is_refused_before_any_feature_is_computed(run, folder, tmp_path, monkeypatch):
     corpus = folder(None)
-    monkeypatch.setattr(feature_tables, "table_of", lambda *_: pytest.fail("features were computed"))
+    monkeypatch.setattr(feature_commands, "table_of", lambda *_: pytest.fail("features were computed"))
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     result = run("features", corpus, "-o", tmp_path / "x.parquet")
     assert result.exit_code != 0
@@ -70,7 +70,7 @@ def test_train_warns_of_widths_that_only_the_test_split_has(run, folder, tmp_pat
 @pytest.mark.usefixtures("few_trees")
 def test_benchmark_warns_of_widths_that_a_fold_or_the_other_corpus_adds(run, folder, tmp_path, monkeypatch):
     monkeypatch.setattr("features.baselines.estimators.ROUNDS", 2)
-    monkeypatch.setattr("raceway.reports.page.write_report", lambda *_: tmp_path / "report.html")
+    monkeypatch.setattr("raceway.reports.report_page.write_report", lambda *_: tmp_path / "report.html")
     corpus = folder(table((2e-3,) + (1e-3,) * 15))
     assert SENTENCE in run("benchmark", corpus, "-o", tmp_path / "out", "--folds", 3).stderr
 

@@ -11,7 +11,7 @@ from features.table.band import DEFAULT_BAND
 from features.table.recording_speeds import SPEEDS
 from gen.support.errors import CorpusError
 from gen.support.executor import cores
-from raceway.commands import plotting as plotting
+from raceway.commands import plot_commands as plotting
 from raceway.console.options import names, speed_option
 from raceway.importing.reading_options import _speeds
 from raceway.reports.views import VIEWS
@@ -183,7 +183,7 @@ def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_p
     made = told("features", tiny_corpus, "-o", tmp_path / "features.nc")
     assert made["records_with_missing_features"] == 0
     one = {"records_with_missing_features": 1}
-    monkeypatch.setattr("features.table.files.write_table", lambda table, _: table.attrs.update(one))
+    monkeypatch.setattr("features.table.table_files.write_table", lambda table, _: table.attrs.update(one))
     made = told("features", tiny_corpus, "-o", tmp_path / "features.nc")
     assert made["records_with_missing_features"] == 1
     shown = run("features", tiny_corpus, "-o", tmp_path / "features.nc").stdout

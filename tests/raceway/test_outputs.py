@@ -12,15 +12,15 @@ import pytest
 import xarray as xr
 
 from features.baselines import Model
-from features.table.corpora import feature_table
-from features.table.files import write_table
+from features.table.corpus_features import feature_table
+from features.table.table_files import write_table
 from gen import generate, write_corpus
 from gen.corpus import corpus_files, read_manifest, result_folder
-from gen.corpus.files import _HOST
+from gen.corpus.disk import _HOST
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
 from raceway import copy
-from raceway.sharing.card.page import card_folder
+from raceway.sharing.card.card_page import card_folder
 from tests.command_tree import COMMANDS
 from tests.conftest import small_with
 from tests.pulses import write_pulses

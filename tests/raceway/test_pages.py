@@ -7,7 +7,7 @@ import pytest
 
 from features.table.definitions import GROUPS, VIEWS, define_features
 from raceway.cli import cli
-from raceway.pages import TABLES, draw_features, with_tables
+from raceway.feature_pages import TABLES, draw_features, with_tables
 from tests.page_examples import run_blocks
 from tests.paths import ROOT
 from tests.tone_corpora import write_corpus

@@ -5,26 +5,26 @@ from types import SimpleNamespace
 
 import pytest
 
-from raceway.console import progress
+from raceway.console import progress_bar
 
 
 @pytest.fixture
 def clock(monkeypatch):
     """Seconds on the clock, which a test sets."""
     now = [0.0]
-    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(progress_bar.time, "monotonic", lambda: now[0])
     return now
 
 
 @pytest.fixture
 def lines(monkeypatch):
     found = []
-    monkeypatch.setattr(progress, "notice", found.append)
+    monkeypatch.setattr(progress_bar, "notice", found.append)
     return found
 
 
 def test_a_line_comes_every_ten_seconds_and_at_the_end(clock, lines):
-    report = progress.show_progress("generating", "records")
+    report = progress_bar.show_progress("generating", "records")
     for clock[0], done in ((9.0, 9), (11.0, 11), (12.0, 12), (22.0, 21), (30.0, 30)):
         report(done, 30)
     assert [line.partition(",")[0] for line in lines] == [f"generating: {done} of 30 records" for done in (11, 21, 30)]
@@ -32,7 +32,7 @@ def test_a_line_comes_every_ten_seconds_and_at_the_end(clock, lines):
 
 def test_speed_and_time_left_are_those_between_the_bursts(clock):
     """Half of the units are kept from before; then a batch of ten is done every five seconds, after a minute of compilation."""
-    pace = progress._pace("records")
+    pace = progress_bar._pace("records")
     clock[0] = 60.0
     assert [pace(done, 200) for done in (99, 100)] == ["speed not known yet"] * 2
     for batch in range(1, 6):
@@ -43,21 +43,21 @@ def test_speed_and_time_left_are_those_between_the_bursts(clock):
 
 
 def test_the_last_line_tells_the_time_taken(clock, lines):
-    report = progress.show_progress("generating", "records")
+    report = progress_bar.show_progress("generating", "records")
     clock[0] = 4.2
     report(30, 30)
     assert lines == ["generating: 30 of 30 records, in 4 s"]
 
 
 def test_a_call_that_counts_something_else_is_not_said_to_count_records(clock, lines):
-    report = progress.show_progress("features")
+    report = progress_bar.show_progress("features")
     for clock[0], done in ((1.0, 1), (11.0, 3), (12.0, 4)):
         report(done, 4)
     assert lines == ["features: 3 of 4, 0.2/s, 5 s left", "features: 4 of 4, in 12 s"]
 
 
 def test_work_that_is_done_at_once_has_no_speed_that_is_not_known_yet():
-    assert progress._pace("records")(112, 112) == ""
+    assert progress_bar._pace("records")(112, 112) == ""
 
 
 def test_a_notebook_renews_one_line(clock, lines, monkeypatch):
@@ -66,7 +66,7 @@ def test_a_notebook_renews_one_line(clock, lines, monkeypatch):
     display = SimpleNamespace(display=lambda *_, **__: line)
     notebook = SimpleNamespace(get_ipython=lambda: SimpleNamespace(kernel=1), display=display)
     monkeypatch.setitem(sys.modules, "IPython", notebook)
-    report = progress.show_progress("generating", "records")
+    report = progress_bar.show_progress("generating", "records")
     for clock[0], done in ((0.1, 1), (2.1, 2), (2.2, 3)):
         report(done, 3)
     assert lines == []

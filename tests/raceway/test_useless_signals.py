@@ -4,7 +4,7 @@ import numpy as np
 
 from gen.corpus import FAULT_NAMES, open_corpus, validate_corpus
 from raceway.console.ending import FOUND_WANTING
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 
 SENTENCE = (
     "48 of 48 records cannot be used (48 clipped): raise recording.converter.full_scale_m_s2, or lower operation.load_n, level.gain or "

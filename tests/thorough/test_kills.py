@@ -9,7 +9,7 @@ import gen
 import raceway
 from gen.corpus import open_corpus, sha256, validate_corpus
 from raceway.sharing import FORMS, card_pictures, croissant_problems
-from raceway.sharing.card.page import card_folder
+from raceway.sharing.card.card_page import card_folder
 from tests import corpora
 from tests.kills import killed
 from tests.same_corpora import files

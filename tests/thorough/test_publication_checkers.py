@@ -15,7 +15,7 @@ from gen.corpus import open_corpus, read_manifest, read_publication, sha256, val
 from gen.generation.corpus import generate
 from raceway import describe, publish
 from raceway.importing import import_generic
-from raceway.sharing.card.page import card_folder
+from raceway.sharing.card.card_page import card_folder
 from tests.labels import write_labels
 
 FACTS = {

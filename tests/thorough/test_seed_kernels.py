@@ -9,9 +9,9 @@ import pytest
 from benchmarks import rivals
 from benchmarks.kernel import compiled, compiler, in_lanes
 from benchmarks.seed import GEOMETRIC, NO_SPALL, RECTANGULAR, seed_of, seed_records
-from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.decimate import decimation
+from gen.physics.kernel_input import KernelInput
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
 from gen.simulation.batches import integrate_batch

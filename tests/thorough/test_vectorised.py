@@ -8,7 +8,7 @@ from numba import njit
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.layout import STATE_ROWS, Batch, Shape, param_rows
 from gen.physics.kernel.step import advance
-from gen.simulation.kernels import DIMENSIONS
+from gen.simulation.compiled_kernel import DIMENSIONS
 
 BALLS = 4 + 2 + 1  # of which the code of a kind of contact is made
 ROOTS = 3 * BALLS + 3 * BALLS  # three kinds of balls, and rollers, whose power takes three square roots

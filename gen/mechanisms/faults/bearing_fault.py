@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 from gen.corpus.schema import Variable
 from gen.drawing import Section
 from gen.physics.bearing import Bearing
-from gen.physics.inputs import Spall
+from gen.physics.kernel_input import Spall
 
 BALL_SPACING, RACES = "ball_spacing_mm", ("inner", "outer")
 
@@ -53,7 +53,7 @@ class BearingFault(Section):
         return []
 
     def turning(self) -> Mapping[str, float]:
-        """Fields of :class:`gen.physics.inputs.Turning` that differ from those of a sound bearing."""
+        """Fields of :class:`gen.physics.kernel_input.Turning` that differ from those of a sound bearing."""
         return {}
 
 

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from gen.drawing import Distribution, Draws, Number, Section, within
 from gen.mechanisms.faults.bearing_fault import BALL_SPACING, RACES, BearingFault
 from gen.physics.bearing import Bearing, ball_spacing
-from gen.physics.inputs import Spall
+from gen.physics.kernel_input import Spall
 from gen.support.errors import RecipeError
 from gen.support.units import from_si, to_si
 

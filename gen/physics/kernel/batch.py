@@ -8,7 +8,6 @@ makes a record diverge instead of bending its physics.
 import numpy as np
 
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, TABLE_POINTS
-from gen.physics.inputs import KernelInput, Turning, farthest_jitter, is_wavy, spall_span, walk_slip_rms
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.contacts import COS, SIN
 from gen.physics.kernel.drop import PROFILES
@@ -34,6 +33,7 @@ from gen.physics.kernel.layout import (
 )  # fmt: skip
 from gen.physics.kernel.spalls import NEVER
 from gen.physics.kernel.turning import STRIDE
+from gen.physics.kernel_input import KernelInput, Turning, farthest_jitter, is_wavy, spall_span, walk_slip_rms
 from gen.physics.rotor import Machine, as_columns
 
 _SITES = {"inner": Site.INNER, "outer": Site.OUTER, "ball": Site.BALL}

@@ -15,7 +15,7 @@ from numba import njit, types
 from numba.core.compiler import Compiler
 from numba.extending import intrinsic, register_jitable
 
-from gen.support.kernels import keep_on_disk
+from gen.support.kernel_cache import keep_on_disk
 from gen.support.sources import hash_sources
 
 # Records advanced side by side. With 32 the kernel is 4 to 8 % slower on Zen 4: the rows of a batch leave the first cache.

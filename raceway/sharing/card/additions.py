@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from gen.corpus.files import plain_file, write_text_durably
+from gen.corpus.disk import plain_file, write_text_durably
 from gen.corpus.manifest import Manifest, Strict, first_problem
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit

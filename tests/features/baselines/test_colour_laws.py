@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from features.baselines.calibration import UNCALIBRATED
-from features.baselines.colour import COUNTED, DECIBELS, SCATTER, Colour, distance, scatter_of
+from features.baselines.colour_distance import COUNTED, DECIBELS, SCATTER, Colour, distance, scatter_of
 from features.baselines.predictions import UNSURE, predictions
 
 CLASSES = ("healthy", "inner", "outer")

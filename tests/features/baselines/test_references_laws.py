@@ -13,8 +13,8 @@ from features.baselines.reference_choice import OTHER_BEARING, check_durations, 
 from features.baselines.references import ENERGIES, NEAREST, SAME_SPEED, relative_names, relative_to, virtual_references
 from features.fault_classes import EVIDENCE
 from features.table.indicators import Orders
+from features.table.recording_features import recording_table
 from features.table.recording_speeds import recording_numbers
-from features.table.recordings import recording_table
 from gen.corpus import UNKNOWN_CODE
 from gen.support.errors import CorpusError
 from raceway.cli import cli

@@ -7,7 +7,7 @@ import sys
 
 from features.baselines import benchmark, read_results
 from features.baselines.results_file import write_results
-from features.baselines.sources import _MAKES_SCORES
+from features.baselines.score_sources import _MAKES_SCORES
 from tests.features.baselines.test_baselines_laws import make_table
 
 
@@ -46,9 +46,7 @@ def test_an_altered_or_foreign_row_is_scored_again(tmp_path, monkeypatch):
 
 
 def test_the_sources_of_scores_cover_all_that_is_loaded_to_make_them():
-    modules = (
-        "features.table.corpora, features.table.waveforms, features.baselines.results_file, features.baselines.models"
-    )
+    modules = "features.table.corpus_features, features.table.waveforms, features.baselines.results_file, features.baselines.models"
     code = f"import sys, {modules}; print(*sys.modules)"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)

@@ -13,12 +13,12 @@ from features.baselines.records import all_records, features_of, labelled_record
 from gen.corpus import FAULT_NAMES, UNKNOWN_CODE, open_corpus, validate_corpus
 from gen.support.errors import CorpusError
 from raceway.cli import cli
-from raceway.commands import models
+from raceway.commands import model_commands
 from raceway.comparing.windows import common_ground, measured_windows
 from raceway.console.summary import describe
 from raceway.reports.examples import draw_examples
-from raceway.reports.page import write_report
-from raceway.sharing.card.page import data_card
+from raceway.reports.report_page import write_report
+from raceway.sharing.card.card_page import data_card
 from tests.labels import import_labelled
 
 pytestmark = pytest.mark.usefixtures("few_trees", "unpainted")
@@ -121,7 +121,7 @@ def test_evaluate_lists_the_answers_for_recordings_of_unknown_class(corpus, tabl
     held = json.loads(done.stdout)
     assert held["records"] == 12
     assert [set(one) for one in held["unknown"]] == [{"source", "records", "answer", "probabilities"}] * 2
-    monkeypatch.setattr(models, "table_of", lambda *_: table.isel(record=slice(12, None)))
+    monkeypatch.setattr(model_commands, "table_of", lambda *_: table.isel(record=slice(12, None)))
     alone = CliRunner().invoke(cli, command, prog_name="raceway")
     assert alone.exit_code == 0, alone.output
     assert "no record has a known class, so there is no score." in alone.stdout

@@ -10,10 +10,10 @@ from distributed import Client
 
 from features import feature_table
 from features.table.band import Band, band_attributes, band_of
-from features.table.corpora import band_warnings, block_features
+from features.table.corpus_features import band_warnings, block_features
 from features.table.definitions import GROUPS
-from features.table.files import read_table, write_table
 from features.table.indicators import Orders, feature_names, indicators
+from features.table.table_files import read_table, write_table
 from gen.corpus import (
     MISSING_COUNT,
     ROLES,
@@ -132,7 +132,7 @@ def test_rows_are_in_the_order_of_the_corpus(corpus, table):
 
 
 def test_a_single_file_is_worked_on_block_by_block(tmp_path, table, monkeypatch):
-    monkeypatch.setattr("gen.corpus.reading._BLOCK_RECORDS", 4)
+    monkeypatch.setattr("gen.corpus.slices._BLOCK_RECORDS", 4)
     done = []
     found = feature_table(make_corpus(tmp_path / "c.nc"), progress=lambda *counts: done.append(counts))
     xr.testing.assert_equal(found, table)

@@ -5,7 +5,6 @@ import pytest
 import xarray as xr
 
 from features import feature_table, shaft_speed
-from features.table.files import read_table, write_table
 from features.table.recording_speeds import (
     BY,
     ESTIMATE,
@@ -18,6 +17,7 @@ from features.table.recording_speeds import (
     recording_speeds,
     speed_warnings,
 )
+from features.table.table_files import read_table, write_table
 from gen.corpus import FAULTS, Variable, open_corpus, record_blocks
 from tests.corpora import write_records
 from tests.pulses import LINES, ORDERS, pulse_train

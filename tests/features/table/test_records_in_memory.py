@@ -10,7 +10,7 @@ from features.baselines import benchmark, cross_validate, learning_curve
 from features.table.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
 from raceway.reports.explore import write_explorer
-from raceway.reports.shown import shown_record
+from raceway.reports.subject import shown_record
 
 
 @pytest.fixture(scope="module")

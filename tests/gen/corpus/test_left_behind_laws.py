@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from gen.corpus import new_corpus, remove_left_behind_of, temporary_beside
-from gen.corpus.files import _HOST
+from gen.corpus.disk import _HOST
 from gen.support.errors import CorpusError
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.corpus.schema import MISSING_COUNT
-from gen.corpus.signals import CLIPPED_SHARE, VERDICTS, SignalCounts, complaint, count_verdicts, judge, sum_counts
+from gen.corpus.unusable import CLIPPED_SHARE, VERDICTS, SignalCounts, complaint, count_verdicts, judge, sum_counts
 
 N = 1000
 counts = st.builds(SignalCounts, *[st.integers(0, 50)] * 4)

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-from features.table.corpora import feature_table
+from features.table.corpus_features import feature_table
 from gen.corpus import SIGNAL, open_corpus, part_name, read_manifest, validate_corpus
 from gen.support.errors import CorpusError, RacewayError
 from raceway.console.summary import describe
@@ -267,7 +267,7 @@ def test_no_name_of_a_picture_is_an_internal_error_or_leads_out(copied, name):
     folder = copied / "c"
     picture = CardPicture(name=name, title="A picture", caption="")
     write_additions(folder, CardAdditions(parts=read_manifest(folder).parts_sha256, pictures=(picture,)))
-    from raceway.sharing.card.page import data_card
+    from raceway.sharing.card.card_page import data_card
 
     card = data_card(folder)
     assert "../" not in card.partition("## Pictures")[2].partition("\n## ")[0]

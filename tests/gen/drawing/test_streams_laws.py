@@ -3,7 +3,7 @@
 import pytest
 
 from gen.drawing import Distribution, Section, composed, within
-from gen.mechanisms.background.section import LOCKED, SOURCES
+from gen.mechanisms.background.background import LOCKED, SOURCES
 from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.recipe import Recipe, read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios

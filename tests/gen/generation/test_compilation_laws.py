@@ -8,7 +8,7 @@ from gen.generation.compilation import compile_kernels
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.decimate import decimation
 from gen.scenarios import draw_scenarios
-from gen.simulation.kernels import signature
+from gen.simulation.compiled_kernel import signature
 from tests.responses import input_of
 
 

@@ -7,9 +7,9 @@ import shutil
 import pytest
 
 from gen.corpus import SignalCounts, open_corpus, part_name, read_manifest, write_manifest
-from gen.generation import sources as sources_of_records
+from gen.generation import record_sources as sources_of_records
 from gen.generation.corpus import generate
-from gen.generation.sources import sources_sha256
+from gen.generation.record_sources import sources_sha256
 from gen.recipe import read_recipe
 from gen.support import sources
 from gen.support.errors import ClusterError, CorpusError
@@ -144,7 +144,7 @@ def test_every_part_that_is_not_the_right_one_is_made_again_to_the_byte(write_re
 
 
 def test_edited_sources_neither_complete_a_corpus_nor_keep_its_parts(recipe_file, begun, single, monkeypatch):
-    for module in ("gen.generation.corpus", "gen.generation.facts"):
+    for module in ("gen.generation.corpus", "gen.generation.identity"):
         monkeypatch.setattr(f"{module}.sources_sha256", lambda: "b" * 64)
     for corpus in (begun, single.path):
         with pytest.raises(CorpusError, match=r"was begun with sources [0-9a-f]{12}; sources bbbbbbbbbbbb is"):

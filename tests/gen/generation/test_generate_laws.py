@@ -11,7 +11,7 @@ from gen.corpus import SIGNAL, open_corpus, read_manifest, recipe_text, validate
 from gen.corpus.manifest import Overrides
 from gen.generation.corpus import generate
 from gen.support.errors import CorpusError, RecipeError
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 from tests.same_corpora import assert_the_same_corpus
 from tests.worker_processes import worker_processes
 

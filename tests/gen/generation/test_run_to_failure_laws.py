@@ -10,7 +10,7 @@ import gen
 from gen.corpus import LIFE, open_corpus
 from gen.generation.corpus import generate
 from gen.generation.replaying import replay
-from gen.measurement.lives import velocity_rms
+from gen.measurement.ends_of_life import velocity_rms
 from gen.physics.trace import spall_positions
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import spall_paths

@@ -9,7 +9,7 @@ from gen.physics.catalogue import CATALOGUE
 from raceway.console.summary import describe
 from raceway.importing.assemble import Collection, import_recordings
 from raceway.importing.recordings import Candidate, Recording
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 
 # of three machines the second exceeds the range of the converter by far
 ONE_LOUD_RIG = {"level": {"kind": "physical", "gain": "grid(1, 1000, 1)"}}

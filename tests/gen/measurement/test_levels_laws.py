@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.measurement.levels import fault_over_rest, gains_of, rms_of
+from gen.measurement.gains import fault_over_rest, gains_of, rms_of
 
 
 def products_of(fault, healthy, noise):

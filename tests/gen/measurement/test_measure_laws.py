@@ -56,7 +56,7 @@ def test_the_first_ratio_at_which_the_fault_is_seen_is_taken_and_nothing_else_mo
     bearing = np.float32(hiss(recipe, 1)[0])
     twin = np.float32(1e-3) * bearing
     whole = twin + np.float32(rise) * bearing[:, ::-1]
-    monkeypatch.setattr("gen.measurement.parts.lines_of_faults", lambda _: ())
+    monkeypatch.setattr("gen.measurement.components.lines_of_faults", lambda _: ())
     measured = measure([whole], [scenario], [twin], ratios={scenario.origin.record: [-20.0, 10.0, 20.0]})
     ratio = (-30.0, -20.0, 10.0)[tries]
     assert measured.detectable.tolist() == [int(tries > 0)]

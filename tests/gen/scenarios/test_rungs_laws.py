@@ -12,7 +12,7 @@ from gen.generation.corpus import generate
 from gen.generation.plan import plan
 from gen.generation.replaying import replay
 from gen.scenarios import draw_scenarios, read_scenarios
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 from tests.recipes import EVERY_FAULT
 from tests.responses import input_of
 

@@ -14,7 +14,7 @@ from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import static_rating
 from gen.recipe import ranges
 from gen.scenarios import draw_scenarios
-from gen.simulation.machine import machine_of
+from gen.simulation.surroundings import machine_of
 from gen.support.errors import RecipeError
 from tests.drawn_values import anywhere, with_key_of
 

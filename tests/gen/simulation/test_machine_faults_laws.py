@@ -10,8 +10,8 @@ from scipy.stats import kstest
 
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.inputs import Turning
 from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
+from gen.physics.kernel_input import Turning
 from gen.physics.rotor import as_columns, rest
 from tests.lanes import march_lanes
 from tests.reference import knock_scatter

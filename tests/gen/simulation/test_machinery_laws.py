@@ -13,8 +13,8 @@ from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_factor
 from gen.physics.kernel.batch import input_shape
 from gen.scenarios import draw_scenarios
-from gen.simulation.machine import heaviest_ball_load
 from gen.simulation.motion import cosine_sum
+from gen.simulation.surroundings import heaviest_ball_load
 from tests.reference import turned
 from tests.responses import input_of, means_of, runs_of
 

@@ -7,7 +7,7 @@ import pytest
 from numba import float32, float64, int64, njit
 from numba.core import event
 
-from gen.support.kernels import is_on_disk, keep_on_disk
+from gen.support.kernel_cache import is_on_disk, keep_on_disk
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ import re
 import pytest
 
 from raceway.comparing import compare
+from raceway.comparing.comparison_page import write_comparison
 from raceway.comparing.measures import MEASURES
-from raceway.comparing.page import write_comparison
 from tests.pulses import write_pulses
 from tests.raceway.reports.test_report import Links
 

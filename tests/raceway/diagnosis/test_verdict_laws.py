@@ -6,7 +6,7 @@ import pytest
 from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
 from features.table.indicators import Orders
-from features.table.recordings import windows_of
+from features.table.recording_features import windows_of
 from gen.corpus import FAULTS
 from raceway.diagnosis import Given, Pair
 from raceway.diagnosis.answer import Judged, _conclude, _usable

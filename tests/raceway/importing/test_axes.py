@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from raceway.importing.acceleration import RefusedError, read_signal
 from raceway.importing.axes import axes_of
 from raceway.importing.header import Header, unit_said
-from raceway.importing.signals import RefusedError, read_signal
 from tests.raceway.importing.file_writers import T, X, Y, array, mat, text, wav
 
 Z = np.roll(X, 7)

@@ -13,7 +13,7 @@ from gen.corpus import FAULTS, open_corpus, validate_corpus
 from gen.support.errors import CorpusError
 from raceway.importing import import_cwru
 from raceway.importing.cwru import SPECIMENS
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 
 G = 9.80665
 

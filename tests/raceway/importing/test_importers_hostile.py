@@ -12,10 +12,10 @@ from gen.corpus import validate_corpus
 from gen.support.errors import CorpusError
 from gen.support.limits import VARIABLE
 from raceway.importing import import_cwru
-from raceway.importing.files import UnusableError, read_numpy
+from raceway.importing.array_files import UnusableError, read_numpy
 from raceway.importing.matlab import read_matlab
 from raceway.importing.table import read_text
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 from tests.labels import import_labelled
 
 SIGNAL = np.random.default_rng(1).normal(size=(1, 3000))

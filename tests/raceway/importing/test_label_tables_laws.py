@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from gen.support.errors import CorpusError
 from gen.support.limits import VARIABLE
 from gen.support.units import unit_suffix
+from raceway.importing.label_keys import Labels
 from raceway.importing.label_tables import read_table_of_labels
-from raceway.importing.labels import Labels
 from tests.labels import write_labels
 from tests.paths import ROOT
 

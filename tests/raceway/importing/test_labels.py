@@ -15,9 +15,9 @@ from gen.physics.bearing_text import Geometry
 from gen.recipe.keys import recipe_keys
 from gen.support.units import unit_suffix
 from raceway.importing import import_generic
-from raceway.importing.labels import Labels
+from raceway.importing.label_keys import Labels
 from raceway.importing.resampling import resample
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 from tests.labels import import_labelled, write_labels
 from tests.raceway.importing.file_writers import excel
 

@@ -12,7 +12,7 @@ import scipy.io
 from gen.corpus import open_corpus
 from gen.support.errors import CorpusError
 from raceway.importing import import_generic, read_signal
-from raceway.importing.reading import OPTIONS
+from raceway.importing.user_folder import OPTIONS
 from tests.labels import import_labelled, write_labels
 from tests.raceway.importing.file_writers import FS, X, excel
 from tests.raceway.importing.people_files import ONE, OTHER_VALUES, PLAIN, REFUSED, RIGHT, THREE

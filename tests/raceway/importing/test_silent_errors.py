@@ -13,8 +13,8 @@ from gen.support.errors import CorpusError
 from gen.support.limits import VARIABLE
 from raceway.importing import read_signal
 from raceway.importing.label_tables import read_table_of_labels
-from raceway.importing.reading import OPTIONS, read_recording, recordings_in
 from raceway.importing.reading_options import Reading
+from raceway.importing.user_folder import OPTIONS, read_recording, recordings_in
 from tests.labels import write_labels
 from tests.raceway.importing.file_writers import FS, N, T, X, Y, array, changed, excel, mat, text, workbook
 from tests.raceway.importing.people_files import AT, LVM, ONE_LVM, PLAIN

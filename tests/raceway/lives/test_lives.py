@@ -8,7 +8,7 @@ from gen.corpus import open_corpus
 from gen.generation.corpus import generate
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
-from raceway.lives.pictures import draw_life
+from raceway.lives.life_pictures import draw_life
 from tests.conftest import small_with
 from tests.recipes import LIVES
 

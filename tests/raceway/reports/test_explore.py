@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from features.table.band import DEFAULT_BAND
-from features.table.corpora import feature_table
-from features.table.files import read_table, write_table
+from features.table.corpus_features import feature_table
+from features.table.table_files import read_table, write_table
 from gen.corpus import open_corpus
 from gen.corpus.choice import chosen_records
 from gen.support.errors import CorpusError
@@ -26,7 +26,7 @@ from raceway.reports.explore import (
     reduce_record,
     write_explorer,
 )
-from raceway.reports.shown import shown_recording
+from raceway.reports.subject import shown_recording
 from tests.browser import CHROMIUM, browser
 from tests.pulses import ORDERS, pulse_train, write_pulses
 from tests.raceway.reports.test_report import write_corpus

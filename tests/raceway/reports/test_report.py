@@ -14,13 +14,12 @@ from hypothesis import strategies as st
 from features.baselines import ESTIMATORS, Model, benchmark, learning_curve
 from features.baselines.detection import detection
 from features.table.band import DEFAULT_BAND
-from features.table.corpora import feature_table
+from features.table.corpus_features import feature_table
 from features.table.indicators import Orders
 from gen.corpus import FAULTS, open_corpus
 from gen.support.errors import CorpusError
 from raceway.reports import examples
 from raceway.reports.curves import draw_curve, draw_detection, draw_reliability, draw_roc
-from raceway.reports.page import _findings, quantities, write_report
 from raceway.reports.pictures import (
     DrawnRecord,
     draw_record,
@@ -30,7 +29,8 @@ from raceway.reports.pictures import (
     thin,
     write_picture,
 )
-from raceway.reports.shown import shown_record
+from raceway.reports.report_page import _findings, quantities, write_report
+from raceway.reports.subject import shown_record
 from raceway.reports.summaries import draw_scores
 from tests.browser import CHROMIUM, browser
 from tests.corpora import write_records

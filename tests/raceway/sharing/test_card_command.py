@@ -13,7 +13,7 @@ from gen.corpus import lock, open_corpus, read_manifest, validate_corpus
 from gen.support.errors import CorpusError
 from raceway import describe
 from raceway.sharing import card_pictures
-from raceway.sharing.card.page import card_folder
+from raceway.sharing.card.card_page import card_folder
 from tests.tone_corpora import write_corpus
 
 ORDERS = {"ftf": 0.4, "bpfo": 9.0, "bpfi": 4.0, "bsf": 2.4}  # so that the lines of the pictures are those of the tones

@@ -15,9 +15,9 @@ from gen.corpus.manifest import Manifest, Overrides
 from gen.support.errors import CorpusError
 from raceway import publish
 from raceway.sharing.card.additions import CardAdditions, CardPicture, write_additions
+from raceway.sharing.card.card_facts import ranges, rebuilding
+from raceway.sharing.card.card_page import data_card
 from raceway.sharing.card.citation import bibtex
-from raceway.sharing.card.facts import ranges, rebuilding
-from raceway.sharing.card.page import data_card
 from tests.tone_corpora import write_corpus
 
 

@@ -17,7 +17,7 @@ from gen.corpus import SIGNAL, Publication, new_corpus, open_corpus
 from gen.support.errors import CorpusError
 from raceway import publish
 from raceway.sharing import FORMS, parquet_files
-from raceway.sharing.columns import plain_names
+from raceway.sharing.form_columns import plain_names
 from tests.corpora import dataset, write_corpus, write_parts
 from tests.same_corpora import files
 

@@ -11,7 +11,7 @@ from gen.recipe import read_recipe, recipe_hash
 from gen.support.errors import CorpusError, RecipeError
 from raceway import describe, publish
 from raceway.sharing import croissant_problems
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 from tests import corpora
 from tests.paths import ROOT
 from tests.same_corpora import files

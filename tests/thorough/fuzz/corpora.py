@@ -15,12 +15,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from features.table.corpora import feature_table
+from features.table.corpus_features import feature_table
 from gen.corpus import SIGNAL, open_corpus, validate_corpus
 from gen.corpus.manifest import manifest_text
 from gen.support.errors import RacewayError
 from raceway.console.summary import describe
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 from tests.corpora import write_corpus
 
 INDEX, MANIFEST, SINGLE = "index.nc", "manifest.json", "c.nc"

@@ -5,7 +5,7 @@ import pytest
 
 from gen.mechanisms.background.looseness import Looseness
 from gen.mechanisms.background.machine_conditions import MACHINE_CONDITIONS
-from gen.mechanisms.labels import label_values
+from gen.mechanisms.mechanism_labels import label_values
 from gen.scenarios import draw_scenarios
 from tests.measuring import FLOAT, background_of, drawn, quiet
 

@@ -11,8 +11,8 @@ events are larger than those of the smooth motion.
 import numpy as np
 import pytest
 
-from gen.physics.inputs import Spall, Turning
 from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel_input import Spall, Turning
 from tests.lanes import march_lanes
 from tests.strategies import RIG, record
 

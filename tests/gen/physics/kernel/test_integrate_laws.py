@@ -6,11 +6,11 @@ from scipy.signal import find_peaks, hilbert
 
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.inputs import Spall, Turning, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate
+from gen.physics.kernel_input import Spall, Turning, at_rest
 from tests.strategies import RIG, record, seeds
 
 FS = 12_000

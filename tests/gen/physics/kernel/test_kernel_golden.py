@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from gen.physics.bearing import Bearing
-from gen.physics.inputs import KernelInput, Spall, Turning
 from gen.physics.kernel.layout import n_process_terms
+from gen.physics.kernel_input import KernelInput, Spall, Turning
 from gen.physics.rotor import Machine
 from tests.lanes import EVERY_ACCELERATION, march_lanes
 from tests.paths import GOLDEN

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.inputs import Spall, Turning
 from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel_input import Spall, Turning
 from tests.lanes import march_lanes
 from tests.strategies import RIG, machines, record, steady_turnings, wandering_records
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from gen.physics.hertz import LINE_EXPONENT
-from gen.physics.inputs import Spall, Turning, Waviness, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
 from gen.physics.kernel.layout import PICKUPS, Angle, Drive, Param, Site, SpallRow
+from gen.physics.kernel_input import Spall, Turning, Waviness, at_rest
 from tests.lanes import march_batch
 from tests.strategies import RIG, ball_waves, race_waves, record
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 
 from gen.physics.bearing import slipping_orders
-from gen.physics.inputs import Turning
 from gen.physics.kernel.layout import SPEED_TERMS
+from gen.physics.kernel_input import Turning
 from tests.lanes import march_lanes
 from tests.reference import process, turned
 from tests.strategies import RIG, record, wandering_records

@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
-from gen.physics.inputs import Waviness, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.layout import N_DYNAMIC
+from gen.physics.kernel_input import Waviness, at_rest
 from tests.lanes import march_lanes
 from tests.strategies import angles, troubled_records
 

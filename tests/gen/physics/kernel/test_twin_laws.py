@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.extent import MAX_BALLS
-from gen.physics.inputs import at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate
 from gen.physics.kernel.layout import N_DYNAMIC
+from gen.physics.kernel_input import at_rest
 from tests.lanes import march_lanes
 from tests.reference import contact_stiffness, contacts, march_twin, right_hand_side, slow_motion
 from tests.strategies import extended_records, steady_records, troubled_records, wandering_records

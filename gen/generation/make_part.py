@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gen.corpus.numbering import NUMBERS
 from gen.corpus.schema import add_class_names
-from gen.generation.facts import failures_of, part_attributes
+from gen.generation.identity import failures_of, part_attributes
 from gen.generation.labels import part_dataset
 from gen.generation.step_checks import step_errors
 from gen.generation.undetected import Made, made_from, make_records

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from gen.corpus.disk import CARD_NAME, CARD_SUFFIX, corpus_around, place_of, write_text_durably
 from gen.corpus.fault_classes import FAULTS
-from gen.corpus.files import CARD_NAME, CARD_SUFFIX, corpus_around, place_of, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import RECIPE_NAME, Manifest, corpus_files, read_manifest, recipe_text
-from gen.corpus.reading import read_classes
 from gen.corpus.schema import listed_flags
+from gen.corpus.slices import read_classes
 from gen.support.errors import CorpusError
 from raceway.sharing.card import additions
+from raceway.sharing.card.card_facts import card_facts, needs_plugin
 from raceway.sharing.card.citation import bibtex, citation
-from raceway.sharing.card.facts import card_facts, needs_plugin
 from raceway.sharing.card.markdown import code_text, plain_text
 
 if TYPE_CHECKING:

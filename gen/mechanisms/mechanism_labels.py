@@ -3,8 +3,8 @@
 from typing import Any
 
 from gen.corpus.schema import Variable
+from gen.mechanisms.background.background import LOCKED, locked_of
 from gen.mechanisms.background.machine_conditions import CONDITIONS
-from gen.mechanisms.background.section import LOCKED, locked_of
 from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.mechanisms.faults.kinds import KINDS
 from gen.support.errors import RacewayError

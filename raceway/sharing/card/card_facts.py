@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from gen.corpus.choice import per_record
-from gen.corpus.facts import (
+from gen.corpus.contents import (
     UNITS,
     by_class,
     clipped_records,
@@ -19,9 +19,9 @@ from gen.corpus.facts import (
     units_in_several_splits,
 )
 from gen.corpus.manifest import RECIPE_NAME, Manifest
-from gen.corpus.reading import codec_of
 from gen.corpus.schema import ROLES, SPLITS, stored_unit
-from gen.corpus.signals import counts_in_words
+from gen.corpus.slices import codec_of
+from gen.corpus.unusable import counts_in_words
 
 MOST_NAMES = 12  # bearings named on the card; the others are counted
 _NEW = "../again"

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gen.support.errors import CorpusError
-from raceway.importing.recorded import ACCELERATION, Recorded
-from raceway.importing.signals import (
+from raceway.importing.acceleration import (
     SUFFIXES,
     Reader,
     RefusedError,
@@ -18,6 +17,7 @@ from raceway.importing.signals import (
     read_signal,
     reader,
 )
+from raceway.importing.recorded import ACCELERATION, Recorded
 
 if TYPE_CHECKING:
     from raceway.importing.reading_options import Reading

@@ -57,7 +57,7 @@ def _end(awaited: set[signal.Signals]) -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     _kill_workers()
     sentence = sentence_of()
-    files = sys.modules.get("gen.corpus.files")  # loaded only if a file was written
+    files = sys.modules.get("gen.corpus.disk")  # loaded only if a file was written
     remove = (lambda: None) if files is None else files.remove_unfinished
     remove()
     below_the_bar = "\n\x1b[?25h" if os.isatty(terminal) else ""  # and show the cursor again

@@ -15,7 +15,7 @@ from gen.corpus import FAULTS, make_result_folder, write_numbers, write_text_dur
 from raceway.comparing.comparison import SHARES, Comparison
 from raceway.comparing.measures import MEASURES, NAMES, Measure
 from raceway.comparing.windows import Windows, typical_window
-from raceway.reports.colours import FAULT_COLOURS
+from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.pictures import DrawnRecord, picture
 from raceway.reports.sides import draw_distributions, draw_sides
 from raceway.reports.templates import template, three_digits

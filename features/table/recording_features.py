@@ -55,7 +55,7 @@ def recording_table(
 
     Returns
     -------
-    A table as of `features.table.corpora.feature_table`, with the variables that a prediction needs.
+    A table as of `features.table.corpus_features.feature_table`, with the variables that a prediction needs.
 
     Raises
     ------

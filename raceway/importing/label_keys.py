@@ -8,6 +8,7 @@ from features.fault_classes import ALL_CLASSES
 from gen.physics.bearing import Bearing
 from gen.physics.bearing_text import bearing_of_label
 from gen.support.key_types import Keys, Millimetres, Name, Text
+from raceway.importing.acceleration import WITHOUT_UNITS, Place
 from raceway.importing.conversion import VOLTAGES, Scale, Unit, unit_problem, volts_per_acceleration
 from raceway.importing.label_values import (
     Column,
@@ -22,7 +23,6 @@ from raceway.importing.label_values import (
     Rpm,
     Sensitivity,
 )
-from raceway.importing.signals import WITHOUT_UNITS, Place
 
 _OF_SPALLS = ("width_mm", "depth_um", "angle_deg", "n_spalls")
 

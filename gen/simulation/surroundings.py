@@ -12,7 +12,7 @@ import numpy as np
 
 from gen.physics.axial import axial_approach, check_axial_load
 from gen.physics.hertz import contact_exponent, load_deflection_factor
-from gen.physics.inputs import KernelInput
+from gen.physics.kernel_input import KernelInput
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.rating import LEAST_SAFETY, equivalent_load, static_rating
 from gen.physics.rotor import STRIBECK, Machine, as_columns, ball_angles, sensor_springs

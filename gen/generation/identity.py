@@ -12,7 +12,7 @@ from typing import Any
 import xarray as xr
 
 from gen.corpus import facts_as_attributes, part_name
-from gen.generation.sources import sources_sha256
+from gen.generation.record_sources import sources_sha256
 from gen.recipe import Recipe, recipe_hash
 from gen.support.plugins import plugin_versions
 

@@ -10,7 +10,7 @@ from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate_lanes
 from gen.physics.kernel.layout import Batch, Shape
 from gen.support.garbage import keep_garbage
-from gen.support.kernels import is_on_disk
+from gen.support.kernel_cache import is_on_disk
 
 DIMENSIONS = {"schedule": 3, "tables": 2}
 """Dimensions of the arrays of a batch that have more than one."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from raceway.importing.files import UnusableError, guarded
+from raceway.importing.array_files import UnusableError, guarded
 from raceway.importing.numerals import is_number
 
 START = 400  # lines that tell the columns

@@ -7,7 +7,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import A_PATH, Analysis, band_option, file_option
-from raceway.console.progress import notice
+from raceway.console.progress_bar import notice
 from raceway.importing.reading_options import Reading, reading_options, rpm_option
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def _shown(
 ) -> "DrawnRecord":
     from gen import bearing_orders
     from gen.support.units import rpm_to_hertz
-    from raceway.reports.shown import shown_record, shown_recording
+    from raceway.reports.subject import shown_record, shown_recording
 
     options = Analysis(band=band).options()
     if len(reading.channels) > 1:
@@ -135,7 +135,7 @@ def _shown(
         return shown_record(source, record, next(iter(reading.channels), 0), options["band"])
     if bearing is None or speeds is None:
         raise click.UsageError(f"{source} is a recording: give --bearing and --rpm, which tell where its lines lie")
-    from raceway.importing.reading import read_recording
+    from raceway.importing.user_folder import read_recording
 
     # what was assumed of the file is told
     recorded, _, notes = read_recording(source, reading)

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from features.fault_classes import CLASSES, SHAFT, families
 from features.signal.lines import Orders
-from features.signal.motion import velocity_band
 from features.signal.rows import FloatArray
+from features.signal.velocity import velocity_band
 from features.table.band import DEFAULT_BAND, Band
 from gen.corpus import check_result, write_text_durably
 from gen.corpus.fault_classes import HEALTHY
@@ -20,7 +20,7 @@ from raceway.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels
 from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
 from raceway.diagnosis.wording import probability_in_words
 from raceway.importing.recorded import Recorded
-from raceway.reports.colours import FAULT_COLOURS
+from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.pictures import (
     FAINT,
     INK,

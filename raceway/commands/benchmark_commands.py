@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS
-from raceway.commands.models import warn_of_durations, warn_of_seen, warn_of_severities
+from raceway.commands.model_commands import warn_of_durations, warn_of_seen, warn_of_severities
 from raceway.console import show
 from raceway.console.corpus_table import notice_of_unknown, table_of
 from raceway.console.options import (
@@ -26,7 +26,7 @@ from raceway.console.options import (
     speed_option,
     worker_options,
 )
-from raceway.console.progress import progress
+from raceway.console.progress_bar import progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -164,7 +164,7 @@ def benchmark(
     from features.baselines import benchmark as run
     from features.baselines import read_results
     from gen.corpus import result_folder
-    from raceway.reports.page import write_report
+    from raceway.reports.report_page import write_report
 
     protocol = {"track": tracks[0], "folds": folds, "seed": seed}
     # a report, a submission, or the check of one

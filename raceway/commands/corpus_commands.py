@@ -9,6 +9,7 @@ import click
 
 from raceway.console import show
 from raceway.console.ending import DONE, FOUND_WANTING
+from raceway.console.interruption import if_interrupted
 from raceway.console.options import (
     Team,
     corpus_argument,
@@ -22,8 +23,7 @@ from raceway.console.options import (
     where_option,
     worker_options,
 )
-from raceway.console.progress import notice, notice_compilation, progress
-from raceway.console.signals import if_interrupted
+from raceway.console.progress_bar import notice, notice_compilation, progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,6 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.support.errors import CorpusError
+from raceway.importing.array_files import (
+    FloatArray,
+    UnusableError,
+    read_numpy,
+    read_wav,
+    reason_of,
+)
 from raceway.importing.columns import Values, signal_of
 from raceway.importing.conversion import (
     Scale,
@@ -18,13 +25,6 @@ from raceway.importing.conversion import (
     doubts,
     unit_problem,
     volts_per_acceleration,
-)
-from raceway.importing.files import (
-    FloatArray,
-    UnusableError,
-    read_numpy,
-    read_wav,
-    reason_of,
 )
 from raceway.importing.header import known_unit
 from raceway.importing.matlab import read_matlab_table

@@ -15,7 +15,7 @@ from scipy.fft import irfft, rfft
 
 from gen.measurement.mixing import Lines, Parts, mix
 from gen.measurement.rig import RigFilters
-from gen.mechanisms.background.section import locked_of
+from gen.mechanisms.background.background import locked_of
 from gen.physics.elementary import power
 from gen.physics.profile import share_at
 from gen.scenarios import Scenario

@@ -8,7 +8,7 @@ import click
 
 from raceway.console.corpus_table import table_of
 from raceway.console.options import A_PATH, Analysis, Decorator, Team
-from raceway.console.progress import notice
+from raceway.console.progress_bar import notice
 from raceway.importing.reading_options import DECIMAL_MARKS, MARKS, mark_of
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def reference_table(
     """
     from features.baselines.reference_choice import check_durations, recording_reference
     from gen.support.units import rpm_to_hertz
-    from raceway.importing.signals import Place, read_shape
+    from raceway.importing.acceleration import Place, read_shape
 
     if path.is_file():
         place = Place(*(reading[f"reference_{key}"] for key in Place._fields))

@@ -4,11 +4,11 @@ from typing import TYPE_CHECKING, Any
 
 from gen.mechanisms.background.gear_mesh import GearMesh
 from gen.mechanisms.background.impulses import Impulses, Knocks
-from gen.mechanisms.background.lines import Harmonics, Tones
 from gen.mechanisms.background.looseness import Looseness
 from gen.mechanisms.background.machine_conditions import MachineConditions
 from gen.mechanisms.background.noise import Noise
 from gen.mechanisms.background.source import BackgroundSource, LockedSource
+from gen.mechanisms.background.spectral_lines import Harmonics, Tones
 from gen.mechanisms.mechanism import section_with, with_plugins
 
 SOURCES: tuple[type[BackgroundSource], ...] = (Harmonics, Tones, Impulses, Knocks)

@@ -76,7 +76,7 @@ def features(
         return
     if corpus is None or output is None:
         raise click.UsageError("Missing argument 'DIR' or option '-o' / '--output': only --list needs neither.")
-    from features.table.files import check_destination, write_table
+    from features.table.table_files import check_destination, write_table
 
     check_destination(output)
     one, *more = channel or (None,)
@@ -108,7 +108,7 @@ def _ranking(table: "xr.Dataset", path: Path) -> "DataFrame":
     """Features from best to worst, of which the best are drawn."""
     from features import rank_features
     from raceway.reports.pictures import write_picture
-    from raceway.reports.ranking import draw_ranking
+    from raceway.reports.ranking_picture import draw_ranking
 
     ranked = rank_features(table)
     write_picture(draw_ranking(ranked), path)

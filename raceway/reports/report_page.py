@@ -31,7 +31,7 @@ from gen.corpus.choice import per_record
 from gen.corpus.fault_classes import HEALTHY
 from gen.corpus.schema import stored_unit
 from gen.support.units import READABLE, shown_unit
-from raceway.reports.colours import FAULT_COLOURS
+from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.curves import draw_curve, draw_detection, draw_reliability, draw_roc
 from raceway.reports.examples import draw_examples
 from raceway.reports.pictures import picture

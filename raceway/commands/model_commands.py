@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR
-from raceway.commands.references import reference_options, reference_table
+from raceway.commands.reference_options import reference_options, reference_table
 from raceway.console import show
 from raceway.console.corpus_table import notice_of_unknown, table_of
 from raceway.console.options import (
@@ -25,7 +25,7 @@ from raceway.console.options import (
     speed_option,
     worker_options,
 )
-from raceway.console.progress import notice
+from raceway.console.progress_bar import notice
 
 if TYPE_CHECKING:
     import xarray as xr
