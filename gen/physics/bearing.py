@@ -15,6 +15,15 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 
+class FaultOrders(NamedTuple):
+    """Fault frequencies in orders of the shaft; a ball spall strikes both races each spin, so its line is ``2 * bsf``."""
+
+    ftf: float
+    bpfo: float
+    bpfi: float
+    bsf: float
+
+
 @dataclass(frozen=True)
 class Bearing:
     """Geometry, material and catalogue data of a single-row rolling bearing, in SI units; an unknown value is ``None``.
@@ -43,6 +52,8 @@ class Bearing:
     width: float | None = None
     source: str = ""
     """Publication of the numbers."""
+    printed_orders: FaultOrders | None = None
+    """Fault orders that the maker prints, of a bearing whose diameters are not known (NaN)."""
 
     @property
     def gamma(self) -> float:
@@ -64,21 +75,14 @@ class Bearing:
         return {"inner": self.inner_radius, "outer": self.outer_radius, "ball": self.ball_diameter / 2}[site]
 
 
-class FaultOrders(NamedTuple):
-    """Fault frequencies in orders of the shaft; a ball spall strikes both races each spin, so its line is ``2 * bsf``."""
-
-    ftf: float
-    bpfo: float
-    bpfi: float
-    bsf: float
-
-
 def orders(bearing: Bearing) -> FaultOrders:
-    """Fault frequencies of pure rolling [orders of the shaft].
+    """Fault frequencies of pure rolling, or those that the maker prints [orders of the shaft].
 
     >>> [round(order, 4) for order in orders(Bearing("6205", 9, 39.04e-3, 7.94e-3))]
     [0.3983, 3.5848, 5.4152, 2.3567]
     """
+    if bearing.printed_orders is not None:
+        return bearing.printed_orders
     gamma = bearing.gamma
     ftf = (1 - gamma) / 2
     spin = bearing.pitch_diameter / (2 * bearing.ball_diameter) * (1 - gamma**2)

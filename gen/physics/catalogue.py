@@ -180,12 +180,12 @@ _SUFFIX = r"[-/. ]?(?:2?RS[A-Z]?\d?|2?RZ|2?Z[ZR]?|LL[UBH]|DDU?|VV|C[1-5N]|P[4-6]
 def known_designation(text: str) -> str | None:
     """Designation of the catalogue that a text on a bearing or a drawing means, without maker and suffixes; None if there is none.
 
-    >>> known_designation("SKF 6205-2RS1/C3"), known_designation("nu206 ecp"), known_designation("62059")
+    >>> known_designation("SKF 6205-2RS1/C3"), known_designation("nu 206 ecp"), known_designation("62059")
     ('6205', 'NU206', None)
     """
     if text in CATALOGUE:
         return text
-    plain = re.sub(rf"^{_MAKERS}[ -]*", "", " ".join(text.upper().split()))
+    plain = re.sub(rf"^{_MAKERS}-*", "", "".join(text.upper().split()))
     fitting = (name for name in sorted(CATALOGUE, key=len, reverse=True) if plain.startswith(name.upper()))
     return next((name for name in fitting if re.fullmatch(rf"(?:{_SUFFIX})*", plain[len(name) :])), None)
 

@@ -103,6 +103,11 @@ class CatalogueBearing(Section):
             if name in CATALOGUE:
                 raise ValueError(f"entries: {name} is in the catalogue already; give your own bearing another name.")
         unknown = next((name for name in self.designations if name not in self.entries and name not in _KNOWN), None)
+        if unknown in CATALOGUE:
+            raise ValueError(
+                f"designations: {unknown} is in the catalogue without the length of its rollers; add it to entries under another name, "
+                "with roller_length_mm."
+            )
         if unknown is not None:
             near = difflib.get_close_matches(unknown, [*self.entries, *_KNOWN], 3)
             guess = f"did you mean {' or '.join(near)}?" if near else "docs/catalogue.md lists them."

@@ -41,7 +41,8 @@ def _checked_output(context: click.Context, option: click.Parameter, path: Path 
     "bearings",
     multiple=True,
     metavar="BEARING",
-    help="Designation in the catalogue, such as 6205, or a geometry: n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938. "
+    help="Designation in the catalogue, such as 6205; a geometry: n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938; or the orders "
+    "that its maker prints: bpfo=3.585,bpfi=5.415,bsf=2.357,ftf=0.398. "
     "Repeat it for alternatives; without it, the whole catalogue is searched.",
 )
 @rpm_option
@@ -199,11 +200,9 @@ def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dic
 
 
 def _name(bearing: "Bearing") -> str:
-    from gen.support.units import from_si
+    from gen.physics.bearing_text import geometry_text
 
-    if bearing.designation != "own":
-        return bearing.designation
-    return f"{bearing.n_balls} x {from_si(bearing.ball_diameter, 'mm'):g} mm on {from_si(bearing.pitch_diameter, 'mm'):g} mm"
+    return geometry_text(bearing) if bearing.designation == "own" else bearing.designation
 
 
 def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -> "Given":

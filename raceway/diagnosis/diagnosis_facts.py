@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gen.physics.bearing_text import geometry_text
 from gen.support.units import from_si
 from raceway.importing.reading_options import Reading
 
@@ -73,12 +74,10 @@ def assumptions(
     """Facts for the page, by name."""
     bearing = bearings[diagnosis.bearing]
     orders = ", ".join(f"{name.upper()} {float(order):.3f}" for name, order in diagnosis.orders._asdict().items())
-    angle = f", contact angle {math.degrees(bearing.contact_angle):.3g}°"
     low, high = (f"{from_si(rate, 'rpm'):,.6g}" for rate in diagnosis.given.rates)
     sensitivity = "" if reading.sensitivity is None else f", {reading.sensitivity:g} mV per g"
     facts = {
-        "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of "
-        f"{from_si(bearing.ball_diameter, 'mm'):.4g} mm on {from_si(bearing.pitch_diameter, 'mm'):.4g} mm{angle}, outer ring fixed",
+        "bearing": f"{bearing.designation}: {geometry_text(bearing)}, outer ring fixed",
         "orders": orders,
         "given bearings": ", ".join(bearings) if len(bearings) > 1 else "",
         "given speed": f"{low} rpm" if low == high else f"{low} to {high} rpm",

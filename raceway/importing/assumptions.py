@@ -6,8 +6,8 @@ A corpus is only as right as its labels: a false unit or class shows in no numbe
 from collections.abc import Iterator, Sequence
 
 from gen.physics.bearing import orders
+from gen.physics.bearing_text import geometry_text
 from gen.physics.catalogue import CATALOGUE
-from gen.support.units import from_si
 from raceway.importing.label_keys import Labels
 
 _TOPICS = {"fault": "Class", "specimen": "Specimen", "shaft_rpm": "Shaft speed (rpm)", "load_n": "Load (N)"}
@@ -37,8 +37,7 @@ def _of_file(labels: Labels) -> Iterator[str]:
     source = "from the catalogue" if bearing in CATALOGUE.values() else "as given"
     bpfo, bpfi, bsf = (getattr(orders(bearing), name) for name in ("bpfo", "bpfi", "bsf"))
     yield (
-        f"Bearing: {bearing.designation}, geometry {source}: {bearing.n_balls} balls of "
-        f"{from_si(bearing.ball_diameter, 'mm'):g} mm on {from_si(bearing.pitch_diameter, 'mm'):g} mm; BPFO {bpfo:.4g}, BPFI {bpfi:.4g}, "
+        f"Bearing: {bearing.designation}, geometry {source}: {geometry_text(bearing)}; BPFO {bpfo:.4g}, BPFI {bpfi:.4g}, "
         f"2 BSF {2 * bsf:.4g} orders"
     )
 

@@ -78,7 +78,7 @@ TABLE = [
      "bearing.entries: 6205 is in the catalogue already; give your own bearing another name."),
     ('["6205"]}', '["6205"], entries: {a b: {n_balls: 9, pitch_diameter_mm: 50, ball_diameter_mm: 9}}}',
      "bearing.entries.a b: 'a b' is not allowed here; it must be 1 to 64 letters"),
-    ('["6205"]', "[NU205]", "bearing.designations: 'NU205' is neither in the catalogue nor in entries; did you mean NU206"),
+    ('["6205"]', "[NU205]", "bearing.designations: NU205 is in the catalogue without the length of its rollers"),
     ('["6205"]}', "[mine], entries: {mine: {n_rollers: 20, pitch_diameter_mm: 50, roller_diameter_mm: 7}}}",
      "bearing.entries.mine.n_rollers: a bearing with rollers needs roller_length_mm;"),
     ('["6205"]}', "[mine], entries: {mine: {n_rollers: 20, n_balls: 20, pitch_diameter_mm: 50, roller_length_mm: 7}}}",
