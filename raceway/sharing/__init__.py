@@ -3,10 +3,10 @@
 ============= ========================================================
 module        responsibility
 ============= ========================================================
-form_columns  columns with safe names, and the page about a copy
+form_columns  columns of the records in another form, with safe names
 copying       chosen records of one or several corpora, block by block
 joining       several corpora with the same variables and new numbers
-parquet_files Parquet
+parquet_files one table as Parquet
 huggingface   Parquet by split with the card of the Hugging Face hub
 forms         all forms; ``copy``
 card          the data card: a page, its facts and additions

@@ -1,20 +1,18 @@
 """Pictures and scores of a data card: ``corpus -> pictures/*.png``, ``results.json -> scores``, both listed in ``card.json``.
 
-``record-CLASS.png`` shows the waveform and the squared envelope spectrum of one record of a class, ``content.png`` the distributions of
-speed, load and severity by class. The same corpus and libraries give the same bytes.
+``record-CLASS.png`` shows the waveform, power spectral density and squared envelope spectrum of one record of a class, ``content.png`` the
+distributions of speed, load and severity by class. The same corpus and libraries give the same bytes.
 """
 
 import io
-import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib import rc_context
 from matplotlib.figure import Figure
 from PIL import Image
 
+from features.baselines import read_results
 from gen.corpus import (
     FAULT_NAMES,
     UNKNOWN,
@@ -28,9 +26,8 @@ from gen.corpus import (
 )
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
-from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.examples import chosen_example
-from raceway.reports.pictures import STYLE, WIDTH, DrawnRecord, draw_envelope_spectrum, draw_waveform, picture
+from raceway.reports.pictures import draw_record, picture
 from raceway.reports.report_page import quantities
 from raceway.reports.summaries import draw_content
 from raceway.sharing.card.additions import (
@@ -90,7 +87,7 @@ def _write_pictures(folder: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]
         shown, caption = chosen_example(corpus, int(code))
         if shown is not None:
             drawn.append(CardPicture(name=f"record-{fault}.png", title=f"One record: {fault}", caption=caption))
-            write_durably(small_png(draw_example(shown)), folder / drawn[-1].name)
+            write_durably(small_png(draw_record(shown)), folder / drawn[-1].name)
     drawn.append(
         CardPicture(
             name="content.png",
@@ -101,18 +98,6 @@ def _write_pictures(folder: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]
     fault, rig = (corpus[name].values for name in ("fault", "rig"))
     write_durably(small_png(draw_content(fault, rig, quantities(corpus))), folder / drawn[-1].name)
     return tuple(drawn)
-
-
-@rc_context(STYLE)
-def draw_example(shown: DrawnRecord) -> Figure:
-    """Waveform above the squared envelope spectrum of a record, with the lines at the nominal orders."""
-    figure = Figure(figsize=(WIDTH, 4.6), layout="constrained")
-    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=FAULT_COLOURS[shown.fault])
-    waveform, envelope = figure.subplots(2, 1, height_ratios=(1, 1.3))
-    draw_waveform(waveform, shown)
-    draw_envelope_spectrum(envelope, shown)
-    figure.align_ylabels()
-    return figure
 
 
 def small_png(figure: Figure) -> bytes:
@@ -133,48 +118,35 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
     CorpusError
         If the file is none, or its scores are of another corpus: one with another title, or other counts of records.
     """
-    try:
-        if path.exists() and not path.is_file():
-            raise CorpusError(f"{path}: is a folder, a pipe or a device; give results.json of raceway benchmark.")
-        # a file of scores comes from anywhere
+    # a file of scores comes from anywhere
+    if path.is_file():
         check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
-        results = json.loads(path.read_bytes())
-        title, classes = results["corpus"]["title"], results["corpus"]["classes"]
-        scores = CardScores(
-            track=results["track"],
-            folds=results["folds"],
-            seed=results["seed"],
-            features=tuple(results["groups"]),
-            classes=tuple(classes),
-            records=results["corpus"]["records"],
-            raceway=results["versions"].get("raceway", "unknown"),
-            rows=tuple(_score(name, baseline) for name, baseline in results["baselines"].items()),
-        )
-    except OSError as error:
-        raise CorpusError(
-            f"{path}: cannot be read ({error.strerror}); give results.json of raceway benchmark."
-        ) from None
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        reason = f"no {error}" if isinstance(error, KeyError) else type(error).__name__
-        raise CorpusError(
-            f"{path}: is not a file of scores ({reason}); give results.json of raceway benchmark."
-        ) from None
+    results = read_results(path) if path.is_file() else None
+    if results is None:
+        raise CorpusError(f"{path}: is not a file of scores; give results.json of raceway benchmark.")
     # scores belong to the card of the corpus that they were measured on
-    here = class_counts(corpus["fault"])
+    here, tested = class_counts(corpus["fault"]), results.corpus
     here.pop(UNKNOWN, None)
-    if title != corpus.attrs.get("title") or classes != here:
+    if tested.title != corpus.attrs.get("title") or tested.classes != here:
         raise CorpusError(
-            f"{path}: has scores of another corpus ({title!r}, {sum(classes.values())} records); run raceway benchmark on this one."
+            f"{path}: has scores of another corpus ({tested.title!r}, {tested.records} records); run raceway benchmark on this one."
         )
-    return scores
-
-
-def _score(name: str, baseline: dict[str, Any]) -> CardScore:
-    grouped, interval = baseline["grouped"], baseline["grouped"]["interval"]
-    return CardScore(
-        name=name,
-        score=grouped["balanced_accuracy"],
-        interval=None if interval is None else (interval[0], interval[1]),
-        random_records=baseline["leaky"]["balanced_accuracy"],
-        permuted_labels=baseline["null"]["balanced_accuracy"],
+    return CardScores(
+        track=results.track,
+        folds=results.folds,
+        seed=results.seed,
+        features=tuple(results.groups),
+        classes=tuple(tested.classes),
+        records=tested.records,
+        raceway=results.versions.get("raceway", "unknown"),
+        rows=tuple(
+            CardScore(
+                name=name,
+                score=baseline.grouped.balanced_accuracy,
+                interval=baseline.grouped.interval,
+                random_records=baseline.leaky.balanced_accuracy,
+                permuted_labels=baseline.null.balanced_accuracy,
+            )
+            for name, baseline in results.baselines.items()
+        ),
     )

@@ -48,9 +48,8 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
       NAME.nc         corpus in one netCDF-4 file, for MATLAB, R, Julia and Octave too
       NAME.parquet    one table: a row per record, for pandas, polars, DuckDB, Spark
 
-    With --to it is a folder of files for another program, with a README.md that says how to read them:
+    With --to it is a folder of files for another program:
 
-      parquet      tables of up to 500 MB
       huggingface  Parquet by split with a card, for datasets.load_dataset
 
     Records keep samples, labels and splits, and simulated records can still be replayed. Several sources are joined, simulated and
@@ -65,7 +64,7 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
       raceway copy corpus.nc -o fast_inner --where "fault in ('inner', 'outer') and shaft_rpm > 1200"
       raceway copy corpus -o test_set --split test --channels housing
       raceway copy simulated measured -o both --rename-channel fe=accelerometer --float32
-      raceway copy corpus -o tables --to parquet --where "not (bearing == '6205' or load <= 500)"
+      raceway copy corpus -o hub --to huggingface --where "not (bearing == '6205' or load <= 500)"
 
     Next: raceway info TARGET, raceway validate TARGET
     """

@@ -6,7 +6,7 @@ Nothing of a record changes but the numbers of machines in corpora that are join
 floating point in place of counts.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -28,6 +28,7 @@ from gen.corpus.schema import SIGNAL
 from gen.corpus.where import nearest
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
+from gen.support.progress import Progress, counter
 from raceway.sharing.joining import check_fit, check_repeats, sample_digests, with_same_variables
 
 _MOST_IN_BLOCK = 1024  # records; scenarios are text of some kilobytes a record
@@ -69,6 +70,8 @@ class Chosen:
     asked: str
     """The choice and the changes, for the history; empty if the corpora are copied whole."""
     float32: bool
+    progress: Progress | None = None
+    """Called with the number of records that are done and of all."""
 
     @property
     def count(self) -> int:
@@ -169,6 +172,10 @@ class Chosen:
         return new_numbers([str(text) for text in self.values("identity")])
 
     @cached_property
+    def _report(self) -> Callable[[int], None]:
+        return counter(self.progress, self.count)
+
+    @cached_property
     def _digests(self) -> NDArray[np.bytes_]:
         return np.zeros(self.count, "S32")
 
@@ -186,6 +193,7 @@ class Chosen:
                 here = own[start : start + size]
                 dataset = _load(corpus, records[here - first], size * _SPAN)
                 yield Block(before + records[here - first], self._finish(dataset, here))
+                self._report(len(here))
             first, before = first + len(records), before + corpus.sizes["record"]
 
     def records_in(self, most_bytes: int) -> int:
@@ -219,6 +227,7 @@ def choose(
     channels: Sequence[str] | None = None,
     rename: Mapping[str, str] | None = None,
     float32: bool = False,
+    progress: Progress | None = None,
 ) -> Iterator[Chosen]:
     """Open corpora, choose some of their records and channels, and close them at the end.
 
@@ -258,7 +267,8 @@ def choose(
             "renamed": rename and ", ".join(f"{old} to {new}" for old, new in rename.items()),
             "stored": "in floating point" if float32 else None,
         }
-        yield Chosen(tuple(sources), tuple(manifests), tuple(corpora), tuple(records), filled, _history(told), float32)
+        of_each = tuple(sources), tuple(manifests), tuple(corpora), tuple(records)
+        yield Chosen(*of_each, filled, _history(told), float32, progress)
 
 
 def _history(told: Mapping[str, str | None]) -> str:

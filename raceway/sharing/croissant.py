@@ -19,7 +19,7 @@ from gen.corpus.publication import Publication
 from gen.corpus.schema import SIGNAL, SPLITS
 from gen.corpus.slices import read_classes
 from raceway.sharing.card.card_page import card_folder
-from raceway.sharing.card.citation import bibtex
+from raceway.sharing.card.citation import citation
 
 _PARTS = {
     "@type": "cr:FileSet",
@@ -98,7 +98,7 @@ def croissant(path: Path) -> dict[str, Any]:
             "version": f"1.0.0+{content_id(manifest)[:8]}",
             "isLiveDataset": False,
             **_publication_facts(manifest.publication),
-            "citeAs": bibtex(title, manifest),
+            "citeAs": citation(title, manifest),
             "distribution": [
                 *(_file(name, file, kinds[file.suffix], hashes.get(name)) for name, file in files.items()),
                 *([] if path.is_file() else [_PARTS]),

@@ -11,21 +11,17 @@ from gen.corpus.disk import remove_left_behind_of, whole_folder_or_none, whole_o
 from gen.corpus.new import NewCorpus, new_corpus
 from gen.corpus.outputs import check_new
 from gen.support.errors import CorpusError
-from gen.support.progress import Progress, counter
-from raceway.sharing.copying import choose
-from raceway.sharing.form_columns import Export
+from gen.support.progress import Progress
+from raceway.sharing.copying import Chosen, choose
 from raceway.sharing.huggingface import write_huggingface
-from raceway.sharing.parquet_files import write_parquet, write_parquet_file
+from raceway.sharing.parquet_files import write_parquet
 from raceway.sharing.publishing import describe
 
 _NOT_WRITTEN = (".mat", ".wav", ".csv", ".zarr")
 _PART_BYTES = 16_000_000  # of single precision
 
-FORMS: Mapping[str, Callable[[Export, Path], str]] = {
-    "parquet": write_parquet,
-    "huggingface": write_huggingface,
-}
-"""Forms that are folders of files: functions that write into a folder and return its README.md."""
+FORMS: Mapping[str, Callable[[Chosen, Path], None]] = {"huggingface": write_huggingface}
+"""Forms that are folders of files: functions that write into a folder, with a README.md."""
 SUFFIXES = (".nc", ".parquet")
 """Suffixes of targets of one file; a target without is a folder."""
 _READ_BY_OTHERS = (
@@ -89,7 +85,7 @@ def copy(
         Compression of the signals of a corpus, ``zlib`` without. Every netCDF-4 reader knows it.
     float32 : bool
         Store accelerations [m s-2] in single precision in place of counts.
-    to : {"parquet", "huggingface"}, optional
+    to : {"huggingface"}, optional
         Form of a folder for another program.
     progress : callable, optional
         Called with the number of records written and of all that are chosen.
@@ -105,12 +101,16 @@ def copy(
     form = _form(target, to, codec)
     # before anything is read
     check_new(target)
-    write = _writer(form, single=target.suffix in SUFFIXES)
-    with choose(paths, where=where, split=split, channels=channels, rename=rename, float32=float32) as chosen:
-        export = Export(chosen, counter(progress, chosen.count))
+    writers: dict[str, Callable[[Chosen, Any], None]] = {
+        "folder": _write_parts,
+        "nc": _write_parts,
+        "parquet": write_parquet,
+    }
+    choice = {"where": where, "split": split, "channels": channels, "rename": rename, "float32": float32}
+    with choose(paths, **choice, progress=progress) as chosen:
         remove_left_behind_of(target.absolute())
         with _place(form, target, chosen.recipe, codec or "zlib") as place:
-            write(export, place)
+            (writers | FORMS)[form](chosen, place)
             # hashes of the records are known when all are written; the target is then still temporary
             chosen.check_repeats()
     files = [target] if target.is_file() else [path for path in target.rglob("*") if path.is_file()]
@@ -125,34 +125,17 @@ def _place(form: str, target: Path, recipe: str | None, codec: Codec) -> Abstrac
     return whole_or_not_at_all(target) if target.suffix in SUFFIXES else whole_folder_or_none(target)
 
 
-def _writer(form: str, *, single: bool) -> Callable[[Export, Any], None]:
-    """Function that writes records to a place."""
-    if form in ("folder", "nc"):
-        return _write_parts
-    if single:
-        return write_parquet_file
-
-    def write(export: Export, folder: Path) -> None:
-        (folder / "README.md").write_text(FORMS[form](export, folder), encoding="utf-8")
-
-    return write
-
-
-def _write_parts(export: Export, corpus: NewCorpus) -> None:
-    corpus.facts |= export.chosen.facts()
-    for block in export.blocks(_PART_BYTES):
+def _write_parts(chosen: Chosen, corpus: NewCorpus) -> None:
+    corpus.facts |= chosen.facts()
+    for block in chosen.blocks(_PART_BYTES):
         corpus.write(block.as_stored())
 
 
 def _form(target: Path, to: str | None, codec: str | None) -> str:
     """Form of a target, after a check of the options."""
     if to is not None and to not in FORMS:
-        raise CorpusError(f"to: there is no form {to!r}; allowed are {', '.join(FORMS)}; {_READ_BY_OTHERS}.")
+        raise CorpusError(f"to: there is no form {to!r}; allowed is {', '.join(FORMS)}; {_READ_BY_OTHERS}.")
     suffix = target.suffix if target.suffix in SUFFIXES else ""
-    if to is None and target.suffix[1:] in FORMS and not suffix:
-        raise CorpusError(
-            f"{target}: {target.suffix[1:]} is a folder of files; give the name of a folder, and to={target.suffix[1:]!r}."
-        )
     if target.suffix in _NOT_WRITTEN:
         raise CorpusError(f"{target}: copies are not written as {target.suffix}; {_READ_BY_OTHERS}.")
     if suffix and to is not None:

@@ -1,4 +1,4 @@
-"""Layout of a data set of the Hugging Face hub: Parquet files by split, and a card that names their features.
+"""Layout of a data set of the Hugging Face hub: a Parquet file for each split, and a card that names their features.
 
 ``datasets.load_dataset(folder)`` reads it, also without a network. Texts in the header of the card are written as JSON, which is YAML too,
 so that a title from a stranger stays a text.
@@ -12,60 +12,77 @@ import numpy as np
 
 from gen.corpus.schema import SPLITS
 from raceway.sharing.card.markdown import plain_text
-from raceway.sharing.form_columns import Column, Export
-from raceway.sharing.parquet_files import known_classes, write_shards
+from raceway.sharing.copying import Chosen
+from raceway.sharing.form_columns import Column, columns_of, plain_names
+from raceway.sharing.parquet_files import SIGNAL_PREFIX, write_parquet
 
 _LICENCES = (
     "apache-2.0", "bsd-2-clause", "bsd-3-clause", "cc0-1.0", "cc-by-4.0", "cc-by-nc-4.0", "cc-by-nc-nd-4.0", "cc-by-nc-sa-4.0",
     "cc-by-nd-4.0", "cc-by-sa-4.0", "mit", "odbl", "pddl",
 )  # fmt: skip
 """Identifiers of the hub; any other licence is given by its name."""
+_TERMS = {"license": "Licence", "creator_name": "Creators", "references": "References", "metadata_link": "Published at"}
+"""Global attributes that the card repeats, with their headings."""
 
 
-def write_huggingface(export: Export, folder: Path) -> str:
-    """Write ``data/train-00000-of-00002.parquet`` ... and the card ``README.md``; returns the card."""
-    split = export.chosen.values("split")
-    sizes = {}
-    for code, name in enumerate(SPLITS):
-        places = np.flatnonzero(split == code)
+def write_huggingface(chosen: Chosen, folder: Path) -> None:
+    """Write ``data/train.parquet`` ... and the card ``README.md``."""
+    (folder / "data").mkdir()
+    code, sizes = chosen.values("split"), {}
+    for number, split in enumerate(SPLITS):
+        places = np.flatnonzero(code == number)
         if len(places):
-            write_shards(export, folder / "data", name, places, names=False)
-            sizes[name] = len(places)
-    return _card(export, sizes)
+            write_parquet(chosen, folder / "data" / f"{split}.parquet", places)
+            sizes[split] = len(places)
+    columns = columns_of(chosen)
+    card = f"{_header(chosen, columns, sizes)}\n{_page(chosen, columns, next(iter(sizes)))}\n"
+    (folder / "README.md").write_text(card, encoding="utf-8")
 
 
-def _card(export: Export, sizes: dict[str, int]) -> str:
-    """Card of the data set: a YAML header, and a page with the meaning of each column."""
-    columns = ["| column | unit | role | meaning |", "|---|---|---|---|"]
-    for column in export.columns:
+def _page(chosen: Chosen, columns: list[Column], split: str) -> str:
+    """Origin of the records, their size, how to read them, and the meaning of each column."""
+    signal = f"{chosen.samples / chosen.sample_rate:g} s at {chosen.sample_rate:g} Hz"
+    channels = ", ".join(map(plain_text, chosen.channels))
+    count = f"{chosen.count} of {chosen.of} records of {'a corpus' if len(chosen.paths) == 1 else f'{len(chosen.paths)} corpora'}"
+    about = f"{count}, {signal}, channels {channels}, in m s-2, copied by Raceway. `record` is the number of the record in the source."
+    lines = [f"# {_title(chosen)}", "", about]
+    for name, heading in _TERMS.items():
+        text = plain_text(chosen.attributes.get(name, ""))
+        lines += ["", f"{heading}: {text}"] if text else []
+    lines += ["", _READING.format(signal=f"{SIGNAL_PREFIX}{plain_names(chosen.channels)[0]}", split=split)]
+    lines += ["| column | unit | role | meaning |", "|---|---|---|---|"]
+    for column in columns:
         cells = map(plain_text, (column.units, column.role, column.meaning))
-        columns.append(f"| `{column.name}` | " + " | ".join(cells) + " |")
-    reading = _READING.format(channel=export.channels[0], split=next(iter(sizes)))
-    return "\n".join([_header(export, sizes), export.page(reading), *columns, ""])
+        lines.append(f"| `{column.name}` | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
 
 
-def _header(export: Export, sizes: dict[str, int]) -> str:
+def _title(chosen: Chosen) -> str:
+    """Title as one harmless line."""
+    return plain_text(chosen.title) or "Vibration records of rolling bearings"
+
+
+def _header(chosen: Chosen, columns: list[Column], sizes: dict[str, int]) -> str:
     """YAML header; every value below the upper keys is JSON on a line of its own."""
     # JSON is YAML, so that no text of a corpus can become a key
-    facts: dict[str, str] = {
-        "pretty_name": export.title,
-        **_licence(str(export.chosen.attributes.get("license", ""))),
+    facts: dict[str, Any] = {
+        "pretty_name": _title(chosen),
+        **_licence(str(chosen.attributes.get("license", ""))),
+        "tags": ["vibration", "bearing", "fault-diagnosis", "condition-monitoring"],
+        "size_categories": [_size_category(sum(sizes.values()))],
     }
-    tags = ["vibration", "bearing", "fault-diagnosis", "condition-monitoring"]
     return "\n".join(
         [
             "---",
             *(f"{key}: {_json(value)}" for key, value in facts.items()),
-            f"tags: {_json(tags)}",
-            f"size_categories: {_json([_size_category(sum(sizes.values()))])}",
             "configs:",
             "- config_name: default",
             "  data_files:",
-            *(f"  - {_json({'split': name, 'path': f'data/{name}-*.parquet'})}" for name in sizes),
+            *(f"  - {_json({'split': name, 'path': f'data/{name}.parquet'})}" for name in sizes),
             "dataset_info:",
             "  config_name: default",
             "  features:",
-            *(f"  - {_json(feature)}" for feature in _features(export)),
+            *(f"  - {_json(feature)}" for feature in _features(chosen, columns)),
             "---",
             "",
         ]
@@ -100,27 +117,26 @@ def _size_category(records: int) -> str:
     return "n<1K" if place == 0 else f"{names[place - 1]}<n<{names[min(place, len(names) - 1)]}"
 
 
-def _features(export: Export) -> list[dict[str, Any]]:
+def _features(chosen: Chosen, columns: list[Column]) -> list[dict[str, Any]]:
     """Names and types of all columns, as ``datasets.Features`` writes them in a card."""
-    labels = [{"name": column.name, "dtype": _dtype(column)} for column in export.columns]
+    labels = [{"name": column.name, "dtype": _dtype(column)} for column in columns]
     signals = [
-        {"name": f"acceleration_{name}", "list": "float32", "length": export.chosen.samples} for name in export.channels
+        {"name": f"{SIGNAL_PREFIX}{name}", "list": "float32", "length": chosen.samples}
+        for name in plain_names(chosen.channels)
     ]
     return [{"name": "record", "dtype": "int64"}, *labels, *signals]
 
 
 def _dtype(column: Column) -> Any:
     if column.flags:
-        names = known_classes(column).values()
-        return {"class_label": {"names": {str(place): plain_text(name) for place, name in enumerate(names)}}}
+        names = {str(place): plain_text(name) for place, name in enumerate(column.flags.values())}
+        return {"class_label": {"names": names}}
     return "string" if column.dtype is None else str(column.dtype)
 
 
 _READING = """\
     import os, datasets
     records = datasets.load_dataset(os.getcwd())  # the full path of this folder, or its name on the hub
-    signal = records["{split}"].with_format("numpy")[0]["acceleration_{channel}"]  # m s-2
+    signal = records["{split}"].with_format("numpy")[0]["{signal}"]  # m s-2
     name = records["{split}"].features["fault"].int2str(records["{split}"][0]["fault"])
-
-A fault that is not known is null.
 """

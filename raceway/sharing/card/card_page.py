@@ -16,7 +16,7 @@ from gen.corpus.slices import read_classes
 from gen.support.errors import CorpusError
 from raceway.sharing.card import additions
 from raceway.sharing.card.card_facts import card_facts, needs_plugin
-from raceway.sharing.card.citation import bibtex, citation
+from raceway.sharing.card.citation import citation
 from raceway.sharing.card.markdown import code_text, plain_text
 
 if TYPE_CHECKING:
@@ -83,7 +83,6 @@ def card_text(corpus: xr.Dataset, manifest: Manifest, added: additions.CardAddit
         zstd=needs_plugin(first),
         faulty=listed_flags({code: name for code, name in read_classes(first).items() if name in FAULTS[1:]}),
         citation=citation(title, manifest),
-        bibtex=bibtex(title, manifest),
         most=MOST_SENTENCES,
     )
 

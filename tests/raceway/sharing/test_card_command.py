@@ -1,9 +1,9 @@
 """The command ``raceway card``: facts of a publication, pictures and scores on the data card of a corpus."""
 
-import json
 import shlex
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -40,31 +40,35 @@ def contents(corpus):
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def results_of(folder, **changed):
-    """``results.json`` of a benchmark as far as the card reads it."""
-    with open_corpus(folder) as opened:
-        title, records = opened.attrs["title"], opened.sizes["record"]
-    scores = {"balanced_accuracy": 0.8125, "interval": [0.7, 0.9]}
-    baseline = {
-        "grouped": scores,
-        "leaky": scores | {"balanced_accuracy": 0.95},
-        "null": scores | {"balanced_accuracy": 0.25},
-    }
-    about = {"title": title, "records": records, "classes": {"healthy": 2, "inner": 2}}
-    return {
-        "corpus": about | changed, "track": "specimen", "folds": 5, "seed": 0, "groups": ["lines"],
-        "versions": {"raceway": "0.1.0"}, "baselines": {"linear": baseline},
-    }  # fmt: skip
+@pytest.fixture
+def results(monkeypatch, copied, tmp_path):
+    """Function that makes ``results.json`` be read as a benchmark of the corpus, with other facts about that if they are given."""
+
+    def make(**changed):
+        with open_corpus(copied) as opened:
+            title, records = opened.attrs["title"], opened.sizes["record"]
+        about = {"title": title, "records": records, "classes": {"healthy": 2, "inner": 2}}
+        scores = [SimpleNamespace(balanced_accuracy=score, interval=(0.7, 0.9)) for score in (0.8125, 0.95, 0.25)]
+        baseline = SimpleNamespace(**dict(zip(("grouped", "leaky", "null"), scores, strict=True)))
+        read = SimpleNamespace(
+            corpus=SimpleNamespace(**about | changed), track="specimen", folds=5, seed=0, groups=("lines",),
+            versions={"raceway": "0.1.0"}, baselines={"linear": baseline},
+        )  # fmt: skip
+        monkeypatch.setattr("raceway.sharing.card_pictures.read_results", lambda _: read)
+        path = tmp_path / "results.json"
+        path.touch()
+        return path
+
+    return make
 
 
-def test_facts_pictures_and_scores_reach_the_card_and_no_part_changes(told, copied, tmp_path):
-    (tmp_path / "results.json").write_text(json.dumps(results_of(copied)))
+def test_facts_pictures_and_scores_reach_the_card_and_no_part_changes(told, copied, results):
     before = {name: content for name, content in contents(copied).items() if name.startswith("parts")}
     with open_corpus(copied) as opened:
         records = opened.load()
     found = told(
         "card", copied, "--license", "CC-BY-4.0", "--creator", "Jane Doe <0000-0002-1825-0097>", "--creator", "Sons",
-        "--date", "2026-03-31", "--references", "One", "--references", "Two", "--scores", tmp_path / "results.json",
+        "--date", "2026-03-31", "--references", "One", "--references", "Two", "--scores", results(),
     )  # fmt: skip
     after = contents(copied)
     assert {name: content for name, content in after.items() if name.startswith("parts")} == before
@@ -102,9 +106,8 @@ def test_a_second_call_changes_no_byte_and_removes_what_a_killed_one_left(told, 
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_later_facts_join_the_others_and_the_scores_stay(told, copied, tmp_path):
-    (tmp_path / "results.json").write_text(json.dumps(results_of(copied)))
-    told("card", copied, "--license", "CC-BY-4.0", "--scores", tmp_path / "results.json")
+def test_later_facts_join_the_others_and_the_scores_stay(told, copied, results):
+    told("card", copied, "--license", "CC-BY-4.0", "--scores", results())
     found = told("card", copied, "--institution", "Works")
     assert found["publication"] == {"license": "CC-BY-4.0", "institution": "Works"}
     assert "| linear |" in (card_folder(copied) / "README.md").read_text()
@@ -119,7 +122,7 @@ def test_a_wrong_fact_is_one_sentence_and_changes_nothing(run, copied):
         ("--creator", "Jane <0000-0002-1825-0098>", "its last digit does not fit"),
         ("--doi", "182", "is not a DOI"),
         ("--date", "yesterday", "is not a date"),
-        ("--scores", "/dev/zero", "is a folder, a pipe or a device"),
+        ("--scores", "/dev/zero", "is not a file of scores"),
         ("--scores", "missing.json", "give results.json of raceway benchmark"),
     ):
         result = run("card", copied, option, value)
@@ -128,11 +131,13 @@ def test_a_wrong_fact_is_one_sentence_and_changes_nothing(run, copied):
     assert contents(copied) == before
 
 
-def test_scores_of_another_corpus_are_refused(run, copied, tmp_path):
+def test_scores_of_another_corpus_are_refused(run, copied, results):
     for changed in ({"title": "another"}, {"classes": {"healthy": 4}}):
-        (tmp_path / "results.json").write_text(json.dumps(results_of(copied, **changed)))
-        result = run("card", copied, "--scores", tmp_path / "results.json")
+        result = run("card", copied, "--scores", results(**changed))
         assert (result.exit_code, "has scores of another corpus" in result.stderr) == (2, True)
+
+
+def test_a_file_that_is_no_result_of_a_benchmark_is_refused(run, copied, tmp_path):
     for text in ("[1]", "[" * 100_000):
         (tmp_path / "results.json").write_text(text)
         assert "is not a file of scores" in run("card", copied, "--scores", tmp_path / "results.json").stderr

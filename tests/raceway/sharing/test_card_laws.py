@@ -7,17 +7,14 @@ import subprocess
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from gen.corpus import FAULTS, Publication, open_corpus, read_manifest, read_publication
+from gen.corpus import FAULTS, open_corpus, read_manifest, read_publication
 from gen.corpus.manifest import Manifest, Overrides
 from gen.support.errors import CorpusError
 from raceway import publish
 from raceway.sharing.card.additions import CardAdditions, CardPicture, write_additions
 from raceway.sharing.card.card_facts import ranges, rebuilding
 from raceway.sharing.card.card_page import data_card
-from raceway.sharing.card.citation import bibtex
 from tests.tone_corpora import write_corpus
 
 
@@ -146,25 +143,7 @@ def test_licence_and_creators_are_on_the_card_and_in_the_citation(corpus, tmp_pa
     assert "| licence | CC-BY-4.0 |" in card
     assert "| creator | Jane Doe, https://orcid.org/0000-0002-1825-0097 |" in card
     assert "\nJane Doe and A & B (2026): tones. Bearing vibration corpus of 48 records, made with Raceway." in card
-    (entry,) = blocks(card, "bibtex")
-    assert entry.startswith("@misc{doe2026tones,\n")
-    assert r"author = {Jane Doe and {A \& B}}" in entry
-    assert "doi = {10.1000/182}" in entry
     assert "No licence is stated" in data_card(corpus)
-
-
-@given(st.text(max_size=30), st.text(max_size=30))
-@settings(max_examples=40, deadline=None)
-def test_no_title_or_name_breaks_the_bibtex_entry(title, name):
-    name = "".join(letter for letter in name if letter.isprintable()).strip() or "N"
-    publication = Publication(creators=(read_publication({"creators": [{"name": name}]}).creators[0],))
-    manifest = Manifest.model_validate({"raceway_format": 3, "records": 0})
-    entry = bibtex(title, manifest.model_copy(update={"publication": publication}))
-    depth = 0
-    for mark in re.findall(r"\\.|[{}]", entry):
-        depth += {"{": 1, "}": -1}.get(mark, 0)
-        assert depth >= 0
-    assert depth == 0
 
 
 def command(corpus, **facts):

@@ -50,9 +50,9 @@ def test_several_corpora_are_joined(run, told, tones, tmp_path):
 
 
 def test_a_form_for_another_program_says_where_to_read_on(run, tones, tmp_path):
-    done = run("copy", tones[0], "-o", tmp_path / "out", "--to", "parquet", "--where", "fault == 'inner'")
+    done = run("copy", tones[0], "-o", tmp_path / "out", "--to", "huggingface", "--where", "fault == 'inner'")
     assert done.exit_code == 0
-    assert "3 of 12 records, 1 channel (housing) as parquet in 2 files" in done.stdout
+    assert "3 of 12 records, 1 channel (housing) as huggingface in" in done.stdout
     assert f"Next: read {tmp_path / 'out'}/README.md" in done.stdout
 
 
@@ -68,7 +68,7 @@ def test_a_form_for_another_program_says_where_to_read_on(run, tones, tmp_path):
         ("{one} --split train -o {other}", "exists and is not an empty folder"),
         ("{one} {one} -o {out}", "has the same samples as record 0"),
         ("{one} -o {one}/parts/part-00000.nc", "choose a place outside it"),
-        ("{one} --to xls -o {out}", "there is no form 'xls'; allowed are parquet, huggingface"),
+        ("{one} --to xls -o {out}", "there is no form 'xls'; allowed is huggingface"),
         ("{one} --rename-channel housing -o {out}", "give OLD=NEW, once for each channel"),
         ("{one} --rename-channel house=a -o {out}", "there is no channel 'house'; the nearest is housing."),
         ("-o {out}", "Missing argument"),

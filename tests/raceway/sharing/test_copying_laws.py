@@ -128,7 +128,7 @@ def test_far_apart_records_are_read_and_written_like_near_ones(tmp_path, monkeyp
         ({"rename": {"c": "d"}}, "rename: there is no channel 'c'; allowed are a, b."),
         ({"rename": {"a": "b"}}, "rename: two channels would be named b; give each its own name."),
         ({"codec": "lz4"}, "codec: there is no codec 'lz4'; allowed are zlib, zstd, none."),
-        ({"to": "parquet", "codec": "zlib"}, "codec: --codec is for corpora; leave it out for parquet."),
+        ({"to": "huggingface", "codec": "zlib"}, "codec: --codec is for corpora; leave it out for huggingface."),
     ],
     ids=str,
 )

@@ -16,7 +16,7 @@ import raceway
 from gen.corpus import SIGNAL, Publication, new_corpus, open_corpus
 from gen.support.errors import CorpusError
 from raceway import publish
-from raceway.sharing import FORMS, parquet_files
+from raceway.sharing import FORMS
 from raceway.sharing.form_columns import plain_names
 from tests.corpora import dataset, write_corpus, write_parts
 from tests.same_corpora import files
@@ -60,9 +60,9 @@ def lines_on_reading(folder):
 
 
 def test_parquet_gives_back_every_record_with_units(corpus, tmp_path):
-    made = raceway.copy(corpus, tmp_path / "out", to="parquet")
-    assert (made.records, made.channels) == (9, ("a", "b"))
-    table, expected = pq.read_table(tmp_path / "out/data"), opened(corpus)
+    made = raceway.copy(corpus, tmp_path / "out.parquet")
+    assert (made.form, made.records, made.channels) == ("parquet", 9, ("a", "b"))
+    table, expected = pq.read_table(tmp_path / "out.parquet"), opened(corpus)
     for place, name in enumerate("ab"):
         found = np.stack(table[f"acceleration_{name}"].to_numpy())
         np.testing.assert_array_equal(found, stored(expected)[:, place])
@@ -75,19 +75,9 @@ def test_parquet_gives_back_every_record_with_units(corpus, tmp_path):
     assert b"comment" not in table.schema.metadata  # it is about corpus.nc
 
 
-def test_the_lines_on_the_page_of_a_copy_read_it(counts, tmp_path, monkeypatch):
-    raceway.copy(counts, tmp_path / "out", to="parquet")
-    monkeypatch.chdir(tmp_path / "out")
-    found = {}
-    exec(lines_on_reading(tmp_path / "out"), found)  # noqa: S102 - our own page
-    np.testing.assert_array_equal(found["signal"], stored(opened(counts))[:, 0])
-
-
 def test_hugging_face_loads_the_folder_without_a_network(counts, tmp_path, monkeypatch):
     monkeypatch.setenv("HF_HUB_OFFLINE", "1")
-    monkeypatch.setattr(parquet_files, "FILE_BYTES", 4 * 2 * 50 * 2)  # two records
     raceway.copy(counts, tmp_path / "out", to="huggingface")
-    assert (tmp_path / "out/data/train-00001-of-00002.parquet").is_file()
     code = (
         f"{lines_on_reading(tmp_path / 'out')}\nimport json; part = records['test']; one = part.with_format('numpy')[:]\n"
         "print(json.dumps([{name: len(part) for name, part in records.items()}, name, "
@@ -126,15 +116,8 @@ def test_a_single_file_gives_the_same_bytes_as_its_folder(counts, tmp_path):
     raceway.copy(counts, tmp_path / "one.nc")
     raceway.copy(tmp_path / "one.nc", tmp_path / "folder")
     for source in ("folder", "one.nc"):
-        raceway.copy(tmp_path / source, tmp_path / f"{source}_tables", to="parquet")
-    assert files(tmp_path / "folder_tables") == files(tmp_path / "one.nc_tables")
-
-
-def test_a_target_with_a_suffix_is_one_table(corpus, tmp_path):
-    choice = {"split": "train", "where": "rig > 0"}
-    raceway.copy(corpus, tmp_path / "parquet", to="parquet", **choice)
-    assert raceway.copy(corpus, tmp_path / "one.parquet", **choice).form == "parquet"
-    assert pq.read_table(tmp_path / "one.parquet").equals(pq.read_table(tmp_path / "parquet/data"), check_metadata=True)
+        raceway.copy(tmp_path / source, tmp_path / f"{source}.parquet")
+    assert (tmp_path / "folder.parquet").read_bytes() == (tmp_path / "one.nc.parquet").read_bytes()
 
 
 @pytest.mark.parametrize("to", FORMS)
@@ -185,31 +168,28 @@ def test_texts_of_strangers_stay_texts(tmp_path):
     facts = YAML(typ="safe").load(header)
     assert "license" not in facts
     assert facts["pretty_name"].startswith('a" --- license: mit')
-    assert pq.read_table(tmp_path / "parquet/data")["bearing"].to_pylist()[0] == wicked
+    assert wicked in pq.read_table(tmp_path / "huggingface/data")["bearing"].to_pylist()
 
 
-def test_hugging_face_gets_the_classes_that_are_there_and_null_for_a_fault_that_is_not_known(tmp_path):
+def test_hugging_face_gets_the_names_of_the_classes_that_are_there(tmp_path):
     part = dataset(0, 3)
     part["fault"] = ("record", np.array([1, 127, 5], np.int8), part["fault"].attrs)
     part["split"] = ("record", np.zeros(3, np.int8), part["split"].attrs)
     write_parts(tmp_path / "c", [part])
     raceway.copy(tmp_path / "c", tmp_path / "out", to="huggingface")
-    assert pq.read_table(tmp_path / "out/data")["fault"].to_pylist() == [0, None, 1]
+    assert pq.read_table(tmp_path / "out/data")["fault"].to_pylist() == ["inner", "unknown", "compound"]
     card = (tmp_path / "out/README.md").read_text()
-    assert '{"name": "fault", "dtype": {"class_label": {"names": {"0": "inner", "1": "compound"}}}}' in card
-    raceway.copy(tmp_path / "c", tmp_path / "tables", to="parquet")
-    assert pq.read_table(tmp_path / "tables/data")["fault"].to_pylist() == ["inner", "unknown", "compound"]
+    assert '{"class_label": {"names": {"0": "inner", "1": "compound", "2": "unknown"}}}' in card
 
 
 @pytest.mark.parametrize(
     ("name", "to", "sentence"),
     [
-        ("out", "xls", r"to: there is no form 'xls'; allowed are parquet, huggingface; NAME.nc is netCDF"),
-        ("a.huggingface", None, "huggingface is a folder of files; give the name of a folder, and to=.huggingface"),
+        ("out", "xls", r"to: there is no form 'xls'; allowed is huggingface; NAME.nc is netCDF"),
         ("a.mat", None, "a.mat: copies are not written as .mat; NAME.nc is netCDF, which MATLAB, R, Julia and Octave"),
         ("a.zarr", None, "not written as .zarr; .*docs/sharing.md has lines of xarray for CSV and Zarr"),
-        ("a.nc", "parquet", "nc is one file, and to='parquet' makes a folder; leave one of the two out"),
-        ("out", "parquet", "parquet: needs pyarrow; pip install pyarrow, or"),
+        ("a.nc", "huggingface", "nc is one file, and to='huggingface' makes a folder; leave one of the two out"),
+        ("a.parquet", None, "parquet: needs pyarrow; pip install pyarrow, or"),
     ],
 )
 def test_refusals_are_one_sentence(counts, tmp_path, monkeypatch, name, to, sentence):
