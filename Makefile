@@ -44,11 +44,11 @@ tests: $(VENV)/installed
 
 generated: $(VENV)/installed
 	$(BIN)/python -m gen.pages .
-	$(BIN)/python -m raceway.feature_pages docs/features.md
+	$(BIN)/python -m benchmarks.feature_pages docs/features.md
 
 # the feature table that ships with Raceway, from which the reference model is trained
 reference: $(VENV)/installed
-	$(BIN)/python -m raceway.kept_models
+	$(BIN)/python -m benchmarks.reference_table
 
 # the site under out/docs; index.html opens it, search included, without a server. The tutorials run, which takes three to four minutes
 docs: $(VENV)/installed

@@ -29,7 +29,7 @@ from gen.physics.catalogue import CATALOGUE
 from gen.support.units import rpm_to_hertz
 from raceway.diagnosis import Given, diagnose_recording
 from raceway.importing.recorded import Recorded
-from raceway.kept_models import load_reference_model
+from raceway.kept_models import reference_model
 
 BEARING = "ER-12K"  # of the machine of limerick
 GRAVITY = 9.80665  # m s-2
@@ -180,7 +180,7 @@ def main() -> None:
     parser.add_argument("--references", type=int, default=2, help="per kind and recording of limerick; 24 are all")
     parser.add_argument("--json", action="store_true", help="print the rows as JSON")
     options = parser.parse_args()
-    model, _ = load_reference_model()
+    model = reference_model()
     machines: list[Answered] = []
     for axes in (*AXES, "".join(AXES)):
         each = healthy_recordings(options.real / "limerick" / "healthy.nc", axes)

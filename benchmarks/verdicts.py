@@ -25,7 +25,7 @@ from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from raceway.diagnosis import ANY_RATE, Diagnosis, Given, diagnose_recording
 from raceway.importing.recorded import Recorded
-from raceway.kept_models import load_reference_model
+from raceway.kept_models import reference_model
 
 RIGHT = "right speed and bearing"
 ERRORS = tuple(sign * percent / 100 for percent in range(4, 41, 4) for sign in (-1, 1))
@@ -145,7 +145,7 @@ def main() -> None:
     parser.add_argument("real", type=Path)
     parser.add_argument("--missed", action="store_true", help="faulty recordings called healthy, by their length")
     options = parser.parse_args()
-    model, _ = load_reference_model()
+    model = reference_model()
     if options.missed:
         print("| seconds | called healthy, no reference | with one healthy recording |\n|---:|---:|---:|")
         print(*missed(options.real, model), sep="\n")

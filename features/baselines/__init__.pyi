@@ -18,4 +18,3 @@ from .scores import Scores as Scores, interval_text as interval_text, percent_te
 from .severities import severity_warning as severity_warning
 from .splits import controls as controls, cross_validate as cross_validate
 from .submissions import check_submission as check_submission, write_submission as write_submission
-from .unlabelled import Answer as Answer, unlabelled_answers as unlabelled_answers

@@ -3,23 +3,18 @@
 ``table, reference -> healthy records, without double use -> records to test, healthy records, a sentence``
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from features.baselines.records import FloatArray, feature_rows, record_digests, title_of
+from features.baselines.records import feature_rows, record_digests, title_of
 from features.baselines.references import SAME_SPEED, by_rig, healthy_records
-from features.table.band import DEFAULT_BAND, Band
-from features.table.indicators import Orders
-from features.table.recording_features import recording_table
 from features.table.recording_speeds import recording_numbers
-from gen.corpus import UNKNOWN_CODE, corpus_name, open_corpus
+from gen.corpus import corpus_name, open_corpus
 from gen.support.errors import CorpusError
-from gen.support.units import from_si
 
-FILE = "recording_file"  # attribute of the table of a reference recording
 SAME_BEARING = 0.02  # relative: orders within it are those of one bearing
 OTHER_BEARING = "No bearing of the reference has the fault orders of a tested one: check that it is of the same rig."
 
@@ -30,7 +25,6 @@ def choose_reference(
     """Choose the records to test and their healthy records, so that no tested record is part of the reference.
 
     If both tables hold the same records, the first healthy recording of each rig is the reference, and rigs without one are not tested.
-    Records that were cut from the file of a reference recording are not tested either.
 
     Parameters
     ----------
@@ -56,9 +50,6 @@ def choose_reference(
         tested = np.isin(table["rig"].values, healthy["rig"].values)
     # a record is never compared with itself
     tested &= ~np.isin(mine, record_digests(feature_rows(healthy, features).to_numpy()))
-    # nor with other windows of the file that the reference was read from
-    if FILE in reference.attrs and "source" in table:
-        tested &= ~_of_file(table["source"].values, Path(reference.attrs[FILE]))
     if not tested.any():
         message = (
             f"{title_of(reference)}: every tested record belongs to the reference; give another recording as reference."
@@ -99,74 +90,6 @@ def _first_recordings(healthy: xr.Dataset) -> xr.Dataset:
     rig, number = healthy["rig"].values, recording_numbers(healthy)
     first = [number[rig == each].min() for each in np.unique(rig)]
     return healthy.isel(record=np.isin(number, first))
-
-
-def _of_file(sources: Iterable[str], file: Path) -> np.ndarray:
-    """Whether records come from a file; a source is a path in the folder of an imported set, and a place in that file."""
-    paths = [Path(str(source).partition("#")[0]).parts for source in sources]
-    return np.array([bool(parts) and file.parts[-len(parts) :] == parts for parts in paths], dtype=bool)
-
-
-def recording_reference(
-    signal: FloatArray,
-    fs: float,
-    corpus: Path | str,
-    file: Path,
-    shaft_rate: float | None = None,
-    band: Band = DEFAULT_BAND,
-) -> xr.Dataset:
-    """Feature table of a healthy recording, cut into records as long as those of a corpus and with their bearing.
-
-    Parameters
-    ----------
-    signal
-        Shape (time,), in any unit.
-    fs
-        Sample rate [Hz].
-    corpus
-        Folder or file of the corpus to be tested.
-    file
-        Path of the recording, with which an error sentence begins.
-    shaft_rate
-        Speed of the recording [Hz]; by default that of the corpus.
-    band
-        Band that its features are computed from.
-
-    Raises
-    ------
-    CorpusError
-        If the recording is not finite or shorter than a record, the corpus has several bearings, or it has several speeds and none
-        is given.
-    """
-    wrong = int(np.count_nonzero(~np.isfinite(signal)))
-    if wrong:
-        raise CorpusError(f"{file}: {wrong:,} of {signal.size:,} samples are not finite numbers; export it again.")
-    # bearing and speed of the reference are those of the corpus, which names them
-    with open_corpus(corpus) as opened:
-        duration = _duration(opened)
-        orders = [np.unique(opened[order].values) for order in Orders._fields]
-        rates = opened["shaft_rate"].values
-    length = round(duration * fs)
-    if len(signal) < length:
-        message = (
-            f"{file}: the reference lasts {len(signal) / fs:.3g} s, less than a record of {corpus} ({duration:g} s); "
-            "give a longer recording."
-        )
-        raise CorpusError(message)
-    if any(len(values) > 1 for values in orders):
-        message = f"{file}: {corpus} has several bearings; give a corpus as reference, with the bearing of each record."
-        raise CorpusError(message)
-    if shaft_rate is None and np.ptp(rates) > SAME_SPEED * rates.min():
-        message = (
-            f"{file}: the speeds of {corpus} go from {from_si(rates.min(), 'rpm'):.5g} to {from_si(rates.max(), 'rpm'):.5g} rpm; "
-            "give the speed of the reference (shaft_rate)."
-        )
-        raise CorpusError(message)
-    # the last incomplete window is dropped
-    windows = signal[: len(signal) // length * length].reshape(-1, length)
-    speed = float(rates.mean()) if shaft_rate is None else shaft_rate
-    table = recording_table(windows, fs, speed, Orders(*(values[0] for values in orders)), UNKNOWN_CODE, band=band)
-    return table.assign_attrs({"title": str(file), FILE: str(file.absolute())})
 
 
 def check_durations(corpus: Path | str | xr.Dataset, reference: Path | str | xr.Dataset) -> None:

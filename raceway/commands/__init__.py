@@ -7,7 +7,6 @@ corpus_commands    commands that make corpora and look at them
 plot_commands      a picture of one record or recording
 feature_commands   features of all records
 model_commands     a model trained, and scored on another corpus
-reference_options  healthy records that the tested ones are compared with
 benchmark_commands scores of all baselines
 doctor_command     installed versions, and the speed of this machine
 ================== ======================================================

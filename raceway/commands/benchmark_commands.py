@@ -286,11 +286,9 @@ def _makers(names: tuple[str, ...]) -> "dict[str, str | Maker] | None":
 
 def _load(models: Sequence[Path | None]) -> "dict[str, Model]":
     """Trained models by the name that the user gave."""
-    from features.baselines import Model
-    from raceway.kept_models import reference_model
+    from raceway.kept_models import open_model
 
-    paths = dict.fromkeys(models)
-    return {str(path or REFERENCE_MODEL): reference_model() if path is None else Model.load(path) for path in paths}
+    return {str(path or REFERENCE_MODEL): open_model(path)[0] for path in dict.fromkeys(models)}
 
 
 def _score_models(

@@ -1,16 +1,15 @@
 """Commands that train a model and score it on another corpus."""
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR
-from raceway.commands.reference_options import reference_options, reference_table
 from raceway.console import show
 from raceway.console.corpus_table import notice_of_unknown, table_of
 from raceway.console.options import (
+    A_CORPUS,
     USUAL_ANALYSIS,
     Analysis,
     Team,
@@ -30,15 +29,13 @@ from raceway.console.progress_bar import notice
 if TYPE_CHECKING:
     import xarray as xr
 
-    from features.baselines import Answer, Calibration, Model, Results, Scores
+    from features.baselines import Calibration, Model, Results, Scores
     from features.table.recording_speeds import Speed
 
 
 @click.command()
 @click.argument("source", metavar="DIR|RECIPE", shell_complete=complete_recipes)
-@file_option(
-    "MODEL", "Model file; without it the model of a RECIPE is kept for this user.", kind="model", required=False
-)
+@file_option("MODEL", "Model file.", kind="model")
 @click.option(
     "--estimator",
     type=click.Choice(BASELINES),
@@ -52,7 +49,7 @@ if TYPE_CHECKING:
 @json_option
 def train(
     source: str,
-    output: Path | None,
+    output: Path,
     estimator: str,
     analysis: Analysis,
     team: Team,
@@ -66,12 +63,11 @@ def train(
       raceway train corpus -o model.skops
       raceway train corpus -o forest.skops --estimator random_forest
       raceway train corpus -o high.skops --channel fan_end --band 300 9000
-      raceway train domain_randomised                 the reference model of raceway diagnose
       raceway train my_recipe.yaml -o model.skops
+      raceway train domain_randomised -o model.skops   as the reference model of raceway diagnose
 
     A folder comes before a recipe of the same name. The corpus of a RECIPE is removed after the training; for domain_randomised the
-    features of its records ship with Raceway. Without -o the model is kept in
-    the folder RACEWAY_CACHE, or else in raceway in the cache folder of the user (XDG_CACHE_HOME or ~/.cache), and is not trained twice.
+    features of its records ship with Raceway.
 
     The model keeps the band, and raceway evaluate computes features from the same one.
 
@@ -80,28 +76,21 @@ def train(
     Next: raceway evaluate OTHER --model MODEL
     """
     from features.baselines import count_unknown
-    from raceway.kept_models import kept_model, recipe_tables, train_and_score
+    from raceway.kept_models import recipe_tables, train_and_score
 
     folder = Path(source)
     from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
     corpus = corpus_path(folder) if from_folder else None
+    if corpus is None and (team.scheduler is not None or analysis != USUAL_ANALYSIS):
+        raise click.UsageError("--scheduler, --channel and --band are for DIR: generate the corpus of the RECIPE first")
     if corpus is None:
-        if team.scheduler is not None:
-            raise click.UsageError("--scheduler is for DIR: generate the corpus of the RECIPE with it first")
         from gen.recipe import find_recipe
 
         find_recipe(source)  # a misspelt name is reported before the simulator is imported
-    if corpus is None and analysis != USUAL_ANALYSIS:
-        raise click.UsageError("--channel and --band are for DIR: generate the corpus of the RECIPE first")
-    if corpus is None and output is None:
-        model, output, scores = kept_model(source, estimator, team=team)
-    elif output is None:
-        raise click.UsageError("Missing option '-o' / '--output': only the model of a RECIPE is kept without it.")
-    else:
-        tables = recipe_tables(source, team) if corpus is None else [table_of(corpus, "off", team, analysis)]
-        notice_of_unknown(corpus or folder, count_unknown(tables[0]))
-        model, scores = train_and_score(tables, estimator, team)
-        model.save(output)
+    tables = recipe_tables(source, team) if corpus is None else [table_of(corpus, "off", team, analysis)]
+    notice_of_unknown(corpus or folder, count_unknown(tables[0]))
+    model, scores = train_and_score(tables, estimator, team)
+    model.save(output)
     warn_of_severities(scores)
     if as_json:
         names = ("records", "classes", "groups")
@@ -127,7 +116,12 @@ def train(
 @corpus_argument
 @model_option
 @channels_option
-@reference_options
+@click.option(
+    "--reference",
+    type=A_CORPUS,
+    metavar="DIR",
+    help="Corpus with healthy records of the same rigs, which may be the tested one.",
+)
 @speed_option
 @worker_options
 @json_option
@@ -139,83 +133,51 @@ def evaluate(
     speed: "Speed",
     team: Team,
     as_json: bool,
-    **reading: Any,
 ) -> None:
     """Score a model on every record of the corpus in DIR.
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
     scored together, by the mean of their features. The interval is a bootstrap over specimens. A record is answered if
     its largest probability reaches the threshold of the model, and otherwise the answer is "unsure". Recordings of class unknown are not
-    scored; the answer for each of them is listed. --json also has verdicts: the number of recordings by true class and verdict, which
+    scored: raceway diagnose answers for recordings. --json also has verdicts: the number of recordings by true class and verdict, which
     are those of raceway diagnose at the speeds of DIR.
 
-    With --reference, records are compared with healthy records of their rig: those of a corpus, which may be DIR itself, or a recording
-    (.csv, .npy, .mat, .wav, ...) of the bearing of DIR. Records of the reference are left out of the scores. A "healthy" is answered only
-    if the spectral colour is near that of the reference.
+    With --reference, records are compared with healthy records of their rig: those of another corpus, or of the tested one itself. Records
+    of the reference are left out of the scores. A "healthy" is answered only if the spectral colour is near that of the reference.
 
       raceway evaluate cwru                           with the reference model of raceway diagnose
       raceway evaluate cwru --model model.skops
       raceway evaluate pump --model model.skops --channel x,y,z
       raceway evaluate pump --model model.skops --reference pump
-      raceway evaluate pump --model model.skops --reference new.csv --reference-rate 12000 --reference-rpm 1480
     """
-    from features.baselines import Model, count_unknown, unlabelled_answers
+    from features.baselines import count_unknown
+    from features.baselines.reference_choice import check_durations
     from gen import open_corpus
     from raceway.diagnosis import count_verdicts
-    from raceway.kept_models import load_reference_model
+    from raceway.kept_models import open_model
 
-    given = [name for name, value in reading.items() if value is not None]
-    if reference is None and given:
-        raise click.UsageError(f"--{given[0].replace('_', '-')} is for --reference")
-    if model is None:
-        open_corpus(corpus).close()  # a wrong path is told before the model is trained
-    loaded, source = load_reference_model() if model is None else (Model.load(model), model)
+    # a wrong path is told before a model is trained and features are computed
+    open_corpus(corpus).close()
+    if reference is not None:
+        check_durations(corpus, reference)
+    loaded, source = open_model(model)
     analysis = Analysis(channel, loaded.band)
     table = table_of(corpus, speed, team, analysis)
-    healthy = None if reference is None else reference_table(reference, corpus, table, speed, team, analysis, reading)
-    answers = unlabelled_answers(table, loaded, healthy)
-    if count_unknown(table) == table.sizes["record"]:
-        _show_answers_alone(corpus, source, loaded.name, answers, as_json=as_json)
-        return
+    healthy = table if reference == corpus else reference and table_of(reference, speed, team, analysis)
     scores = loaded.score(table, reference=healthy)
+    unknown = count_unknown(table)
+    notice_of_unknown(corpus, unknown)
     warn_of_severities(scores)
     warn_of_seen("the model", scores)
     warn_of_durations("the model", loaded, table)
     if as_json:
         facts = {"corpus": corpus, "model": source, "estimator": loaded.name, **show.plain(scores)}
-        show.as_json(
-            facts | {"verdicts": count_verdicts(corpus, table, loaded, healthy), "unknown": show.plain(answers)}
-        )
+        show.as_json(facts | {"verdicts": count_verdicts(corpus, table, loaded, healthy), "unknown": unknown})
         return
     show.text(f"{loaded.name} trained on {loaded.corpus}, tested on {corpus}:", "")
     if scores.reference:
         show.text(scores.reference, "")
     _show_scores(scores)
-    if answers:
-        show.text("")
-        _show_answers(answers)
-
-
-def _show_answers_alone(
-    corpus: Path, model: Path, estimator: str, answers: "Sequence[Answer]", *, as_json: bool
-) -> None:
-    """Show the answers for a corpus without any known class."""
-    if as_json:
-        show.as_json({"corpus": corpus, "model": model, "estimator": estimator, "unknown": show.plain(answers)})
-        return
-    show.text(f"{corpus}: no record has a known class, so there is no score.", "")
-    _show_answers(answers)
-
-
-def _show_answers(answers: "Sequence[Answer]") -> None:
-    classes = tuple(answers[0].probabilities)
-    show.table(
-        ("class unknown", "records", "answer", *classes),
-        (
-            (one.source, f"{one.records}", one.answer, *(f"{p:.2f}" for p in one.probabilities.values()))
-            for one in answers
-        ),
-    )
 
 
 def calibration_text(calibration: "Calibration") -> str:

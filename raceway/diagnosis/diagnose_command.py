@@ -3,7 +3,7 @@
 import os
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -119,9 +119,11 @@ def diagnose(
 
     # the libraries of the model hold much that is never freed, and collecting garbage among it takes time
     with keep_garbage():
-        loaded, source = _model(model)
         from raceway.diagnosis import diagnose_recording
         from raceway.diagnosis.diagnosis_facts import assumptions, diagnosis_facts
+        from raceway.kept_models import open_model
+
+        loaded, source = open_model(model)
 
     found = []
     # one recording at a time, read when its turn comes
@@ -215,14 +217,3 @@ def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -
 
     nominal = {name: Orders(*(np.asarray(order) for order in orders(one))) for name, one in bearings.items()}
     return Given(nominal, ANY_RATE if speeds is None else (rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])))
-
-
-def _model(path: Path | None) -> tuple[Any, Path]:
-    """Model and its file, or the reference model."""
-    if path is None:
-        from raceway.kept_models import load_reference_model
-
-        return load_reference_model()
-    from features.baselines.models import Model
-
-    return Model.load(path), path

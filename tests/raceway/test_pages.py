@@ -5,9 +5,9 @@ import shlex
 
 import pytest
 
+from benchmarks.feature_pages import TABLES, draw_features, with_tables
 from features.table.definitions import GROUPS, VIEWS, define_features
 from raceway.cli import cli
-from raceway.feature_pages import TABLES, draw_features, with_tables
 from tests.page_examples import run_blocks
 from tests.paths import ROOT
 from tests.tone_corpora import write_corpus

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from features import feature_table
 from features.baselines import Model, predict
-from features.baselines.reference_choice import OTHER_BEARING, check_durations, choose_reference, recording_reference
+from features.baselines.reference_choice import OTHER_BEARING, check_durations, choose_reference
 from features.baselines.references import ENERGIES, NEAREST, SAME_SPEED, relative_names, relative_to, virtual_references
 from features.fault_classes import EVIDENCE
 from features.table.indicators import Orders
@@ -280,39 +280,12 @@ def imported(folder, *, rpm="1500", window=0.5, bearings=("6205",)):
     return import_labelled(folder, files, window=window, unit="g", sample_rate_hz=FS).path
 
 
-def test_a_reference_recording_has_the_features_of_the_same_records_in_a_corpus(tmp_path):
-    corpus = imported(tmp_path / "one")
-    tested = feature_table(corpus)
-    signal = 9.80665 * np.load(tmp_path / "one" / "0.npy")
-    found = recording_reference(signal, FS, corpus, tmp_path / "one" / "0.npy")
-    expected = tested["features"].values[tested["fault"].values == 0]
-    np.testing.assert_allclose(found["features"].values, expected, atol=0.02)  # the corpus is quantised
-    kept, _, sentence = choose_reference(tested, found, [str(name) for name in tested["feature"].values])
-    assert "; 2 tested records that belong to it are left out" in sentence  # known by the name of the file
-    assert (kept["fault"].values > 0).all()
-
-
-def test_a_reference_recording_that_cannot_be_used_is_refused(tmp_path):
-    signal, file = np.random.default_rng(0).standard_normal(FS), tmp_path / "r.csv"
-    one, speeds = imported(tmp_path / "one"), imported(tmp_path / "speeds", rpm="1500 1600")
-    bearings = imported(tmp_path / "bearings", bearings=("6205", "6204"))
-    for corpus, values, sentence in (
-        (
-            one,
-            signal[: FS // 3],
-            r"r.csv: the reference lasts 0.333 s, less than a record of .* \(0.5 s\); give a longer",
-        ),
-        (speeds, signal, r"go from 1500 to 1600 rpm; give the speed of the reference \(shaft_rate\)"),
-        (bearings, signal, "has several bearings; give a corpus as reference"),
-        (one, np.r_[signal, np.nan], "r.csv: 1 of 12,001 samples are not finite numbers; export it again"),
-    ):
-        with pytest.raises(CorpusError, match=sentence):
-            recording_reference(values, FS, corpus, file)
-    assert recording_reference(signal, FS, speeds, file, 25.0)["shaft_rate"].values.tolist() == [25.0, 25.0]
+def test_a_reference_of_other_durations_is_refused(tmp_path):
+    one, short = imported(tmp_path / "one"), imported(tmp_path / "short", window=0.25)
     with pytest.raises(
         CorpusError, match=r"last 0.25 s and those of .* 0.5 s; import the reference with records of the"
     ):
-        check_durations(one, imported(tmp_path / "short", window=0.25))
+        check_durations(one, short)
 
 
 def several_rigs(table: xr.Dataset) -> xr.Dataset:
@@ -327,7 +300,7 @@ def several_rigs(table: xr.Dataset) -> xr.Dataset:
     return xr.concat(copies, dim="record")
 
 
-def test_evaluate_takes_a_corpus_or_a_recording_as_reference(tmp_path):
+def test_evaluate_takes_a_corpus_as_reference(tmp_path):
     corpus, path = imported(tmp_path / "one"), tmp_path / "m.skops"
     Model().fit(several_rigs(feature_table(corpus))).save(path)
     assert Model.load(path).relative is not None
@@ -336,12 +309,9 @@ def test_evaluate_takes_a_corpus_or_a_recording_as_reference(tmp_path):
         done = CliRunner().invoke(cli, ["evaluate", str(corpus), "--model", str(path), *map(str, options)])
         return done.exit_code, " ".join(done.output.split())
 
-    recording = tmp_path / "one" / "0.npy"
-    for reference, count in ((corpus, 2), (recording, 2)):
-        code, told = run("--reference", reference)
-        assert code == 0, told
-        assert f"which has {count}; 2 tested records that belong to it are left out." in told
-    assert f"{recording}: does not state its sample rate; 12000 Hz is used" in told
+    code, told = run("--reference", corpus)
+    assert code == 0, told
+    assert "which has 2; 2 tested records that belong to it are left out." in told
     code, told = run("--reference", tmp_path / "nowhere")
     assert code
-    assert f"there is no {tmp_path / 'nowhere'}; give a corpus or a recording" in told
+    assert f"{tmp_path / 'nowhere'}: " in told

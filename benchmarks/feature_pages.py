@@ -1,4 +1,4 @@
-"""Tables and picture of docs/features.md: ``python -m raceway.feature_pages docs/features.md [PICTURE]``.
+"""Tables and picture of docs/features.md: ``python -m benchmarks.feature_pages docs/features.md [PICTURE]``.
 
 A table stands between ``<!-- table: NAME -->`` and ``<!-- end of table -->``; a test compares the page with the definitions.
 """
