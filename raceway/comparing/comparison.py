@@ -132,9 +132,9 @@ def contrast(synthetic: Windows, real: tuple[Windows, ...], common: CommonForm) 
     classes = _classes(synthetic, real)
     comparison = Comparison({}, {}, {}, {}, common, synthetic, real)
     for fault in classes:
-        samples = {w.name: _values(w, fault) for w in (synthetic, *real)}
+        samples = {w.name: w.values_of(fault) for w in (synthetic, *real)}
         samples = {name: values for name, values in samples.items() if len(values) >= FEWEST}
-        columns = {m.name: {name: _finite(v[:, NAMES.index(m.name)]) for name, v in samples.items()}
+        columns = {m.name: {name: finite(v[:, NAMES.index(m.name)]) for name, v in samples.items()}
                    for m in MEASURES if m.belongs_to(fault)}  # fmt: skip
         comparison.auc[fault] = {name: _auc(sets, synthetic.name) for name, sets in columns.items()}
         comparison.quantiles[fault] = {name: _quantiles(sets, synthetic.name) for name, sets in columns.items()}
@@ -165,11 +165,8 @@ def _classes(synthetic: Windows, real: tuple[Windows, ...]) -> list[str]:
     return [FAULTS[code] for code in np.flatnonzero(enough)]
 
 
-def _values(windows: Windows, fault: str) -> FloatArray:
-    return windows.values[windows.fault == FAULTS.index(fault)]
-
-
-def _finite(values: FloatArray) -> FloatArray:
+def finite(values: FloatArray) -> FloatArray:
+    """Values that are finite."""
     return values[np.isfinite(values)]
 
 

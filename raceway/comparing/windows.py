@@ -55,6 +55,10 @@ class Windows(NamedTuple):
     values: FloatArray
     unknown: int = 0
 
+    def values_of(self, fault: str) -> FloatArray:
+        """Measures of the windows of a class, shape (window, measure)."""
+        return self.values[self.fault == FAULTS.index(fault)]
+
 
 def common_ground(folders: list[Path], top: float, window: float | None) -> CommonForm:
     """Shortest record (or ``window``, if that is shorter), lowest sample rate, and the upper edge of the band.

@@ -15,21 +15,19 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from pandas import DataFrame, Index
 
 from features.baselines.calibration import HEALTHY_SHARE
-from features.baselines.classifying import estimator_probabilities, predict
+from features.baselines.classifying import predict
 from features.baselines.models import Model
-from features.baselines.predictions import DAMAGED, UNSURE, Predictions, impulsiveness_of, predictions
+from features.baselines.predictions import DAMAGED, UNSURE, Predictions
 from features.baselines.references import with_energies
-from features.signal.rows import FloatArray, mean_row
 from features.table.band import Band
 from features.table.channels import joined_channels
 from features.table.definitions import GROUPS
 from features.table.durations import suited
-from features.table.indicators import Orders, feature_names, indicators
+from features.table.indicators import feature_names
 from features.table.recording_features import recording_table, windows_of
-from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
+from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 from raceway.diagnosis.evidence import Line, find_evidence
@@ -211,51 +209,24 @@ def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[R
 
 def _predict(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Predictions:
     """Predictions of windows and recording."""
-    model = suited(model, [_duration(one) for one in (recording, *references)])
-    if references:
-        healthy = [_table(one, recording.signals, pair, model, HEALTHY) for one in references]
-        # each healthy recording keeps a number of its own, since they tell how much the machine varies
-        numbered = [one.assign(recording=one["recording"] + number) for number, one in enumerate(healthy)]
-        known = xr.concat(numbered, "record", combine_attrs="override")
-        return predict(_table(recording, recording.signals, pair, model, UNKNOWN), model, known)
-    # axes of one housing are channels of one record
-    rows = [
-        _rows(windows_of(signal, recording.fs, model), recording.fs, pair, model)
-        for signal in recording.signals.values()
-    ]
-    means = [mean_row(some)[None] for some in rows]
-    columns = Index(model.features)
-    each, whole = (
-        np.stack([estimator_probabilities(model, DataFrame(some, columns=columns), recording.name) for some in values])
-        for values in (rows, means)
-    )
-    # all windows are of one recording
-    alone = np.zeros(each.shape[1], dtype=np.intp)
-    impulsiveness = impulsiveness_of(means, model.features)
-    return predictions(each, model.classes, alone, model.calibration, of_recordings=whole, impulsiveness=impulsiveness)
+    model = suited(model, [_duration(each) for each in (recording, *references)])
+    tested = _table(recording, recording.signals, pair, model, UNKNOWN_CODE)
+    if not references:
+        return predict(tested, model)
+    healthy = [_table(each, recording.signals, pair, model, FAULTS.index(HEALTHY)) for each in references]
+    # each healthy recording keeps a number of its own, since they tell how much the machine varies
+    numbered = [table.assign(recording=table["recording"] + number) for number, table in enumerate(healthy)]
+    return predict(tested, model, xr.concat(numbered, "record", combine_attrs="override"))
 
 
-def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Model, fault: str) -> xr.Dataset:
-    fs, code, groups, band = (
-        recording.fs,
-        UNKNOWN_CODE if fault == UNKNOWN else FAULTS.index(fault),
-        with_energies(model.groups),
-        Band(*model.band),
-    )
-    windows = {name: windows_of(recording.signals[name], fs, model) for name in channels}
-    tables = {
-        name: recording_table(of_channel, fs, pair.rate, pair.orders, code, groups, band)
-        for name, of_channel in windows.items()
-    }
+def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Model, fault: int) -> xr.Dataset:
+    """Feature table of a recording; axes of one housing are channels of one record."""
+    groups, band = with_energies(model.groups), Band(*model.band)
+    tables = {}
+    for name in channels:
+        windows = windows_of(recording.signals[name], recording.fs, model)
+        tables[name] = recording_table(windows, recording.fs, pair.rate, pair.orders, fault, groups, band)
     return joined_channels(tables).assign_attrs(title=recording.name)
-
-
-def _rows(windows: FloatArray, fs: float, pair: Pair, model: Model) -> FloatArray:
-    """Features of windows, shape (window, time), that the model takes, shape (window, feature)."""
-    each = Orders(*(np.full(len(windows), float(order)) for order in pair.orders))
-    rates = np.full(len(windows), pair.rate)
-    values, names = indicators(windows, fs, rates, each, model.groups, Band(*model.band))
-    return values[:, [names.index(name) for name in model.features]]
 
 
 def _duration(recording: Recorded) -> float:

@@ -1,6 +1,6 @@
 """A diagnosis on one self-contained page: verdict, probabilities, pictures, evidence and what was assumed."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +13,9 @@ from features.signal.lines import Orders
 from features.signal.rows import FloatArray
 from features.signal.velocity import velocity_band
 from features.table.band import DEFAULT_BAND, Band
-from gen.corpus import check_result, write_text_durably
 from gen.corpus.fault_classes import HEALTHY
 from gen.support.units import from_si
-from raceway.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels
+from raceway.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis
 from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
 from raceway.diagnosis.wording import probability_in_words
 from raceway.importing.recorded import Recorded
@@ -33,7 +32,7 @@ from raceway.reports.pictures import (
     name_lines,
     picture,
 )
-from raceway.reports.templates import template, three_digits
+from raceway.reports.templates import write_page
 
 LOWEST_DB, MARGIN_DB = -5.0, 4.0  # ends of the axis of levels: below the floor, and above the highest
 DRAWN_HARMONICS = 3  # of each family
@@ -69,14 +68,16 @@ def write_diagnosis(
         If the disk refuses the file.
     """
     drawn = diagnosis.spectrum is not None
-    page = template("diagnosis.html.jinja", "raceway.diagnosis").render(
+    write_page(
+        Path(output),
+        "diagnosis.html.jinja",
+        "raceway.diagnosis",
         name=name,
         diagnosis=diagnosis,
         colour=FAULT_COLOURS.get(diagnosis.verdict, FAINT),
-        bars=_bars(diagnosis.probabilities),
         picture=picture(draw_diagnosis(diagnosis, recording, next(iter(healthy), None)), "svg") if drawn else b"",
         healthy=len(healthy),
-        levels=[_level_row(one, several=len(recording.signals) > 1) for one in diagnosis.levels],
+        several=len(recording.signals) > 1,
         unit=recording.unit,
         band=velocity_band(diagnosis.shaft_rate),
         colours=FAULT_COLOURS,
@@ -84,27 +85,9 @@ def write_diagnosis(
         false_alarm=FALSE_ALARM,
         duration=len(next(iter(recording.used.signals.values()))) / recording.fs,
         fs=recording.fs,
-        pairs=[(pair, True) for pair in diagnosis.explanations] + [(pair, False) for pair in diagnosis.elsewhere],
+        probability_in_words=probability_in_words,
         assumed=assumed,
     )
-    # only a page of Raceway is replaced
-    check_result(Path(output), "page")
-    write_text_durably(page, Path(output))
-
-
-def _bars(probabilities: Mapping[str, float]) -> list[tuple[str, float, str, str]]:
-    """Class, probability, its text, and colour."""
-    ranked = sorted(probabilities.items(), key=lambda item: -item[1])
-    return [(fault, share, probability_in_words(share), FAULT_COLOURS[fault]) for fault, share in ranked]
-
-
-def _level_row(levels: Levels, *, several: bool) -> tuple[str, list[str]]:
-    """Recording, and channel if there are several, and the figures that are known."""
-    figures = (levels.rms, levels.peak, levels.crest_factor, levels.kurtosis, levels.velocity_rms_mm_s)
-    name = Path(levels.recording).name
-    return f"{name}, {levels.channel}" if several else name, [
-        three_digits(figure) if np.isfinite(figure) else "–" for figure in figures
-    ]
 
 
 @rc_context(STYLE)

@@ -93,20 +93,15 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
     """
     from gen.corpus import check_result, make_result_folder, write_text_durably
     from raceway.reports.class_colours import FAULT_COLOURS
-    from raceway.reports.templates import template
+    from raceway.reports.templates import write_page
 
-    page = template("diagnoses.html.jinja", "raceway.diagnosis").render(
-        name=name,
-        rows=rows,
-        counts=Counter(row.verdict for row in rows),
-        colours=FAULT_COLOURS,
-        list=LIST,
-    )
     make_result_folder(pages)
-    # only results of Raceway are replaced
-    for file, kind, text in ((INDEX, "page", page), (LIST, LIST_KIND, _csv_text(rows))):
-        check_result(pages / file, kind)
-        write_text_durably(text, pages / file)
+    counts = Counter(row.verdict for row in rows)
+    about = {"name": name, "rows": rows, "counts": counts, "colours": FAULT_COLOURS, "list": LIST}
+    write_page(pages / INDEX, "diagnoses.html.jinja", "raceway.diagnosis", **about)
+    # only a list of Raceway is replaced
+    check_result(pages / LIST, LIST_KIND)
+    write_text_durably(_csv_text(rows), pages / LIST)
 
 
 def cell_text(text: str) -> str:

@@ -37,7 +37,6 @@ from gen.corpus import (
     class_names,
     corpus_name,
     open_corpus,
-    write_text_durably,
 )
 from gen.corpus.choice import per_record
 from gen.corpus.contents import extent
@@ -58,7 +57,7 @@ from raceway.reports.pictures import (
     squared_envelope,
 )
 from raceway.reports.subject import can_be_drawn, check_band, shown_of
-from raceway.reports.templates import template
+from raceway.reports.templates import write_page
 from raceway.reports.views import envelope_map
 
 if TYPE_CHECKING:
@@ -162,7 +161,9 @@ def write_explorer(
         facts = {"band": [*band], "fs": float(opened["sample_rate"][0]), "sound": sound, "axes": _axes(known)}
     folder = files("raceway.reports")
     script = "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
-    page = template("explore.html.jinja").render(
+    write_page(
+        output,
+        "explore.html.jinja",
         title=title,
         channel=_text(sensor),
         shown=len(places),
@@ -173,7 +174,6 @@ def write_explorer(
         digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         parts=_parts(facts, known, reduced),
     )
-    write_text_durably(page, output)
     return len(places), count
 
 

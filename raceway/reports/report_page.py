@@ -25,7 +25,6 @@ from gen.corpus import (
     read_manifest,
     split_counts,
     unit_counts,
-    write_text_durably,
 )
 from gen.corpus.choice import per_record
 from gen.corpus.fault_classes import HEALTHY
@@ -36,7 +35,7 @@ from raceway.reports.curves import draw_curve, draw_detection, draw_reliability,
 from raceway.reports.examples import draw_examples
 from raceway.reports.pictures import picture
 from raceway.reports.summaries import draw_content, draw_scores
-from raceway.reports.templates import template
+from raceway.reports.templates import write_page
 
 LONGEST_TEXT = 300
 BARS, LEAST_IMPORTANCE = 15, 5e-4  # of the drawn quantities
@@ -66,16 +65,13 @@ def write_report(corpus: Path | str, results: Results, output: Path | str) -> Pa
     """
     corpus, output = Path(corpus), Path(output)
     with open_corpus(corpus) as opened:
-        page = template("report.html.jinja").render(
-            **_content(opened),
-            examples=draw_examples(opened),
-            **_scores(results),
-            facts=_facts(read_manifest(corpus), results),
-        )
+        content = _content(opened) | {
+            "examples": draw_examples(opened),
+            "facts": _facts(read_manifest(corpus), results),
+        }
     make_result_folder(output)
     write_results(results, output / "results.json")
-    write_text_durably(page, output / "report.html")
-    return output / "report.html"
+    return write_page(output / "report.html", "report.html.jinja", **content, **_scores(results))
 
 
 def _content(corpus: xr.Dataset) -> dict[str, Any]:

@@ -1,16 +1,27 @@
-"""Templates of pages."""
+"""Self-contained pages from templates: pictures and styles are in the file, texts are escaped, and no other file is replaced."""
 
 import base64
 from importlib.resources import files
+from pathlib import Path
+from typing import Any
 
 import jinja2
 import numpy as np
 
+from gen.corpus import check_result, write_text_durably
 from gen.support.display import visible
 
 
+def write_page(path: Path, name: str, package: str = "raceway.reports", **variables: Any) -> Path:
+    """Write the page of a template, whole or not at all; CorpusError if it would replace something else, or the disk refuses it."""
+    page = template(name, package).render(variables)
+    check_result(path, "page")
+    write_text_durably(page, path)
+    return path
+
+
 def template(name: str, package: str = "raceway.reports") -> jinja2.Template:
-    """Template of a package; filter ``image`` makes an address of a picture, ``figure`` three decimals or a dash.
+    """Template of a package. Filter ``image`` makes an address of a picture, ``figure`` three decimals, ``digits`` three digits.
 
     Texts are escaped, and without control and format characters.
 
@@ -30,8 +41,11 @@ def template(name: str, package: str = "raceway.reports") -> jinja2.Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["figure"] = lambda value: "–" if value is None else f"{value:.3f}"
-    environment.filters["image"] = _address
+    environment.filters |= {
+        "figure": lambda value: "–" if value is None else f"{value:.3f}",
+        "image": _address,
+        "digits": three_digits,
+    }
     return environment.get_template(name)
 
 
@@ -44,7 +58,9 @@ def _address(picture: bytes) -> str:
 def three_digits(value: float) -> str:
     """Number without an exponent.
 
-    >>> three_digits(1234.5), three_digits(0.001234)
-    ('1230', '0.00123')
+    >>> three_digits(1234.5), three_digits(0.001234), three_digits(float("nan"))
+    ('1230', '0.00123', '–')
     """
+    if not np.isfinite(value):
+        return "–"
     return np.format_float_positional(value, precision=3, unique=False, fractional=False, trim="-")
