@@ -20,26 +20,12 @@ from raceway.console.options import (
 )
 
 if TYPE_CHECKING:
-    import xarray as xr
-    from pandas import DataFrame
-
     from features.table.recording_speeds import Speed
-
-PICTURES = (".png", ".svg", ".pdf")
-PRINTED = 10  # features of a ranking
 
 
 @click.command()
 @click.argument("corpus", metavar="DIR", type=A_CORPUS, required=False)
 @file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"), kind="feature table", required=False)
-@file_option(
-    "PICTURE",
-    "Also rank the features by how well they tell the classes, and draw the best: .png, .svg or .pdf.",
-    PICTURES,
-    kind="picture",
-    required=False,
-    flags=("--rank",),
-)
 @click.option("--list", "listed", is_flag=True, help="List the features with unit, range and meaning instead.")
 @channels_option
 @band_option
@@ -49,7 +35,6 @@ PRINTED = 10  # features of a ranking
 def features(
     corpus: Path | None,
     output: Path | None,
-    rank: Path | None,
     listed: bool,
     channel: tuple[str, ...] | None,
     band: tuple[float, float] | None,
@@ -64,7 +49,6 @@ def features(
 
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet
-      raceway features corpus -o features.nc --rank ranking.png
       raceway features corpus -o features.nc --channel fan_end --band 300 9000
       raceway features corpus -o features.parquet --channel drive_end,fan_end
       raceway features recordings -o features.nc --speed correct
@@ -82,37 +66,15 @@ def features(
     one, *more = channel or (None,)
     table = table_of(corpus, speed, team, Analysis(channel if more else one, band))
     write_table(table, output)
-    ranked = None if rank is None else _ranking(table, rank)
     records, columns = table.sizes["record"], table.sizes["feature"]
     missing = table.attrs["records_with_missing_features"]
     if as_json:
         facts = {"table": output, "records": records, "features": columns, "records_with_missing_features": missing}
         other = table.attrs.get("recordings_with_other_speed")  # none if speeds were not estimated
-        ranking = None if ranked is None else ranked.reset_index().to_dict("records")
-        show.as_json(facts | {"recordings_with_other_speed": other, "ranking": ranking})
+        show.as_json(facts | {"recordings_with_other_speed": other})
         return
     lacking = f"; some are missing in {show.count_text(missing, 'record')}" if missing else ""
     show.text(f"{output}: {columns} features of {show.count_text(records, 'record')}{lacking}.")
-    if ranked is not None:
-        best = ranked.head(PRINTED).itertuples()
-        show.table(
-            ("feature", "importance", "deviation"),
-            ((name, f"{loss:.3f}", f"{deviation:.3f}") for name, _, loss, deviation in best),
-        )
-        show.text(
-            f"{rank}: the best of {columns} features, by the balanced accuracy lost without them; --json prints all."
-        )
-
-
-def _ranking(table: "xr.Dataset", path: Path) -> "DataFrame":
-    """Features from best to worst, of which the best are drawn."""
-    from features import rank_features
-    from raceway.reports.pictures import write_picture
-    from raceway.reports.ranking_picture import draw_ranking
-
-    ranked = rank_features(table)
-    write_picture(draw_ranking(ranked), path)
-    return ranked
 
 
 def _list_features(analysis: Analysis, as_json: bool) -> None:

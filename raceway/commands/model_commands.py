@@ -139,8 +139,7 @@ def evaluate(
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
     scored together, by the mean of their features. The interval is a bootstrap over specimens. A record is answered if
     its largest probability reaches the threshold of the model, and otherwise the answer is "unsure". Recordings of class unknown are not
-    scored: raceway diagnose answers for recordings. --json also has verdicts: the number of recordings by true class and verdict, which
-    are those of raceway diagnose at the speeds of DIR.
+    scored: raceway diagnose answers for recordings.
 
     With --reference, records are compared with healthy records of their rig: those of another corpus, or of the tested one itself. Records
     of the reference are left out of the scores. A "healthy" is answered only if the spectral colour is near that of the reference.
@@ -153,11 +152,11 @@ def evaluate(
     from features.baselines import count_unknown
     from features.baselines.reference_choice import check_durations
     from gen import open_corpus
-    from raceway.diagnosis import count_verdicts
     from raceway.kept_models import open_model
 
     # a wrong path is told before a model is trained and features are computed
-    open_corpus(corpus).close()
+    if model is None:
+        open_corpus(corpus).close()
     if reference is not None:
         check_durations(corpus, reference)
     loaded, source = open_model(model)
@@ -171,8 +170,8 @@ def evaluate(
     warn_of_seen("the model", scores)
     warn_of_durations("the model", loaded, table)
     if as_json:
-        facts = {"corpus": corpus, "model": source, "estimator": loaded.name, **show.plain(scores)}
-        show.as_json(facts | {"verdicts": count_verdicts(corpus, table, loaded, healthy), "unknown": unknown})
+        about = {"corpus": corpus, "model": source, "estimator": loaded.name, "unknown": unknown}
+        show.as_json(about | show.plain(scores))
         return
     show.text(f"{loaded.name} trained on {loaded.corpus}, tested on {corpus}:", "")
     if scores.reference:

@@ -18,7 +18,6 @@ diagnosis_page   page of a diagnosis
 tables           diagnoses of a folder: table, index page and CSV file
 answer           verdict, probabilities and evidence of a recording
 arrays           one call for a recording that is at hand as an array
-corpus_verdicts  verdicts on the recordings of a corpus, counted
 diagnose_command the command diagnose
 ================ ============================================================================
 """

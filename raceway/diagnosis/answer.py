@@ -105,27 +105,15 @@ def diagnose_recording(
     judged = [_judge(used, pair, model, references) for pair in pairs]
     # strong lines of no part of this bearing: it may be another bearing
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
-    diagnosis = _conclude(judged, elsewhere, given, strange)
-    advice = diagnosis.advice + (
-        _advice(used, bool(healthy)) if diagnosis.verdict in (UNSURE, DAMAGED, HEALTHY) else ()
-    )
-    sentence = diagnosis.sentence
-    if len(used.signals) > 1:
-        sentence = f"{sentence[:-1]}; channels {listed([*used.signals], 'and')}, as axes of one housing."
-    diagnosis = replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings), sentence=sentence)
-    # a healthy verdict says how often such verdicts were wrong
-    if diagnosis.verdict == HEALTHY:
-        missed, of = missed_faults(_duration(used), compared=bool(healthy))
-        told = f"{missed} of {of} faulty recordings of about this length from three machines were called healthy"
-        diagnosis = replace(diagnosis, missed=missed / of, sentence=f"{diagnosis.sentence[:-1]}; {told}.")
-    return _with_levels(diagnosis, shown)
+    diagnosis = _conclude(used, given, judged, elsewhere, strange, compared=bool(healthy))
+    return _with_levels(replace(diagnosis, warnings=(*quality.warnings, *diagnosis.warnings)), shown)
 
 
 def _with_levels(diagnosis: Diagnosis, recordings: Sequence[Recorded]) -> Diagnosis:
     levels = tuple(
-        levels_of(signal, one.fs, one.name, channel, one.unit, diagnosis.shaft_rate)
-        for one in recordings
-        for channel, signal in one.signals.items()
+        levels_of(signal, each.fs, each.name, channel, each.unit, diagnosis.shaft_rate)
+        for each in recordings
+        for channel, signal in each.signals.items()
     )
     return replace(diagnosis, levels=levels)
 
@@ -143,7 +131,7 @@ def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
     kept = {name: signals[name] for name, quality in checked.items() if not quality.useless}
     if not kept:
         return recording, next(iter(checked.values()))
-    duration = _duration(recording)
+    duration = recording.duration
     # what is left out is told
     warnings = [f"Only the first {LONGEST:g} s of {duration:,.0f} s are used."] if duration > LONGEST else []
     warnings += [f"Channel {name} is left out, since {checked[name].useless}." for name in checked.keys() - kept.keys()]
@@ -209,7 +197,7 @@ def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[R
 
 def _predict(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Predictions:
     """Predictions of windows and recording."""
-    model = suited(model, [_duration(each) for each in (recording, *references)])
+    model = suited(model, [each.duration for each in (recording, *references)])
     tested = _table(recording, recording.signals, pair, model, UNKNOWN_CODE)
     if not references:
         return predict(tested, model)
@@ -229,43 +217,51 @@ def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Mode
     return joined_channels(tables).assign_attrs(title=recording.name)
 
 
-def _duration(recording: Recorded) -> float:
-    """Length of a recording [s]."""
-    return max(map(len, recording.signals.values())) / recording.fs
-
-
-def _advice(recording: Recorded, compared: bool) -> tuple[str, ...]:
-    duration = _duration(recording)
-    longer = f"Record longer: {ENOUGH:g} s instead of {duration:.2g} s."
-    reference = "Give a recording of the machine with a healthy bearing (healthy)."
-    return tuple(([longer] if duration < ENOUGH else []) + ([] if compared else [reference]))
-
-
-def _conclude(judged: list[Judged], elsewhere: tuple[Pair, ...], given: Given, strange: float | None) -> Diagnosis:
+def _conclude(
+    used: Recorded,
+    given: Given,
+    judged: list[Judged],
+    elsewhere: tuple[Pair, ...],
+    strange: float | None,
+    *,
+    compared: bool,
+) -> Diagnosis:
     """Diagnosis at the first pair, "unsure" if others give another class or if a strong comb is not explained."""
     first = judged[0]
-    differing = len({one.verdict for one in judged}) > 1
-    why = first.why
-    advice: tuple[str, ...] = ("Measure the speed during the recording, and check the bearing designation.",)
+    differing = len({each.verdict for each in judged}) > 1
+    why, advice = first.why, ["Measure the speed during the recording, and check the bearing designation."]
     # the strongest doubt first: lines that this bearing and speed do not explain
     if elsewhere or strange is not None:
         why = unexplained(first.pair, elsewhere, strange)
-        advice = (
-            "Measure the speed, check the bearing, and give them as ranges or alternatives if they are not known.",
-        )
+        advice = [
+            "Measure the speed, check the bearing, and give them as ranges or alternatives if they are not known."
+        ]
     elif differing:
-        why = different_classes([(one.pair, one.verdict) for one in judged])
-        advice = ("Measure the speed during the recording, or give a narrower range.",)
+        why = different_classes([(each.pair, each.verdict) for each in judged])
+        advice = ["Measure the speed during the recording, or give a narrower range."]
     verdict = UNSURE if why else first.verdict
-    # speeds and bearings that give the same answer are named beside the first
-    told = pair_in_words(first.pair, given, [one.pair for one in judged[1:] if not differing])
     if why:
-        sentence = f"Unsure ({candidates(first.probabilities)}): {why}; {told}."
+        answer = f"Unsure ({candidates(first.probabilities)}): {why}"
     elif verdict == DAMAGED:
-        sentence = f"{damaged_in_words(first.probabilities, HEALTHY_SHARE)}; {told}."
+        answer = damaged_in_words(first.probabilities, HEALTHY_SHARE)
     else:
-        sentence = answer_in_words(verdict, first.probabilities, first.lines) + f"; {told}."
-        advice = (WATCH,) if verdict == HEALTHY and first.lines else ()
+        answer = answer_in_words(verdict, first.probabilities, first.lines)
+        advice = [WATCH] if verdict == HEALTHY and first.lines else []
+    # speeds and bearings that give the same answer are named beside the first
+    clauses = [answer, pair_in_words(first.pair, given, [each.pair for each in judged[1:] if not differing])]
+    if len(used.signals) > 1:
+        clauses.append(f"channels {listed([*used.signals], 'and')}, as axes of one housing")
+    # a healthy verdict says how often such verdicts were wrong
+    missed, of = missed_faults(used.duration, compared=compared) if verdict == HEALTHY else (np.nan, 1)
+    if verdict == HEALTHY:
+        clauses.append(
+            f"{missed} of {of} faulty recordings of about this length from three machines were called healthy"
+        )
+    if verdict in (UNSURE, DAMAGED, HEALTHY):
+        if used.duration < ENOUGH:
+            advice.append(f"Record longer: {ENOUGH:g} s instead of {used.duration:.2g} s.")
+        if not compared:
+            advice.append("Give a recording of the machine with a healthy bearing (healthy).")
     return Diagnosis(
         verdict=verdict,
         probabilities=first.probabilities,
@@ -275,19 +271,20 @@ def _conclude(judged: list[Judged], elsewhere: tuple[Pair, ...], given: Given, s
         orders=first.pair.orders,
         shaft_rate=first.pair.rate,
         evidence=tuple(first.lines),
-        sentence=sentence,
-        advice=advice,
+        sentence=f"{'; '.join(clauses)}.",
+        advice=tuple(advice),
         warnings=speed_warning(first.pair, given),
         explanations=tuple(one.pair for one in judged),
         elsewhere=elsewhere,
         windows=first.windows,
-        spectrum=_shown_spectrum(first.spectra, first.lines),
+        missed=missed / of,
+        spectrum=_shown_spectrum(first),
     )
 
 
-def _shown_spectrum(spectra: list[BandSpectrum], lines: list[Line]) -> BandSpectrum:
+def _shown_spectrum(judged: Judged) -> BandSpectrum:
     """Spectrum of the band with the highest line, or of the most impulsive band, which is the last."""
-    if not lines:
-        return spectra[-1]
-    best = max(lines, key=lambda line: line.level)
-    return next(one for one in spectra if (one.band, one.channel) == (best.band, best.channel))
+    if not judged.lines:
+        return judged.spectra[-1]
+    best = max(judged.lines, key=lambda line: line.level)
+    return next(each for each in judged.spectra if (each.band, each.channel) == (best.band, best.channel))

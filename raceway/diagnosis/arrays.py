@@ -8,11 +8,9 @@ from numpy.typing import ArrayLike
 
 from features.baselines.models import Model
 from features.signal.arguments import as_records, fault_orders
-from features.table.indicators import Orders
-from gen.support.units import from_si, rpm_to_hertz
 from raceway.diagnosis.answer import diagnose_recording
 from raceway.diagnosis.result import Diagnosis
-from raceway.diagnosis.search import ANY_RATE, Given
+from raceway.diagnosis.search import given_of
 from raceway.importing.recorded import Recorded
 
 
@@ -49,12 +47,12 @@ def diagnose(
     CorpusError
         If the model cannot take the features of the recording or the healthy recording.
     """
-    low, high = (from_si(rate, "rpm") for rate in ANY_RATE) if rpm is None else np.broadcast_to(rpm, 2).tolist()
+    bearings = orders if isinstance(orders, Mapping) else {"the bearing": orders}
+    nominal = {name: fault_orders(each, f"orders of {name}") for name, each in bearings.items()}
+    given = given_of(nominal, None if rpm is None else np.broadcast_to(rpm, 2).tolist())
+    low, high = given.rates
     if not (0 < fs < np.inf and 0 < low <= high < np.inf):
         raise ValueError(f"fs and rpm: {fs} and {rpm} are not positive numbers; give Hz, and revolutions per minute.")
-    bearings = orders if isinstance(orders, Mapping) else {"the bearing": orders}
-    nominal = {name: Orders(*map(np.asarray, fault_orders(one, f"orders of {name}"))) for name, one in bearings.items()}
-    given = Given(nominal, (rpm_to_hertz(low), rpm_to_hertz(high)))
     known = model if isinstance(model, Model) else Model.load(model)
     references = [_recorded(one, fs, f"healthy recording {number}") for number, one in enumerate(healthy, start=1)]
     return diagnose_recording(_recorded(x, fs, "the recording"), given, known, healthy=references)
@@ -62,6 +60,5 @@ def diagnose(
 
 def _recorded(x: ArrayLike, fs: float, name: str) -> Recorded:
     signals = as_records(x, name, "channel").astype(float)
-    if np.ndim(x) == 1:
-        return Recorded({"": signals[0]}, fs, name)
-    return Recorded({str(number): signal for number, signal in enumerate(signals)}, fs, name)
+    names = [""] if np.ndim(x) == 1 else map(str, range(len(signals)))
+    return Recorded(dict(zip(names, signals, strict=True)), fs, name)

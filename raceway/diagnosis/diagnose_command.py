@@ -15,8 +15,7 @@ from raceway.importing.reading_options import Reading, reading_options, rpm_opti
 
 if TYPE_CHECKING:
     from gen.physics.bearing import Bearing
-    from raceway.diagnosis import Diagnosis, Given
-    from raceway.importing.recorded import Recorded
+    from raceway.diagnosis import Given
 
 ONE_TURN = 60.0  # rpm; lower speeds may be meant in Hz
 
@@ -98,6 +97,7 @@ def diagnose(
     The first call trains the reference model, in some ten seconds.
     docs/diagnose.md tells how to record and how to read the page.
     """
+    from gen.corpus import make_result_folder
     from raceway.importing.user_folder import read_as_stated, read_recording, readings_of, recordings_in, set_aside
 
     known = _bearings(bearings, speeds)
@@ -139,10 +139,16 @@ def diagnose(
         notes = tuple(dict.fromkeys(of_file + doubts))
         for sentence in of_file + diagnosis.warnings:
             notice(f"warning: {f'{path.name}: ' if several else ''}{sentence.removeprefix(f'{path.name}: ')}")
-        page = output and (output / f"{_readable(path)}.html" if several else output)
+        # signs in place of bytes that are no text, which not every disk takes
+        readable = os.fsencode(path.name).decode(errors="backslashreplace")
+        page = output and (output / f"{readable}.html" if several else output)
         if page is not None:
+            from raceway.diagnosis.diagnosis_page import write_diagnosis  # matplotlib takes 0.3 s to load
+
+            if not page.parent.is_dir():  # of a folder of recordings
+                make_result_folder(page.parent)
             facts = assumptions(recorded, known, diagnosis, used, healthy, source, notes)
-            _write_page(diagnosis, recorded, references, page, path.name, facts)
+            write_diagnosis(diagnosis, recorded, page, healthy=references, name=path.name, assumed=facts)
         found.append(diagnosis_facts(diagnosis, recorded, path, source, page, notes))
     # files that could not be used stand in the table, too
     rows = rows_of(found, unusable)
@@ -160,60 +166,31 @@ def diagnose(
         show.text("", f"{output / INDEX if several else output}: pictures, evidence and what was assumed.")
 
 
-def _readable(path: Path) -> str:
-    """Name of a file, with signs in place of bytes that are no text, which not every disk takes."""
-    return os.fsencode(path.name).decode(errors="backslashreplace")
-
-
-def _write_page(
-    diagnosis: "Diagnosis",
-    recorded: "Recorded",
-    healthy: "list[Recorded]",
-    page: Path,
-    name: str,
-    facts: list[tuple[str, str]],
-) -> None:
-    from gen.corpus import make_result_folder
-    from raceway.diagnosis.diagnosis_page import write_diagnosis
-
-    if not page.parent.is_dir():  # of a folder of recordings
-        make_result_folder(page.parent)
-    write_diagnosis(diagnosis, recorded, page, healthy=healthy, name=name, assumed=facts)
-
-
 def _doubts(speeds: tuple[float, float] | None) -> tuple[str, ...]:
     """Sentence on a speed that may be in Hz."""
     if speeds is None or speeds[1] >= ONE_TURN:
         return ()
-    given, meant = ("-".join(f"{factor * one:g}" for one in dict.fromkeys(speeds)) for factor in (1, 60))
+    given, meant = ("-".join(f"{factor * speed:g}" for speed in dict.fromkeys(speeds)) for factor in (1, 60))
     return (f"--rpm {given} is less than one turn a second; if it is Hz, give --rpm {meant}.",)
 
 
 def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dict[str, "Bearing"]:
     """Bearings by name: those that are given, or the catalogue."""
-    from gen.physics.bearing_text import bearing_from_text
+    from gen.physics.bearing_text import bearing_from_text, geometry_text
     from gen.physics.catalogue import CATALOGUE
 
     if not texts:
         if speeds is None:
             raise click.UsageError("give --bearing, --rpm or both: the lines alone fit many bearings")
         return dict(CATALOGUE)
-    return {_name(bearing): bearing for bearing in map(bearing_from_text, texts)}
-
-
-def _name(bearing: "Bearing") -> str:
-    from gen.physics.bearing_text import geometry_text
-
-    return geometry_text(bearing) if bearing.designation == "own" else bearing.designation
+    bearings = map(bearing_from_text, texts)
+    return {
+        geometry_text(bearing) if bearing.designation == "own" else bearing.designation: bearing for bearing in bearings
+    }
 
 
 def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -> "Given":
-    import numpy as np
-
-    from features.table.indicators import Orders
     from gen.physics.bearing import orders
-    from gen.support.units import rpm_to_hertz
-    from raceway.diagnosis import ANY_RATE, Given
+    from raceway.diagnosis import given_of
 
-    nominal = {name: Orders(*(np.asarray(order) for order in orders(one))) for name, one in bearings.items()}
-    return Given(nominal, ANY_RATE if speeds is None else (rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])))
+    return given_of({name: orders(bearing) for name, bearing in bearings.items()}, speeds)

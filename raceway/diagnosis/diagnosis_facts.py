@@ -38,7 +38,7 @@ def diagnosis_facts(
         "false_alarm": FALSE_ALARM,
         "band": None if diagnosis.spectrum is None else [round(edge, 1) for edge in diagnosis.spectrum.band],
         "channels": list(recorded.signals),
-        "duration_s": _length(recorded) / recorded.fs,
+        "duration_s": recorded.duration,
         "sample_rate_hz": recorded.fs,
         "windows": diagnosis.windows,
         "recording": path,
@@ -56,10 +56,6 @@ def _pair_facts(pair: "Pair", *, as_given: bool) -> dict[str, Any]:
         "lines": pair.lines,
         "as_given": as_given,
     }
-
-
-def _length(recorded: "Recorded") -> int:
-    return len(next(iter(recorded.signals.values())))
 
 
 def assumptions(

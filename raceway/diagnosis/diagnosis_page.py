@@ -83,7 +83,7 @@ def write_diagnosis(
         colours=FAULT_COLOURS,
         least=LEAST_LEVEL,
         false_alarm=FALSE_ALARM,
-        duration=len(next(iter(recording.used.signals.values()))) / recording.fs,
+        duration=recording.used.duration,
         fs=recording.fs,
         probability_in_words=probability_in_words,
         assumed=assumed,

@@ -35,6 +35,7 @@ from features.signal.speed import TOLERANCE as LABEL_TOLERANCE
 from features.table.band import DEFAULT_BAND
 from features.table.indicators import SHORTEST, Orders
 from features.table.speed_search import LONGEST, level_spectra
+from gen.support.units import rpm_to_hertz
 from raceway.diagnosis.evidence import SHAFT_DRIFT, TOLERANCE, Line, side_of
 
 ANY_RATE = (5.0, 100.0)  # Hz, of a shaft whose speed is not known
@@ -67,6 +68,12 @@ class Given(NamedTuple):
         low, high = self.rates
         reach = LABEL_TOLERANCE if low == high else RIVALS_BEYOND
         return (1 - reach) * low, (1 + reach) * high
+
+
+def given_of(orders: Mapping[str, Sequence[float]], rpm: Sequence[float] | None) -> Given:
+    """Bearings by name with their fault orders, and the lowest and highest speed; all usual speeds if it is not known."""
+    low, high = ANY_RATE if rpm is None else (rpm_to_hertz(float(speed)) for speed in rpm)
+    return Given({name: Orders(*map(np.asarray, each)) for name, each in orders.items()}, (low, high))
 
 
 class Pair(NamedTuple):

@@ -39,45 +39,45 @@ class DiagnosisRow(NamedTuple):
         return f"{'' if self.likeliest == self.verdict else f'{self.likeliest} '}{self.probability:.2f}"
 
     @property
+    def speed(self) -> str:
+        """Speed of the shaft without decimals."""
+        return "" if self.rpm is None else f"{self.rpm:,.0f}"
+
+    @property
     def link(self) -> str:
         """Relative address of the page."""
         return quote(os.fsencode(self.page))
 
 
 def rows_of(found: Sequence[Mapping[str, Any]], unusable: Mapping[Path, str]) -> list[DiagnosisRow]:
-    """Rows of the facts of each diagnosis, then of the files that cannot be used."""
-    return [*map(_row, found), *(_unused(path, told) for path, told in unusable.items())]
+    """Rows of the facts of each diagnosis, then of the files that cannot be used, each with a sentence that tells no folder."""
+    sentences = {path.name: path.name + sentence.removeprefix(str(path)) for path, sentence in unusable.items()}
+    unused = [DiagnosisRow(name, NOT_USED, sentence=sentence) for name, sentence in sentences.items()]
+    return [*map(_row, found), *unused]
 
 
 def _row(facts: Mapping[str, Any]) -> DiagnosisRow:
     likeliest = max(facts["probabilities"], key=facts["probabilities"].get)
+    strongest = [f"{line['line']} {line['level_db']:.0f} dB" for line in facts["evidence"][:SHOWN_LINES]]
     return DiagnosisRow(
         recording=facts["recording"].name,
         verdict=facts["verdict"],
         likeliest=likeliest,
         probability=round(facts["probabilities"][likeliest], 4),
         rpm=round(facts["shaft_rpm"], 1),
-        strongest_lines=", ".join(
-            f"{line['line']} {line['level_db']:.0f} dB" for line in facts["evidence"][:SHOWN_LINES]
-        ),
+        strongest_lines=", ".join(strongest),
         warnings=len(facts["warnings"]),
         page="" if facts["report"] is None else facts["report"].name,
         sentence=facts["sentence"],
     )
 
 
-def _unused(path: Path, told: str) -> DiagnosisRow:
-    """Row of a file that cannot be used; a page that is passed on need not tell where the file was."""
-    return DiagnosisRow(path.name, NOT_USED, sentence=path.name + told.removeprefix(str(path)))
-
-
 def show_table(rows: Sequence[DiagnosisRow]) -> None:
     """Print a line for each recording, and a sentence for each file that cannot be used."""
     header = ("recording", "verdict", "probability", "rpm", "strongest lines", "warnings")
-    rpm = ["" if row.rpm is None else f"{row.rpm:,.0f}" for row in rows]
-    lines = zip(rows, rpm, strict=True)
     show.table(
-        header, [(r.recording, r.verdict, r.chance, speed, r.strongest_lines, r.warnings or "") for r, speed in lines]
+        header,
+        ((row.recording, row.verdict, row.chance, row.speed, row.strongest_lines, row.warnings or "") for row in rows),
     )
     if errors := [row.sentence for row in rows if row.verdict == NOT_USED]:
         show.text("", *errors)

@@ -21,6 +21,11 @@ class Recorded(NamedTuple):
     rpm: float | None = None
 
     @property
+    def duration(self) -> float:
+        """Length [s]."""
+        return len(next(iter(self.signals.values()))) / self.fs
+
+    @property
     def used(self) -> "Recorded":
         """At most the first 60 s."""
         most = round(LONGEST * self.fs)

@@ -10,7 +10,6 @@ maps            drawings of kurtograms, order maps and coherence
 views           one view of a record, over orders at any speed
 summaries       drawings of the contents of a corpus, and of scores
 curves          drawing of a learning curve
-ranking_picture drawing of the best features of a ranking
 sides           drawings of several sets side by side: examples, and distributions
 examples        an example of each class as a picture
 templates       templates of pages

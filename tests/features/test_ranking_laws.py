@@ -10,8 +10,6 @@ from features.baselines.inspection import permutation_losses
 from features.baselines.records import Records
 from features.baselines.tracks import track_splits
 from gen.support.errors import CorpusError
-from raceway.reports.pictures import picture
-from raceway.reports.ranking_picture import draw_ranking
 
 
 def table_of(fault, specimen, recording, **features):
@@ -49,7 +47,6 @@ def test_the_feature_of_the_class_comes_first_and_one_of_the_specimen_tells_no_m
     assert list(ranked.index[:2]) == ["class", "class_in_part"]
     assert ranked.importance["class"] > 0.3 > 0.1 > ranked.importance[["noise", "of_the_specimen"]].abs().max()
     assert ranked.loc["constant", ["importance", "deviation"]].tolist() == [0, 0]
-    assert picture(draw_ranking(ranked), "svg").count(b"<!-- class in part (time) -->") == 1
 
 
 def test_a_table_of_one_class_is_refused(classes):

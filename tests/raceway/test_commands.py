@@ -257,17 +257,6 @@ def test_replay_writes_a_recipe_that_gives_the_record_again_and_replaces_no_file
     assert path.read_bytes() == before
 
 
-@pytest.mark.usefixtures("few_trees")
-def test_features_are_ranked_on_request_and_the_best_drawn(told, run, tiny_corpus, tmp_path):
-    target, drawn = tmp_path / "features.nc", tmp_path / "ranking.png"
-    made = told("features", tiny_corpus, "-o", target, "--rank", drawn)
-    assert drawn.read_bytes().startswith(b"\x89PNG")
-    assert (made["records"], len(made["ranking"])) == (48, made["features"])
-    printed = run("features", tiny_corpus, "-o", target, "--rank", drawn).stdout.splitlines()
-    assert [line.split()[0] for line in printed[2:12]] == [row["feature"] for row in made["ranking"][:10]]
-    assert told("features", tiny_corpus, "-o", target)["ranking"] is None
-
-
 def test_the_list_of_features_has_a_row_for_each_column(told, run):
     names = [feature["name"] for feature in told("features", "--list")["features"]]
     assert tuple(names) == feature_names()
@@ -310,13 +299,6 @@ def test_evaluate_gives_the_figures_over_the_classes_present(run, told, tiny_cor
     shown = run("evaluate", tiny_corpus, "--model", model).stdout
     (line,) = (line.split() for line in shown.splitlines() if line.startswith("balanced accuracy"))
     assert line[2] == f"{scores['balanced_accuracy']:.3f}"
-    counts = {fault: sum(of_fault.values()) for fault, of_fault in scores["verdicts"].items()}
-    assert counts == dict(zip(scores["classes"], map(sum, scores["by_recording"]["confusion"]), strict=True))
-    assert {name for of_fault in scores["verdicts"].values() for name in of_fault} <= {
-        *scores["model_classes"],
-        "damaged",
-        "unsure",
-    }
     (line,) = (line.split() for line in shown.splitlines() if line.startswith("false alarms on healthy"))
     assert line[4] == f"{scores['false_alarms']:.3f}"
 

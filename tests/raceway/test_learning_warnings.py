@@ -37,7 +37,6 @@ def folder(tmp_path, monkeypatch):
     def returning(made):
         for module in (feature_commands, model_commands, benchmark_commands):
             monkeypatch.setattr(module, "table_of", lambda *_: made)
-        monkeypatch.setattr("raceway.diagnosis.count_verdicts", lambda *_: {})  # the folder has no recordings
         return tmp_path / "corpus"
 
     return returning

@@ -18,6 +18,7 @@ from raceway.importing.recorded import LONGEST, Recorded
 FS, RATE = 12_000.0, 25.0
 ORDERS = Orders(*map(np.asarray, (0.3983, 3.5848, 5.4152, 2.3567)))
 GIVEN = Given({"6205": ORDERS}, (RATE, RATE))
+USED = Recorded({"": np.zeros(200_000)}, 10_000.0)
 
 
 def probabilities(name, likely=0.91):
@@ -160,7 +161,7 @@ def pair(rate, bearing="6205"):
 
 def concluded(*names, elsewhere=(), strange=None, given=GIVEN):
     each = [judged(name, pair(RATE + number)) for number, name in enumerate(names)]
-    return _conclude(each, elsewhere, given, strange)
+    return _conclude(USED, given, each, elsewhere, strange, compared=True)
 
 
 def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
