@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING
 import click
 
 from raceway.console import show
-from raceway.console.options import A_PATH, Analysis, band_option, file_option
+from raceway.console.options import A_PATH, Analysis, band_option, picture_option
 from raceway.console.progress_bar import notice
 from raceway.importing.reading_options import Reading, reading_options, rpm_option
 
 if TYPE_CHECKING:
     from raceway.reports.pictures import DrawnRecord
 
-PICTURES = (".png", ".svg", ".pdf")
 VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "waterfall", "cepstrum")
 
 
@@ -28,7 +27,7 @@ VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "wat
 @click.option(
     "--view", type=click.Choice(VIEWS), help="One view of a record; by default waveform, PSD and envelope spectrum."
 )
-@file_option("PICTURE", "Picture: .png, .svg or .pdf.", PICTURES, kind="picture")
+@picture_option
 @click.option("--healthy", metavar="I|FILE", help="Record of the same corpus, or recording, drawn under it as healthy.")
 @click.option("--bearing", metavar="BEARING", help="Of a recording: designation such as 6205, or a geometry.")
 @rpm_option

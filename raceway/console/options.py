@@ -265,3 +265,6 @@ def file_option(
         return None if path is None else checked_file(path, suffixes, kind)
 
     return click.option(*flags, type=A_PATH, required=required, metavar=metavar, help=what, callback=check)
+
+
+picture_option = file_option("PICTURE", "Picture: .png, .svg or .pdf.", (".png", ".svg", ".pdf"), kind="picture")

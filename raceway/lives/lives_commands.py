@@ -11,17 +11,15 @@ from raceway.console.options import (
     USUAL_ANALYSIS,
     Team,
     corpus_argument,
-    file_option,
     json_option,
+    picture_option,
     worker_options,
 )
-
-PICTURES = (".png", ".svg", ".pdf")
 
 
 @click.command()
 @corpus_argument
-@file_option("PICTURE", "Picture: .png, .svg or .pdf.", PICTURES, kind="picture")
+@picture_option
 @click.option(
     "--bearing", metavar="NAME", help="Bearing, such as '6206 #3'; by default the one with most damaged snapshots."
 )
@@ -36,9 +34,8 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
     The picture has the spectra of its snapshots over its age, its rms, and the true length of its spall with the first detection.
     """
     from raceway.lives.life_pictures import draw_life
-    from raceway.reports.pictures import check_picture, write_picture
+    from raceway.reports.pictures import write_picture
 
-    check_picture(output)
     write_picture(draw_life(corpus, bearing, like), output)
     show.text(f"{output}: a life of {corpus}.")
 

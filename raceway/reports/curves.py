@@ -28,11 +28,7 @@ def draw_detection(bins: Sequence[WidthBin], false_alarms: float | None) -> Figu
         width, [one.detected for one in bins], _areas([one.records for one in bins]), INK, linewidth=0, zorder=3
     )
     if false_alarms is not None:
-        axes.axhline(false_alarms, color=VERMILION, linestyle=DASHED, linewidth=0.9)
-        axes.annotate(
-            "false alarms", (1, false_alarms), (-2, 2), ("axes fraction", "data"), "offset points",
-            color=INK, fontsize=8, ha="right", va="bottom",
-        )  # fmt: skip
+        _draw_level(axes, "false alarms", false_alarms, VERMILION)
     axes.set_xscale("log")
     # the ticks of a logarithmic axis would stand at powers of ten, which are too few here
     ticks = np.geomspace(min(width), max(width), 4)
@@ -67,6 +63,15 @@ def draw_reliability(scores: Scores) -> Figure:
     return figure
 
 
+def _draw_level(axes: Axes, name: str, level: float, colour: str) -> None:
+    """Dashed line with its name at the right end."""
+    axes.axhline(level, color=colour, linestyle=DASHED, linewidth=0.9)
+    axes.annotate(
+        name, (1, level), (-2, 2), ("axes fraction", "data"), "offset points",
+        color=INK, fontsize=8, ha="right", va="bottom",
+    )  # fmt: skip
+
+
 def _panel() -> tuple[Figure, Axes]:
     figure = Figure(figsize=PANEL, layout="constrained")
     return figure, figure.subplots()
@@ -86,15 +91,8 @@ def draw_curve(points: Sequence[CurvePoint], chance: float, rule: Scores) -> Fig
     folds = [point.folds for point in points]
     axes.fill_between(size, [*map(min, folds)], [*map(max, folds)], color=BLUE, alpha=0.2, linewidth=0)
     axes.plot(size, [point.balanced_accuracy for point in points], "o-", color=BLUE, markersize=5, linewidth=1.4)
-    for level, name, colour in (
-        (chance, "chance", FAINT),
-        (rule.balanced_accuracy, "envelope rule, untrained", VERMILION),
-    ):
-        axes.axhline(level, color=colour, linestyle=DASHED, linewidth=0.9)
-        axes.annotate(
-            name, (1, level), (-2, 2), ("axes fraction", "data"), "offset points",
-            color=INK, fontsize=8, ha="right", va="bottom",
-        )  # fmt: skip
+    _draw_level(axes, "chance", chance, FAINT)
+    _draw_level(axes, "envelope rule, untrained", rule.balanced_accuracy, VERMILION)
     axes.set_xscale("log")
     axes.set_xticks(size, [str(n) for n in size])
     axes.xaxis.set_minor_locator(NullLocator())

@@ -15,22 +15,16 @@ from raceway.reports.pictures import (
     WIDTH,
     DrawnRecord,
     draw_envelope_spectrum,
-    draw_record,
     draw_waveform,
-    picture,
 )
 from raceway.reports.subject import can_be_drawn, shown_of
 
 CANDIDATES = 15  # records of a class among which its example is chosen
 
 
-def draw_examples(corpus: xr.Dataset) -> list[tuple[str, str, bytes]]:
-    """Each class that the corpus contains, with the caption and the picture of an example, which is empty if no record can be drawn."""
-    chosen = {FAULT_NAMES[code]: chosen_example(corpus, code) for code in np.unique(corpus["fault"].values)}
-    return [
-        (fault, caption, b"" if shown is None else picture(draw_record(shown), "svg"))
-        for fault, (shown, caption) in chosen.items()
-    ]
+def examples_of(corpus: xr.Dataset) -> dict[str, tuple[DrawnRecord | None, str]]:
+    """Example of each class that the corpus contains, None if no record can be drawn, and its caption."""
+    return {FAULT_NAMES[code]: _example(corpus, code) for code in np.unique(corpus["fault"].values)}
 
 
 @rc_context(STYLE)
@@ -42,9 +36,8 @@ def draw_overview(corpus: xr.Dataset) -> Figure:
     ValueError
         If no record can be drawn.
     """
-    chosen = [chosen_example(corpus, code)[0] for code in np.unique(corpus["fault"].values)]
     # a class may have no record that can be drawn
-    drawn = [shown for shown in chosen if shown is not None]
+    drawn = [shown for shown, _ in examples_of(corpus).values() if shown is not None]
     if not drawn:
         raise ValueError("no record has a signal, a shaft rate and fault orders to draw.")
     figure = Figure(figsize=(1.6 * WIDTH, 1.9 * len(drawn)), layout="constrained")
@@ -56,7 +49,7 @@ def draw_overview(corpus: xr.Dataset) -> Figure:
     return figure
 
 
-def chosen_example(corpus: xr.Dataset, code: int) -> tuple[DrawnRecord | None, str]:
+def _example(corpus: xr.Dataset, code: int) -> tuple[DrawnRecord | None, str]:
     """Record whose level at the fault lines is the median over some records of the class, and its caption; None if none can be drawn."""
     numbers = np.flatnonzero(corpus["fault"].values == code)
     numbers = numbers[np.linspace(0, len(numbers) - 1, min(CANDIDATES, len(numbers))).astype(int)]

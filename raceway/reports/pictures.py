@@ -118,18 +118,19 @@ def picture(figure: Figure, suffix: PictureFormat) -> bytes:
     return stream.getvalue()
 
 
-def check_picture(path: Path) -> PictureFormat:
-    """Format of a picture by the suffix of its file; CorpusError for another suffix, or a file that may not be replaced."""
+def write_picture(figure: Figure, path: Path) -> None:
+    """Write a figure as .png, .svg or .pdf, whole or not at all.
+
+    Raises
+    ------
+    CorpusError
+        For another suffix, if the file is no picture of Raceway, or if the disk refuses it.
+    """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise CorpusError(f"{path}: {path.suffix or 'no suffix'} is no format of pictures; use .png, .svg or .pdf.")
     check_result(path, "picture")
-    return FORMATS[suffix]
-
-
-def write_picture(figure: Figure, path: Path) -> None:
-    """Write a figure as .png, .svg or .pdf, whole or not at all; CorpusError as `check_picture`, or if the disk refuses it."""
-    write_durably(picture(figure, check_picture(path)), path)
+    write_durably(picture(figure, FORMATS[suffix]), path)
 
 
 @rc_context(STYLE)

@@ -32,8 +32,8 @@ from gen.corpus.schema import stored_unit
 from gen.support.units import READABLE, shown_unit
 from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.curves import draw_curve, draw_detection, draw_reliability, draw_roc
-from raceway.reports.examples import draw_examples
-from raceway.reports.pictures import picture
+from raceway.reports.examples import examples_of
+from raceway.reports.pictures import draw_record, picture
 from raceway.reports.summaries import draw_content, draw_scores
 from raceway.reports.templates import write_page
 
@@ -65,13 +65,11 @@ def write_report(corpus: Path | str, results: Results, output: Path | str) -> Pa
     """
     corpus, output = Path(corpus), Path(output)
     with open_corpus(corpus) as opened:
-        content = _content(opened) | {
-            "examples": draw_examples(opened),
-            "facts": _facts(read_manifest(corpus), results),
-        }
+        content = _content(opened)
     make_result_folder(output)
     write_results(results, output / "results.json")
-    return write_page(output / "report.html", "report.html.jinja", **content, **_scores(results))
+    facts = _facts(read_manifest(corpus), results)
+    return write_page(output / "report.html", "report.html.jinja", **content, **_scores(results), facts=facts)
 
 
 def _content(corpus: xr.Dataset) -> dict[str, Any]:
@@ -88,6 +86,10 @@ def _content(corpus: xr.Dataset) -> dict[str, Any]:
             for fault, columns in by_class(corpus, (*UNITS, "split")).items()
         ],
         "splits": SPLITS,
+        "examples": [
+            (fault, caption, b"" if shown is None else picture(draw_record(shown), "svg"))
+            for fault, (shown, caption) in examples_of(corpus).items()
+        ],
         "content": picture(draw_content(corpus["fault"].values, corpus["rig"].values, quantities(corpus)), "svg"),
     }
 
@@ -110,68 +112,44 @@ def quantities(corpus: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def _scores(results: Results) -> dict[str, Any]:
-    """Variables of the template that describe the baselines."""
+    """Variables of the template that describe the baselines, further tracks and the learning curve."""
+    leading, unseen = results.leading, NOVELTY[results.track]
     chance = 1 / len(results.corpus.classes)
     quality = _quality(results)
+    led = {results.track: results.baselines[leading]}
+    led |= {track: of_track.baselines[leading] for track, of_track in results.further.items()}
+    rule = results.baselines["envelope_rule"].grouped
+    leads = [(title, rows[leading]) for title, rows in quality if "by recording" not in title]
     return {
         "results": results,
         "chance": chance,
-        "unseen": NOVELTY[results.track],
-        "scores": picture(draw_scores(results.baselines, chance, NOVELTY[results.track]), "svg"),
+        "unseen": unseen,
+        "scores": picture(draw_scores(results.baselines, chance, unseen), "svg"),
         "spreads": {name: float(np.std(baseline.grouped.folds)) for name, baseline in results.baselines.items()},
         "quality": quality,
-        "panels": [(title, _panels(rows[results.leading])) for title, rows in quality if "by recording" not in title],
-        "importance": _bars(results.importance),
+        "panels": [(title, scores, _panels(scores)) for title, scores in leads],
+        # without those that round to none
+        "importance": [row for row in results.importance.items() if row[1] >= LEAST_IMPORTANCE][:BARS],
         "false_alarm_text": _false_alarm_text,
         "findings": _findings(results, chance),
         "test_titles": _test_titles(results),
         "untrained": UNTRAINED,
-        "unfolded": results.leading,
-        **_tracks(results, chance),
+        "tracks": picture(draw_scores(led, chance, "groups"), "svg") if results.further else None,
+        "curve": picture(draw_curve(results.curve, chance, rule), "svg") if results.curve else None,
+        "interval_text": interval_text,
+        "novelty": NOVELTY,
     }
 
 
-def _panels(scores: Scores) -> list[tuple[str, bytes, str]]:
-    """Small figures with alternative text and caption: detection by width and against false alarms, and reliability, as far as known."""
-    panels = []
-    # pictures of what is known: corpora without widths or without healthy records lack some
-    if scores.detection:
-        caption = (
-            "Share of the faulty records that are predicted to be faulty, whatever the class, by width. The lines are the 95 % "
-            "intervals, for which a specimen counts once, however many records it has."
-        )
-        drawn = draw_detection(scores.detection, scores.false_alarms)
-        panels.append(("Share of detected faults by their width", picture(drawn, "svg"), caption))
-    if scores.roc is not None:
-        caption = (
-            f"Share of the faulty records that are detected against that of false alarms, for all thresholds. The area "
-            f"under the curve is {scores.roc.area:.3f} (95 % interval {interval_text(scores.roc.interval)}); 1 is perfect, "
-            f"and chance, dashed, is 0.5. The band, where it is known, is the 95 % interval over specimens."
-        )
-        panels.append(("Share of detected faults against false alarms", picture(draw_roc(scores.roc), "svg"), caption))
-    caption = (
-        f"Share of right answers of records in bins of their largest probability. On the dashed line, probabilities are "
-        f"right; below it, they are too high. The mean distance, the calibration error, is {scores.ece:.3f}."
-    )
-    return [*panels, ("Accuracy against largest probability", picture(draw_reliability(scores), "svg"), caption)]
-
-
-def _bars(importance: Mapping[str, float]) -> list[tuple[str, float]]:
-    """Quantities of the highest importance, without those that round to none."""
-    return [(name, loss) for name, loss in importance.items() if loss >= LEAST_IMPORTANCE][:BARS]
-
-
-def _tracks(results: Results, chance: float) -> dict[str, Any]:
-    """Variables of the template that describe further tracks and the learning curve; None without them."""
-    leading, drawn = results.leading, {}
-    if results.further:
-        led = {results.track: results.baselines[leading]}
-        led |= {track: of_track.baselines[leading] for track, of_track in results.further.items()}
-        drawn["tracks"] = picture(draw_scores(led, chance, "groups"), "svg")
-    if results.curve:
-        rule = results.baselines["envelope_rule"].grouped
-        drawn["curve"] = picture(draw_curve(results.curve, chance, rule), "svg")
-    return {"tracks": None, "curve": None, "interval_text": interval_text, "novelty": NOVELTY} | drawn
+def _panels(scores: Scores) -> dict[str, bytes | None]:
+    """Small pictures of what is known: corpora without widths or without healthy records lack some."""
+    return {
+        "detection": picture(draw_detection(scores.detection, scores.false_alarms), "svg")
+        if scores.detection
+        else None,
+        "roc": None if scores.roc is None else picture(draw_roc(scores.roc), "svg"),
+        "reliability": picture(draw_reliability(scores), "svg"),
+    }
 
 
 def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:

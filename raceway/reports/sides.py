@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib import rc_context
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from features.signal.rows import FloatArray
@@ -48,7 +47,10 @@ def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
             axes.sharey(row[0])
     for column, (number, shown) in enumerate(records.items()):
         waveform, density, envelope = panels[:, column]
-        _draw_turns(waveform, shown)
+        x = shown.signal[: max(2, round(TURNS / shown.shaft_rate * shown.fs))]
+        turns, values = thin(np.arange(x.size) / shown.fs * shown.shaft_rate, x / np.sqrt(np.mean(shown.signal**2)))
+        waveform.plot(turns, values, color=INK, linewidth=0.5)
+        waveform.set(xlabel="revolution of the shaft", xlim=(0, turns[-1]))
         waveform.set_title(shown.title, color=_colour(number), fontweight="bold")
         frequencies, power = psd(shown.signal[None], shown.fs, SEGMENT)
         # over the whole energy, since gains of machines differ
@@ -56,7 +58,11 @@ def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
         level = 10 * np.log10(np.maximum(share, 10 ** (FAINTEST_DB / 10)))
         density.plot(from_si(frequencies, "khz"), level, color=INK, linewidth=0.8)
         density.set(xlabel="frequency [kHz]", xlim=(0, from_si(top, "khz")))
-        _draw_envelope(envelope, shown)
+        order, spectrum = squared_envelope(shown)
+        visible = (order > 0) & (order <= HIGHEST_ORDER)
+        mark_lines(envelope, shown)
+        envelope.plot(order[visible], spectrum[visible], color=INK, linewidth=0.7)
+        envelope.set(xlabel="order of the shaft", xlim=(0, HIGHEST_ORDER), ylim=(0, None))
     panels[0, 0].set_ylabel("acceleration / rms")
     panels[1, 0].set_ylabel("share of the energy [dB]")
     panels[2, 0].set_ylabel("envelope² / mean")
@@ -65,23 +71,6 @@ def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
 
 def _colour(number: int) -> str:
     return FAULT_COLOURS[number % len(FAULT_COLOURS)]
-
-
-def _draw_turns(axes: Axes, shown: DrawnRecord) -> None:
-    """Draw the first revolutions of the shaft."""
-    x = shown.signal[: max(2, round(TURNS / shown.shaft_rate * shown.fs))]
-    turns, values = thin(np.arange(x.size) / shown.fs * shown.shaft_rate, x / np.sqrt(np.mean(shown.signal**2)))
-    axes.plot(turns, values, color=INK, linewidth=0.5)
-    axes.set(xlabel="revolution of the shaft", xlim=(0, turns[-1]))
-
-
-def _draw_envelope(axes: Axes, shown: DrawnRecord) -> None:
-    """Squared envelope spectrum over orders, with the fault lines marked."""
-    order, spectrum = squared_envelope(shown)
-    visible = (order > 0) & (order <= HIGHEST_ORDER)
-    mark_lines(axes, shown)
-    axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.7)
-    axes.set(xlabel="order of the shaft", xlim=(0, HIGHEST_ORDER), ylim=(0, None))
 
 
 @rc_context(STYLE)

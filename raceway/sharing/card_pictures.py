@@ -7,14 +7,12 @@ distributions of speed, load and severity by class. The same corpus and librarie
 import io
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from PIL import Image
 
 from features.baselines import read_results
 from gen.corpus import (
-    FAULT_NAMES,
     UNKNOWN,
     class_counts,
     lock,
@@ -26,7 +24,7 @@ from gen.corpus import (
 )
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
-from raceway.reports.examples import chosen_example
+from raceway.reports.examples import examples_of
 from raceway.reports.pictures import draw_record, picture
 from raceway.reports.report_page import quantities
 from raceway.reports.summaries import draw_content
@@ -82,9 +80,7 @@ def _write_pictures(folder: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]
         folder.mkdir(parents=True, exist_ok=True)
     drawn: list[CardPicture] = []
     # a typical record of each class
-    for code in np.unique(corpus["fault"].values):
-        fault = FAULT_NAMES[int(code)]
-        shown, caption = chosen_example(corpus, int(code))
+    for fault, (shown, caption) in examples_of(corpus).items():
         if shown is not None:
             drawn.append(CardPicture(name=f"record-{fault}.png", title=f"One record: {fault}", caption=caption))
             write_durably(small_png(draw_record(shown)), folder / drawn[-1].name)

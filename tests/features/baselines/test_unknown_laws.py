@@ -14,7 +14,7 @@ from gen.support.errors import CorpusError
 from raceway.cli import cli
 from raceway.comparing.windows import common_ground, measured_windows
 from raceway.console.summary import describe
-from raceway.reports.examples import draw_examples
+from raceway.reports.examples import examples_of
 from raceway.reports.report_page import write_report
 from raceway.sharing.card.card_page import data_card
 from tests.labels import import_labelled
@@ -50,7 +50,7 @@ def test_unknown_is_a_value_of_the_format_and_no_class(corpus):
         assert opened.fault.flag_values.tolist() == [*FAULT_NAMES]
         assert opened.n_spalls.values[-4:].tolist() == [-1] * 4
         assert np.isnan(opened.width.values[-4:]).all()
-        assert [fault for fault, _, _ in draw_examples(opened)] == ["healthy", "inner", "unknown"]
+        assert [*examples_of(opened)] == ["healthy", "inner", "unknown"]
     assert describe(corpus)["classes"] == {"healthy": 6, "inner": 6, "unknown": 4}
     assert "| unknown | 4 | 2 |" in data_card(corpus)
 

@@ -201,12 +201,9 @@ def test_quantities_are_drawn_in_the_unit_in_which_people_read_them(corpus):
 def test_the_example_of_a_class_is_the_record_of_median_level(corpus, monkeypatch):
     """The healthy records are 0 to 2 of specimen 0 and 12 to 14 of specimen 4; their levels are their numbers here."""
     monkeypatch.setattr(examples, "_line_level", lambda shown: float(shown.title.split(":")[0].split()[1]))
-    drawn = []
-    monkeypatch.setattr(examples, "draw_record", lambda shown: drawn.append(shown.title) or draw_record(shown))
     with open_corpus(corpus) as opened:
-        fault, caption, _ = examples.draw_examples(opened)[0]
-    assert drawn[0].startswith("Record 12: ")
-    assert fault == "healthy"
+        shown, caption = examples.examples_of(opened)["healthy"]
+    assert shown.title.startswith("Record 12: ")
     assert caption.startswith("Specimen 4 of rig 1, ")
     assert caption.endswith("; the median of 6 records by the level of the fault lines.")
 
