@@ -113,9 +113,10 @@ def compute_measures(
     fault
         The class.
     """
-    envelope = _Envelopes.of(x, fs, top, shaft_rate)
+    envelope = _envelopes(x, fs, top, shaft_rate)
     by_name = _colour(x, fs, top) | _impulsiveness(x, fs, top)
-    by_name["slow_share"] = envelope.shape(shaft_rate)
+    weighted = weight_by_hann(np.sqrt(envelope.power))
+    *_, by_name["slow_share"] = envelope_shape(envelope.power, weighted, envelope.spectrum, envelope.rate, shaft_rate).T
     if CLASSES[fault].evidence:
         by_name |= _lines(envelope, shaft_rate, orders, fault)
     missing = np.full(len(x), np.nan)
@@ -177,23 +178,17 @@ class _Envelopes(NamedTuple):
     level: FloatArray
     step: float
 
-    @classmethod
-    def of(cls, x: FloatArray, fs: float, top: float, shaft_rate: FloatArray) -> "_Envelopes":
-        """Envelopes of windows of shape (window, time) with known shaft rates [Hz], shape (window,)."""
-        seconds = x.shape[-1] / fs
-        whitened = whiten_by_psd(fourier_coefficients(x, fs, top), round(WHITENING_WIDTH * seconds))
-        z = analytic_band(whitened, round(DEFAULT_BAND.low * seconds), round(top * seconds))
-        power = squared_modulus(z)
-        spectrum = fine_amplitudes(weight_by_hann(np.sqrt(power)), ZERO_PADDING * z.shape[-1] // 2 + 1)
-        step = 1 / (ZERO_PADDING * seconds)
-        width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / step
-        return cls(power, z.shape[-1] / seconds, spectrum, log_level(spectrum, width, spectrum.shape[-1]), step)
 
-    def shape(self, shaft_rate: FloatArray) -> FloatArray:
-        """Share of the power of the envelopes below 0.8 orders, shape (window,)."""
-        weighted = weight_by_hann(np.sqrt(self.power))
-        *_, slow_share = envelope_shape(self.power, weighted, self.spectrum, self.rate, shaft_rate).T
-        return slow_share
+def _envelopes(x: FloatArray, fs: float, top: float, shaft_rate: FloatArray) -> _Envelopes:
+    """Envelopes of windows of shape (window, time) with known shaft rates [Hz], shape (window,)."""
+    seconds = x.shape[-1] / fs
+    whitened = whiten_by_psd(fourier_coefficients(x, fs, top), round(WHITENING_WIDTH * seconds))
+    z = analytic_band(whitened, round(DEFAULT_BAND.low * seconds), round(top * seconds))
+    power = squared_modulus(z)
+    spectrum = fine_amplitudes(weight_by_hann(np.sqrt(power)), ZERO_PADDING * z.shape[-1] // 2 + 1)
+    step = 1 / (ZERO_PADDING * seconds)
+    width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / step
+    return _Envelopes(power, z.shape[-1] / seconds, spectrum, log_level(spectrum, width, spectrum.shape[-1]), step)
 
 
 def _lines(envelope: _Envelopes, shaft_rate: FloatArray, orders: Orders, fault: str) -> dict[str, FloatArray]:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from pandas import DataFrame
 
 from features.signal.rows import FloatArray
 from features.table.indicators import Orders
@@ -103,92 +104,52 @@ def measured_windows(folder: Path, name: str, common: CommonForm, most: int) -> 
         If the corpus cannot be read, or none of its records has a shaft rate and fault orders.
     """
     with open_corpus(folder, check="size") as corpus:
-        columns = {
-            key: corpus[key].values
-            for key in ("fault", "rig", "specimen", "sample_rate", "shaft_rate", *Orders._fields)
-        }
+        names = ("fault", "rig", "specimen", "sample_rate", "shaft_rate", *Orders._fields)
+        labels = DataFrame({key: corpus[key].values for key in names})
         # a line is looked up at a rate and at orders that are known
-        known = np.all(
-            [np.isfinite(columns[key]) & (columns[key] > 0) for key in ("shaft_rate", *Orders._fields)], axis=0
-        )
+        needed = labels[["shaft_rate", *Orders._fields]]
+        known = (np.isfinite(needed) & (needed > 0)).all(axis=1)
         if not known.any():
             message = (
                 f"{folder}: no record has a shaft rate and fault orders above 0, which are needed to find its lines."
             )
             raise CorpusError(message)
-        labelled = columns["fault"] != UNKNOWN_CODE
-        record, start = _chosen(columns, known & labelled, corpus.sizes["elapsed_time"], common.window, most)
-        values = np.full((len(record), len(NAMES)), np.nan)
-        # records of one sample rate at a time, so that memory does not grow with the corpus
-        for fault, fs, block in _blocks(columns, record):
-            values[block] = _measure_block(corpus, columns, common, record[block], start[block], fault, fs)
+        labelled = labels["fault"] != UNKNOWN_CODE
+        chosen = _chosen(labels[known & labelled], corpus.sizes["elapsed_time"], common.window, most)
+        values = np.full((len(chosen), len(NAMES)), np.nan)
+        # records of one class and sample rate at a time, so that memory does not grow with the corpus
+        for (code, fs), places in chosen.groupby(["fault", "sample_rate"]).indices.items():
+            for block in np.array_split(places, range(BLOCK, len(places), BLOCK)):
+                values[block] = _measure_block(corpus, chosen.iloc[block], common, FAULTS[code], fs)
     # a constant signal has no measures
     usable = np.isfinite(values).any(axis=1)
-    fault, unknown = columns["fault"][record], int((~labelled).sum())
-    return Windows(name, folder, record[usable], start[usable], fault[usable], values[usable], unknown)
+    record, start, fault = chosen.index.to_numpy(), chosen["start"].to_numpy(), chosen["fault"].to_numpy()
+    return Windows(name, folder, record[usable], start[usable], fault[usable], values[usable], int((~labelled).sum()))
 
 
-def _chosen(
-    columns: dict[str, np.ndarray], known: np.ndarray, samples: int, window: float, most: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Record and first sample of the windows to measure, in the order of the corpus, shapes (window,)."""
-    lengths = np.floor(window * columns["sample_rate"] * (1 + 1e-9)).astype(int)
-    counts = np.where(known, samples // lengths, 0)
-    record = np.repeat(np.arange(len(known)), counts)
-    number = np.arange(len(record)) - np.repeat(np.cumsum(counts) - counts, counts)
-    order = np.random.default_rng(0).permutation(len(record))
-    rank = _ranks(np.stack([columns[key][record] for key in ("fault", "rig", "specimen")]), order)
-    keep = np.zeros(len(record), dtype=bool)
-    for fault in np.unique(columns["fault"]):
-        of_class = order[columns["fault"][record[order]] == fault]
-        keep[of_class[np.argsort(rank[of_class], kind="stable")[:most]]] = True
-    return record[keep], (number * lengths[record])[keep]
+def _chosen(labels: DataFrame, samples: int, window: float, most: int) -> DataFrame:
+    """Labels and first sample of the windows to measure, by the number of their record and in the order of the corpus."""
+    length = np.floor(window * labels["sample_rate"] * (1 + 1e-9)).astype(int)
+    cut = labels.assign(length=length).loc[labels.index.repeat(samples // length)]
+    cut["start"] = cut.groupby(level=0).cumcount() * cut["length"]
+    cut["place"] = np.arange(len(cut))
+    # the first windows of all specimens come before the second ones, each in a random order
+    shuffled = cut.iloc[np.random.default_rng(0).permutation(len(cut))]
+    turn = shuffled.groupby(["fault", "rig", "specimen"]).cumcount()
+    by_turn = shuffled.iloc[np.argsort(turn.to_numpy(), kind="stable")]
+    return by_turn.groupby("fault").head(most).sort_values("place")
 
 
-def _ranks(groups: np.ndarray, order: np.ndarray) -> np.ndarray:
-    """Place of each window among those of its group when all are taken in an order, shape (window,).
-
-    ``groups`` has the shape (key, window); windows of a group have equal keys.
-    """
-    _, group = np.unique(groups, axis=1, return_inverse=True)
-    by_group = order[np.argsort(group[order], kind="stable")]
-    sizes = np.bincount(group)
-    rank = np.empty(len(group), dtype=int)
-    rank[by_group] = np.arange(len(group)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-    return rank
-
-
-def _blocks(columns: dict[str, np.ndarray], record: np.ndarray) -> list[tuple[str, float, np.ndarray]]:
-    """Class, sample rate and places of windows that are measured together."""
-    fault, fs = columns["fault"][record], columns["sample_rate"][record]
-    blocks = []
-    for code in np.unique(fault):
-        for rate in np.unique(fs[fault == code]):
-            places = np.flatnonzero((fault == code) & (fs == rate))
-            blocks += [(FAULTS[code], float(rate), places[i : i + BLOCK]) for i in range(0, len(places), BLOCK)]
-    return blocks
-
-
-def _measure_block(
-    corpus: xr.Dataset,
-    columns: dict[str, np.ndarray],
-    common: CommonForm,
-    record: np.ndarray,
-    start: np.ndarray,
-    fault: str,
-    fs: float,
-) -> FloatArray:
-    """Measures of a block, shape (window, measure); NaN for windows that are not finite or constant."""
-    x = read_windows(corpus, record, start, window_length(common, fs))
+def _measure_block(corpus: xr.Dataset, windows: DataFrame, common: CommonForm, fault: str, fs: float) -> FloatArray:
+    """Measures of some windows, shape (window, measure); NaN for those that are not finite or constant."""
+    x = read_windows(corpus, windows.index.to_numpy(), windows["start"].to_numpy(), window_length(common, fs))
     values = np.full((len(x), len(NAMES)), np.nan)
-    usable = np.flatnonzero(np.isfinite(x).all(axis=1) & (np.ptp(x, axis=1) > 0))
-    if usable.size:
+    usable = np.isfinite(x).all(axis=1) & (np.ptp(x, axis=1) > 0)
+    if usable.any():
         limited = limit_band(x[usable], fs, common.rate, common.top)
         exact = limited.shape[-1] * fs / x.shape[-1]
-        orders = Orders(*(columns[key][record[usable]] for key in Orders._fields))
-        values[usable] = compute_measures(
-            limited, exact, common.top, columns["shaft_rate"][record[usable]], orders, fault
-        )
+        rate, *orders = (windows[key].to_numpy()[usable] for key in ("shaft_rate", *Orders._fields))
+        values[usable] = compute_measures(limited, exact, common.top, rate, Orders(*orders), fault)
     return values
 
 

@@ -16,8 +16,7 @@ from gen.corpus.disk import CROISSANT_NAME, sha256, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
 from gen.corpus.publication import Publication
-from gen.corpus.schema import SIGNAL, SPLITS
-from gen.corpus.slices import read_classes
+from gen.corpus.schema import SIGNAL, class_names, listed_flags
 from raceway.sharing.card.card_page import card_folder
 from raceway.sharing.card.citation import citation
 
@@ -104,10 +103,6 @@ def croissant(path: Path) -> dict[str, Any]:
                 *([] if path.is_file() else [_PARTS]),
             ],
             "recordSet": [
-                _listed_values(
-                    "faults", "Fault classes.", "sc:Enumeration", read_classes(corpus_files(path, "size")[0])
-                ),
-                _listed_values("splits", "Training, validation and test records.", "cr:Split", dict(enumerate(SPLITS))),
                 _records(
                     corpus, {"fileObject": {"@id": path.name}} if path.is_file() else {"fileSet": {"@id": "parts"}}
                 ),
@@ -158,24 +153,6 @@ def _file(name: str, file: Path, kind: str, digest: str | None) -> dict[str, Any
     }
 
 
-def _listed_values(name: str, description: str, kind: str, values: Mapping[int, str]) -> dict[str, Any]:
-    """Set of the codes of a variable with their names."""
-    code, text = f"{name}/code", f"{name}/name"
-    return {
-        "@type": "cr:RecordSet",
-        "@id": name,
-        "name": name,
-        "description": description,
-        "dataType": kind,
-        "key": {"@id": code},
-        "field": [
-            {"@type": "cr:Field", "@id": code, "name": "code", "dataType": "sc:Integer"},
-            {"@type": "cr:Field", "@id": text, "name": "name", "dataType": "sc:Text"},
-        ],
-        "data": [{code: number, text: word} for number, word in values.items()],
-    }
-
-
 def _records(corpus: xr.Dataset, source: Mapping[str, Any]) -> dict[str, Any]:
     """Set of the records with a field for each variable; the signal is one array of channels and samples."""
     names = [str(name) for name, variable in corpus.variables.items() if "role" in variable.attrs]
@@ -190,27 +167,18 @@ def _records(corpus: xr.Dataset, source: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _field(name: str, variable: xr.Variable, source: Mapping[str, Any]) -> dict[str, Any]:
-    attributes = variable.attrs
-    unit = attributes.get("units", "1")
+    attributes, text = variable.attrs, variable.dtype.kind not in "iuf"
+    unit, codes = attributes.get("units", "1"), listed_flags(class_names(attributes))
     meaning = str(attributes.get("long_name", name)) + (f" [{unit}]" if unit != "1" else "")
+    stored = "sc:Text" if text else f"cr:{variable.dtype.name.title().replace('Ui', 'UI')}"
     field: dict[str, Any] = {
         "@type": "cr:Field",
         "@id": f"records/{name}",
         "name": name,
-        "description": f"{meaning} ({attributes.get('role', 'signal')})",
-        "dataType": _data_type(name, variable),
+        "description": f"{meaning} ({attributes.get('role', 'signal')})" + (f": {codes}" if codes else ""),
+        "dataType": [stored, "cr:Label"] if name == "fault" else stored,
         "source": {**source, "extract": {"column": name}},
     }
     if name == SIGNAL:
         field |= {"isArray": True, "arrayShape": ",".join(str(size) for size in variable.shape[1:])}
-    # codes whose names stand in a list of the file
-    if name in ("fault", "split"):
-        field["references"] = {"field": {"@id": f"{name}s/code"}}
     return field
-
-
-def _data_type(name: str, variable: xr.Variable) -> str | list[str]:
-    if variable.dtype.kind not in "iuf":
-        return "sc:Text"
-    stored = f"cr:{variable.dtype.name.title().replace('Ui', 'UI')}"
-    return [stored, "cr:Label"] if name == "fault" else [stored, "cr:Split"] if name == "split" else stored
