@@ -1,6 +1,6 @@
 """The command that measures the scores of all baselines on a corpus."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,8 +31,7 @@ from raceway.console.progress_bar import progress
 if TYPE_CHECKING:
     import xarray as xr
 
-    from features.baselines import Baseline, Model, Results, Scores
-    from features.baselines.own import Maker
+    from features.baselines import Baseline, Results, Scores
     from features.table.recording_speeds import Speed
     from features.table.waveforms import Waveforms
 
@@ -160,49 +159,58 @@ def benchmark(
         raise click.UsageError("--waveforms is for --estimator MODULE:NAME")
     if per_turn is not None and not waveforms:
         raise click.UsageError("--per-turn is for --waveforms")
-    chosen = _makers(estimators)
+    if [output, submit, check].count(None) != 2:
+        raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
     from features.baselines import benchmark as run
-    from features.baselines import read_results
+    from features.baselines import check_submission, load_maker, read_results, write_submission
     from gen.corpus import result_folder
+    from raceway.kept_models import open_model
     from raceway.reports.report_page import write_report
 
+    spelled = dict.fromkeys(baseline for name in estimators for baseline in (BASELINES if name == "all" else (name,)))
+    chosen = {name: load_maker(name) if ":" in name else name for name in spelled}
     protocol = {"track": tracks[0], "folds": folds, "seed": seed}
-    # a report, a submission, or the check of one
-    match output, submit, check:
-        case None, None, Path():
-            _check(table_of(corpus, "off", team, analysis), check, protocol, as_json)
-            return
-        case None, Path(), None:
-            signals = _waveforms(corpus, analysis.channel, [], per_turn) if waveforms else [None]
-            _submit(table_of(corpus, "off", team, analysis), signals[0], chosen, submit, protocol)
-            return
-        case Path(), None, None:
-            pass
-        case _:
-            raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
+    # the check of a submission, or a submission, in place of a report
+    if check is not None:
+        scores = check_submission(table_of(corpus, "off", team, analysis), check, **protocol)
+        if as_json:
+            show.as_json({name: show.plain(of) for name, of in scores.items()})
+        else:
+            show.table(
+                ("classifier", "score", "95 %", "false alarms"), ((name, *_figures(of)) for name, of in scores.items())
+            )
+        return
+    if submit is not None:
+        chosen = chosen or {DEFAULT_ESTIMATOR: DEFAULT_ESTIMATOR}
+        signals = _waveforms(corpus, analysis.channel, [], per_turn)[0] if waveforms else None
+        write_submission(table_of(corpus, "off", team, analysis), chosen, submit, waveforms=signals, **protocol)
+        show.text(f"{submit}: predictions of {', '.join(chosen)}; --check scores them again.")
+        return
+    assert output is not None  # noqa: S101 - one of the three is given
     # a wrong model file is told before the features are computed
-    loaded = _load(models)
+    loaded = {str(path or REFERENCE_MODEL): open_model(path)[0] for path in dict.fromkeys(models)}
     with result_folder(output):
         table = table_of(corpus, "off", team, analysis)
         # speeds are checked or corrected on other corpora, whose labels may be wrong
         others = [table_of(test, speed, team, analysis._replace(channel=None)) for test in tests]
-        scored = _score_models(loaded, [table, *others], seed)
-        signals = (
-            _waveforms(corpus, analysis.channel, list(zip(tests, others, strict=True)), per_turn) if waveforms else []
-        )
+        scored = {name: tuple(model.score(of, seed=seed) for of in (table, *others)) for name, model in loaded.items()}
+        for name, model in loaded.items():
+            for of, tested in zip(scored[name], (table, *others), strict=True):
+                warn_of_seen(name, of)
+                warn_of_durations(name, model, tested)
         options = {
             "tracks": "all" if "all" in tracks else tracks,
-            "estimators": chosen,
-            "waveforms": signals,
+            "estimators": chosen or None,
+            "waveforms": _waveforms(corpus, analysis.channel, list(zip(tests, others, strict=True)), per_turn)
+            if waveforms
+            else [],
             "curve": learning_curve,
+            # classifiers of an earlier call keep their rows
+            "known": read_results(output / "results.json"),
+            "workers": team.options(table.sizes["record"])["workers"],
         }
-        trainers = team.options(table.sizes["record"])["workers"]
-        # classifiers of an earlier call keep their rows
-        known = read_results(output / "results.json")
         with progress("scoring", "scores") as report:
-            results = run(
-                table, others, **options, known=known, folds=folds, seed=seed, workers=trainers, progress=report
-            )
+            results = run(table, others, **options, folds=folds, seed=seed, progress=report)
         results = replace(results, models=scored)
         # records that no score counts
         for path, content in zip((corpus, *tests), (results.corpus, *results.tests), strict=True):
@@ -212,48 +220,44 @@ def benchmark(
     if as_json:
         show.as_json({"report": page, "results": output / "results.json", **show.plain(results)})
         return
+    _show(results, [test.name for test in tests])
+    show.text("", f"{page}: the complete report.")
+
+
+def _show(results: "Results", tests: list[str]) -> None:
+    """Show the scores on each track and on other corpora, those of trained models, and the learning curve."""
+    from features.baselines import interval_text
+
     show.text(f"Balanced accuracy on {results.corpus.title}, {results.folds} folds by {results.track}:", "")
-    _show_baselines(results.baselines, [test.name for test in tests])
+    _show_baselines(results.baselines, tests)
     if results.models:
         show.text("")
-        _show_models(results.models, [test.name for test in tests])
+        rows = ((name, *(f"{of.balanced_accuracy:.3f}" for of in scores)) for name, scores in results.models.items())
+        show.table(("trained model", "all records", *tests), rows)
     for track, of_track in results.further.items():
-        show.text(
-            "", f"By {track}, {of_track.folds} folds, {of_track.tested:,} of {of_track.records:,} records tested:", ""
-        )
+        about = f"By {track}, {of_track.folds} folds, {of_track.tested:,} of {of_track.records:,} records tested:"
+        show.text("", about, "")
         _show_baselines(of_track.baselines, [])
     for track, reason in results.left_out.items():
         show.text("", f"No scores by {track}. {reason}")
     if results.curve:
-        _show_curve(results)
-    show.text("", f"{page}: the complete report.")
+        show.text("", f"Learning curve of {results.leading}, by {results.track}:", "")
+        points = (
+            (p.specimens, p.records, f"{p.balanced_accuracy:.3f}", interval_text((min(p.folds), max(p.folds)), 2))
+            for p in results.curve
+        )
+        show.table(("training specimens", "records", "score", "folds"), points)
 
 
-def _submit(
-    table: "xr.Dataset",
-    signals: "Waveforms | None",
-    chosen: "dict[str, str | Maker] | None",
-    path: Path,
-    protocol: dict[str, Any],
-) -> None:
-    from features.baselines import write_submission
-
-    write_submission(table, chosen or {DEFAULT_ESTIMATOR: DEFAULT_ESTIMATOR}, path, waveforms=signals, **protocol)
-    show.text(f"{path}: predictions of {', '.join(chosen or [DEFAULT_ESTIMATOR])}; --check scores them again.")
+def _show_baselines(baselines: "Mapping[str, Baseline]", tests: list[str]) -> None:
+    rows = []
+    for name, baseline in baselines.items():
+        further = (baseline.leaky, baseline.null, *baseline.tests)
+        rows.append((name, *_figures(baseline.grouped), *(f"{scores.balanced_accuracy:.3f}" for scores in further)))
+    show.table(("baseline", "score", "95 %", "false alarms", "leaky split", "null labels", *tests), rows)
 
 
-def _check(table: "xr.Dataset", path: Path, protocol: dict[str, Any], as_json: bool) -> None:
-    from features.baselines import check_submission
-
-    scores = check_submission(table, path, **protocol)
-    if as_json:
-        show.as_json({name: show.plain(one) for name, one in scores.items()})
-        return
-    rows = ((name, *_score_texts(one)) for name, one in scores.items())
-    show.table(("classifier", "score", "95 %", "false alarms"), rows)
-
-
-def _score_texts(scores: "Scores") -> list[str]:
+def _figures(scores: "Scores") -> list[str]:
     """Balanced accuracy, its interval, and share of false alarms."""
     from features.baselines import interval_text
 
@@ -274,56 +278,3 @@ def _waveforms(
         rates = rates_to_use(table)
         signals.append(open_waveforms(path, normalise=True, shaft_rate=rates, per_turn=per_turn, turns=turns))
     return signals
-
-
-def _makers(names: tuple[str, ...]) -> "dict[str, str | Maker] | None":
-    """Classifiers by the name that the user gave; None if none was given."""
-    from features.baselines import load_maker
-
-    spelled = dict.fromkeys(baseline for name in names for baseline in (BASELINES if name == "all" else (name,)))
-    return {name: load_maker(name) if ":" in name else name for name in spelled} or None
-
-
-def _load(models: Sequence[Path | None]) -> "dict[str, Model]":
-    """Trained models by the name that the user gave."""
-    from raceway.kept_models import open_model
-
-    return {str(path or REFERENCE_MODEL): open_model(path)[0] for path in dict.fromkeys(models)}
-
-
-def _score_models(
-    models: "Mapping[str, Model]", tables: "Sequence[xr.Dataset]", seed: int
-) -> "dict[str, tuple[Scores, ...]]":
-    """Scores of trained models on each corpus, by name."""
-    scored = {name: tuple(model.score(table, seed=seed) for table in tables) for name, model in models.items()}
-    for name, of_model in scored.items():
-        for scores, table in zip(of_model, tables, strict=True):
-            warn_of_seen(name, scores)
-            warn_of_durations(name, models[name], table)
-    return scored
-
-
-def _show_models(models: "Mapping[str, tuple[Scores, ...]]", tests: list[str]) -> None:
-    rows = ((name, *(f"{scores.balanced_accuracy:.3f}" for scores in of_model)) for name, of_model in models.items())
-    show.table(("trained model", "all records", *tests), rows)
-
-
-def _show_curve(results: "Results") -> None:
-    from features.baselines import interval_text
-
-    show.text("", f"Learning curve of {results.leading}, by {results.track}:", "")
-    rows = (
-        (f"{p.specimens}", f"{p.records}", f"{p.balanced_accuracy:.3f}", interval_text((min(p.folds), max(p.folds)), 2))
-        for p in results.curve
-    )
-    show.table(("training specimens", "records", "score", "folds"), rows)
-
-
-def _show_baselines(baselines: "Mapping[str, Baseline]", tests: list[str]) -> None:
-    def figures(baseline: "Baseline") -> list[str]:
-        shown = _score_texts(baseline.grouped)
-        shown += [f"{control.balanced_accuracy:.3f}" for control in (baseline.leaky, baseline.null)]
-        return [*shown, *(f"{test.balanced_accuracy:.3f}" for test in baseline.tests)]
-
-    header = ("baseline", "score", "95 %", "false alarms", "leaky split", "null labels", *tests)
-    show.table(header, ((name, *figures(baseline)) for name, baseline in baselines.items()))

@@ -324,9 +324,9 @@ def info(corpus: Path, where: str | None, as_json: bool) -> None:
       raceway info corpus --where "fault == 'inner' and width_mm > 0.5"
       raceway info corpus --json
     """
-    from raceway.console.summary import describe, show_facts
+    from raceway.console.summary import corpus_facts, show_facts
 
-    facts = describe(corpus, where)
+    facts = corpus_facts(corpus, where)
     if as_json:
         show.as_json(facts)
     else:

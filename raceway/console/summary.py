@@ -53,7 +53,7 @@ _SHOWN = [
 _IF_PRESENT = (*OF_FAULTS, "event", "clipped", "step_error", "oversampling")
 
 
-def describe(directory: Path, where: str | None = None) -> dict[str, Any]:
+def corpus_facts(directory: Path, where: str | None = None) -> dict[str, Any]:
     """Facts about a corpus: origin, state and contents, these of the records that meet a condition.
 
     Raises
@@ -62,8 +62,10 @@ def describe(directory: Path, where: str | None = None) -> dict[str, Any]:
         If the folder holds no corpus, a part is missing or altered, or no record meets the condition.
     """
     manifest = read_manifest(directory)
-    known = manifest.model_dump(exclude={"parts", "complete", "records", "parts_sha256", "signals"}, exclude_unset=True)
-    about = {
+    stored = manifest.model_dump(
+        exclude={"parts", "complete", "records", "parts_sha256", "signals"}, exclude_unset=True
+    )
+    facts = {
         "corpus": directory,
         "complete": manifest.complete,
         "records": manifest.records,
@@ -73,11 +75,9 @@ def describe(directory: Path, where: str | None = None) -> dict[str, Any]:
         "warnings": [],
         "skipped": [],
         "signals": manifest.signals._asdict(),
+        **stored,
     }
-    facts = about | known
-    if manifest.records:
-        facts |= _content(directory, manifest, where)
-    return facts
+    return facts | _content(directory, manifest, where) if manifest.records else facts
 
 
 def _labels(files: Iterable[Path], wanted: Iterable[str]) -> Columns:
@@ -103,7 +103,11 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
     samples, fs = file_facts(parts[0])[1][2], float(labels["sample_rate"][0])
     # counts of the chosen records
     if where is not None:
-        chosen = _chosen(directory, where)
+        from gen.corpus import open_corpus  # not at the top: xarray takes 0.25 s to load
+        from gen.corpus.choice import chosen_records
+
+        with open_corpus(directory, check="size") as opened:
+            (chosen,) = chosen_records([opened], where)
         labels = {name: values[chosen] for name, values in labels.items()}
     units = unit_counts(labels)
     return {
@@ -129,16 +133,6 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
     }
 
 
-def _chosen(directory: Path, where: str) -> NDArray[Any]:
-    """Places of the records that meet a condition."""
-    from gen.corpus import open_corpus  # not at the top: xarray takes 0.25 s to load
-    from gen.corpus.choice import chosen_records
-
-    with open_corpus(directory, check="size") as opened:
-        (places,) = chosen_records([opened], where)
-    return places
-
-
 def _lives(labels: Columns) -> dict[str, int] | None:
     """Number of bearings by the end of their test; None unless the records are of lives."""
     if "event" not in labels:
@@ -159,29 +153,31 @@ def _severities(labels: Columns, names: Iterable[str]) -> dict[str, dict[str, li
 
 def _range(values: NDArray[Any]) -> list[float] | None:
     """Smallest and largest known value; None if no value is known."""
-    found = extent(values)
-    return None if found is None else [found[0], found[2]]
+    ends = extent(values)
+    return ends and [ends[0], ends[2]]
 
 
 def show_facts(facts: dict[str, Any]) -> None:
-    """Print the facts of ``describe``; an unfinished corpus without a part has no contents yet."""
-    overrides = {key: value for key, value in (facts.get("overrides") or {}).items() if value is not None}
-    with_overrides = "".join(f", {key} {value}" for key, value in overrides.items())
-    made_by = [f"recipe {facts['recipe']}{with_overrides}"] if facts.get("recipe") else []
+    """Print the facts of `corpus_facts`; an unfinished corpus without a part has no contents yet."""
+    overrides = [f"{key} {value}" for key, value in (facts.get("overrides") or {}).items() if value is not None]
+    made_by = [", ".join([f"recipe {facts['recipe']}", *overrides])] if facts.get("recipe") else []
     made_by += [f"import {facts['importer']}"] if facts.get("importer") else []
+    clipped = facts.get("clipped")
     show.text(facts.get("title", str(facts["corpus"])), "")
-    known = {"corpus": facts["corpus"], "made by": ", ".join(made_by)}
-    if license_name := facts.get("publication", {}).get("license"):
-        known["licence"] = license_name
-    known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
-    if "classes" in facts:
-        known |= _shown_content(facts)
-    known["not usable"] = counts_in_words(SignalCounts(**facts["signals"]))
-    if (clipped := facts.get("clipped")) is not None:
-        known["clipped"] = f"at least once: {show.counts(clipped)}" if clipped else "none"
-    known |= {"parts": f"{facts['parts']:,}", "size": show.size(facts["bytes"])}
-    known["versions"] = ", ".join(f"{name} {number}" for name, number in facts.get("versions", {}).items())
-    show.facts(known)
+    show.facts(
+        {
+            "corpus": facts["corpus"],
+            "made by": ", ".join(made_by),
+            "licence": facts.get("publication", {}).get("license", ""),
+            "state": "complete" if facts["complete"] else "unfinished; the command that began it completes it",
+            **(_shown_content(facts) if "classes" in facts else {}),
+            "not usable": counts_in_words(SignalCounts(**facts["signals"])),
+            "clipped": "" if clipped is None else f"at least once: {show.counts(clipped)}" if clipped else "none",
+            "parts": f"{facts['parts']:,}",
+            "size": show.size(facts["bytes"]),
+            "versions": ", ".join(f"{name} {number}" for name, number in facts.get("versions", {}).items()),
+        }
+    )
     # what a user should know before using it
     for heading, key in (("Left out:", "failures"), ("Skipped:", "skipped"), ("Warnings:", "warnings")):
         if facts[key]:
@@ -190,17 +186,24 @@ def show_facts(facts: dict[str, Any]) -> None:
 
 def _shown_content(facts: dict[str, Any]) -> dict[str, str]:
     of_all = "" if facts["chosen"] == facts["records"] else f" of {facts['records']:,}, each"
+    severities = {
+        f"  {fault}": ", ".join(
+            f"{name.replace('_', ' ')} {_shown_range(name, ends, facts['units'][name])}"
+            for name, ends in ranges.items()
+        )
+        for fault, ranges in facts["severities"].items()
+    }
     return {
         "records": f"{facts['chosen']:,}{of_all} of {facts['duration']:g} s at {facts['sample_rate']:g} Hz",
         "channels": ", ".join(facts["channels"]),
         "classes": show.counts(facts["classes"]),
-        **{f"  {fault}": _shown_severities(ranges, facts["units"]) for fault, ranges in facts["severities"].items()},
-        **({} if facts["faults"] is None else {"faults": _shown_faults(facts["faults"])}),
+        **severities,
+        "faults": "" if facts["faults"] is None else _shown_faults(facts["faults"]),
         "splits": show.counts(facts["splits"]),
         "bearings": show.counts(facts["bearings"]),
         "rigs": f"{facts['rigs']:,}",
         "specimens": f"{facts['specimens']:,}",
-        **({} if facts["lives"] is None else {"lives": show.counts(facts["lives"])}),
+        "lives": "" if facts["lives"] is None else show.counts(facts["lives"]),
         "recordings": f"{facts['recordings']:,}",
         "shaft rate": _shown_range("shaft_rate", facts["shaft_rate"], "Hz"),
         "load": _shown_range("load", facts["load"], "N"),
@@ -211,12 +214,6 @@ def _shown_faults(counts: dict[str, int]) -> str:
     unseen = counts["records"] - counts["detectable"] - counts["unjudged"]
     judged = f"seen in {counts['detectable']:,} records, not seen in {unseen:,}, not judged in {counts['unjudged']:,}"
     return f"{judged}; {counts['redrawn_specimens']:,} specimens and {counts['redrawn_levels']:,} levels drawn again"
-
-
-def _shown_severities(ranges: dict[str, list[float]], units: dict[str, str]) -> str:
-    return ", ".join(
-        f"{name.replace('_', ' ')} {_shown_range(name, ends, units[name])}" for name, ends in ranges.items()
-    )
 
 
 def _shown_range(name: str, ends: list[float] | None, stored: str) -> str:

@@ -210,7 +210,7 @@ def test_an_unforeseen_error_ends_in_one_sentence_too(run, places, monkeypatch):
     def fail(*_):
         raise ZeroDivisionError("float division by zero")
 
-    monkeypatch.setattr("raceway.console.summary.describe", fail)
+    monkeypatch.setattr("raceway.console.summary.corpus_facts", fail)
     result = run("info", places["corpus"])
     assert result.exit_code == 70
     assert result.stderr == (

@@ -13,7 +13,7 @@ from gen.corpus import FAULT_NAMES, UNKNOWN_CODE, open_corpus, validate_corpus
 from gen.support.errors import CorpusError
 from raceway.cli import cli
 from raceway.comparing.windows import common_ground, measured_windows
-from raceway.console.summary import describe
+from raceway.console.summary import corpus_facts
 from raceway.reports.examples import examples_of
 from raceway.reports.report_page import write_report
 from raceway.sharing.card.card_page import data_card
@@ -51,7 +51,7 @@ def test_unknown_is_a_value_of_the_format_and_no_class(corpus):
         assert opened.n_spalls.values[-4:].tolist() == [-1] * 4
         assert np.isnan(opened.width.values[-4:]).all()
         assert [*examples_of(opened)] == ["healthy", "inner", "unknown"]
-    assert describe(corpus)["classes"] == {"healthy": 6, "inner": 6, "unknown": 4}
+    assert corpus_facts(corpus)["classes"] == {"healthy": 6, "inner": 6, "unknown": 4}
     assert "| unknown | 4 | 2 |" in data_card(corpus)
 
 

@@ -13,7 +13,7 @@ import pytest
 from features.table.corpus_features import feature_table
 from gen.corpus import SIGNAL, open_corpus, part_name, read_manifest, validate_corpus
 from gen.support.errors import CorpusError, RacewayError
-from raceway.console.summary import describe
+from raceway.console.summary import corpus_facts
 from raceway.sharing.card.additions import CardAdditions, CardPicture, write_additions
 from tests.corpora import write_corpus
 from tests.tampering import edit_manifest, edited, seal
@@ -94,7 +94,7 @@ def assert_a_sentence(corpus, sentence=""):
     with suppress(CorpusError):
         open_corpus(corpus).load()
     with suppress(CorpusError):
-        describe(corpus)
+        corpus_facts(corpus)
     with suppress(RacewayError):
         feature_table(corpus, groups=("time",))
 

@@ -19,7 +19,7 @@ from features.table.corpus_features import feature_table
 from gen.corpus import SIGNAL, open_corpus, validate_corpus
 from gen.corpus.manifest import manifest_text
 from gen.support.errors import RacewayError
-from raceway.console.summary import describe
+from raceway.console.summary import corpus_facts
 from raceway.sharing.card.card_page import data_card
 from tests.corpora import write_corpus
 
@@ -74,7 +74,7 @@ def check(path):
         corpus = folder / SINGLE if (folder / SINGLE).exists() else folder
         problems = validate_corpus(corpus)
         assert not any("\n" in problem for problem in problems), problems
-        for use in (_load, describe, data_card, lambda corpus: feature_table(corpus, ("time",))):
+        for use in (_load, corpus_facts, data_card, lambda corpus: feature_table(corpus, ("time",))):
             with suppress(RacewayError):
                 use(corpus)
 
