@@ -6,7 +6,6 @@
 module          responsibility
 =============== ==========================================================================
 measures        the measured features, each with unit and definition, from arrays [pure]
-contrast        weighted AUC and quantiles of two samples [pure]
 windows         windows of a corpus: choice, reading in blocks, common band and rate
 comparison      a synthetic corpus against real ones, and each real one against the others
 comparison_page page of a comparison

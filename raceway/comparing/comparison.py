@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from sklearn.metrics import roc_auc_score
 
 from features.signal.rows import FloatArray
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
-from raceway.comparing.contrast import auc, quantiles
 from raceway.comparing.measures import MEASURES, NAMES
 from raceway.comparing.windows import CommonForm, Windows, common_ground, measured_windows
 
@@ -182,10 +182,18 @@ def _auc(sets: dict[str, FloatArray], below: str) -> float | None:
     """AUC of the other sets above the set ``below``; None if either side has too few values."""
     low, low_weights = pool([values for name, values in sets.items() if name == below])
     high, high_weights = pool([values for name, values in sets.items() if name != below])
-    return auc(low, high, low_weights, high_weights) if len(low) and len(high) else None
+    if not len(low) or not len(high):
+        return None
+    is_high = np.repeat([False, True], [len(low), len(high)])
+    weights = np.concatenate([low_weights, high_weights])
+    return float(roc_auc_score(is_high, np.concatenate([low, high]), sample_weight=weights))
 
 
 def _quantiles(sets: dict[str, FloatArray], synthetic: str) -> dict[str, list[float]]:
-    by_corpus = {name: quantiles(*pool([values]), SHARES) for name, values in sets.items() if len(values) >= FEWEST}
-    values, weights = pool([values for name, values in sets.items() if name != synthetic])
-    return by_corpus | ({"real": quantiles(values, weights, SHARES)} if len(values) else {})
+    pools = {name: pool([values]) for name, values in sets.items()}
+    pools["real"] = pool([values for name, values in sets.items() if name != synthetic])
+    return {
+        name: np.quantile(values, SHARES, weights=weights, method="inverted_cdf").tolist()
+        for name, (values, weights) in pools.items()
+        if len(values)
+    }

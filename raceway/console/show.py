@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -14,12 +14,7 @@ from raceway.console.ending import printable
 
 def as_json(facts: Any) -> None:
     """Print a mapping or dataclass as one JSON object; NaN and infinity become null."""
-    click.echo(json_text(facts), nl=False)
-
-
-def json_text(facts: Any) -> str:
-    """Text of a mapping or dataclass as one JSON object; NaN and infinity become null."""
-    return json.dumps(plain(facts), indent=1, allow_nan=False) + "\n"
+    click.echo(json.dumps(plain(facts), indent=1, allow_nan=False))
 
 
 def plain(value: Any) -> Any:
@@ -61,22 +56,19 @@ def definitions(meanings: Mapping[str, str]) -> None:
 
 def table(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
     """Print columns under a header: the first aligned left, the others aligned right."""
-    lines = [list(header), *([str(cell) for cell in row] for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    for line in lines:
-        first, *others = (
-            cell.rjust(width) if place else cell.ljust(width)
-            for place, (cell, width) in enumerate(zip(line, widths, strict=True))
-        )
-        click.echo(printable("  ".join([first, *others]).rstrip()))
+    _print([header, *rows], str.rjust)
 
 
 def columns(rows: Iterable[Sequence[Any]]) -> None:
     """Print columns that are aligned left."""
+    _print(rows, str.ljust)
+
+
+def _print(rows: Iterable[Sequence[Any]], justify: Callable[[str, int], str]) -> None:
     lines = [[str(cell) for cell in row] for row in rows]
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    for line in lines:
-        text("  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip())
+    first, *widths = (max(map(len, column)) for column in zip(*lines, strict=True))
+    for name, *cells in lines:
+        text("  ".join([name.ljust(first), *map(justify, cells, widths)]).rstrip())
 
 
 def counts(numbers: Mapping[str, int]) -> str:
@@ -103,17 +95,11 @@ def size(n_bytes: float) -> str:
     >>> size(999), size(1_234_567)
     ('999 B', '1.2 MB')
     """
-    for unit in ("B", "kB", "MB", "GB"):
-        if n_bytes < 999.5:
-            return (
-                f"{n_bytes:.3g} {unit}"
-                if unit == "B"
-                else f"{n_bytes:.2g} {unit}"
-                if n_bytes < 10
-                else f"{n_bytes:.0f} {unit}"
-            )
+    units = iter(("B", "kB", "MB", "GB", "TB"))
+    while n_bytes >= 999.5:
         n_bytes /= 1000
-    return f"{n_bytes:.3g} TB"
+        next(units)
+    return f"{n_bytes:.2g} {next(units)}" if n_bytes < 10 else f"{n_bytes:.0f} {next(units)}"
 
 
 def duration(seconds: float) -> str:

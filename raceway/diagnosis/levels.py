@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from features.signal.rows import FloatArray
+from features.signal.shape import time_statistics
 from features.signal.velocity import velocity_rms
 from gen.support.units import from_si
 from raceway.importing.recorded import ACCELERATION
@@ -46,15 +47,10 @@ class Levels(NamedTuple):
 def levels_of(x: FloatArray, fs: float, recording: str, channel: str, unit: str, shaft_rate: float) -> Levels:
     """Levels of a signal, shape (time,), of a machine whose shaft turns at a rate [Hz]."""
     mean = float(np.mean(x, dtype=float))
-    centred = np.asarray(x, dtype=float) - mean
-    rms, peak = float(np.std(centred)), float(np.abs(centred).max())
+    centred = (np.asarray(x, dtype=float) - mean)[None]
     # a constant signal has no shape
-    constant = rms == 0
-    crest = np.nan if constant else peak / rms
-    kurtosis = np.nan if constant else float(np.mean((centred / rms) ** 4))
-    velocity = (
-        from_si(float(velocity_rms(centred[None], fs, np.array([shaft_rate]))[0]), "mm_s")
-        if unit == ACCELERATION
-        else np.nan
-    )
-    return Levels(recording, channel, unit, mean, rms, peak, crest, kurtosis, velocity)
+    with np.errstate(invalid="ignore"):
+        rms, peak, crest, kurtosis = time_statistics(centred)[0, :4].tolist()
+    is_known = unit == ACCELERATION
+    velocity = float(velocity_rms(centred, fs, np.array([shaft_rate]))[0]) if is_known else np.nan
+    return Levels(recording, channel, unit, mean, rms, abs(peak), crest, kurtosis, from_si(velocity, "mm_s"))

@@ -12,7 +12,7 @@ from gen.corpus import check_result, write_text_durably
 from gen.support.display import visible
 
 
-def write_page(path: Path, name: str, package: str = "raceway.reports", **variables: Any) -> Path:
+def write_page(path: Path, name: str, package: str = "raceway.reports", /, **variables: Any) -> Path:
     """Write the page of a template, whole or not at all; CorpusError if it would replace something else, or the disk refuses it."""
     page = template(name, package).render(variables)
     check_result(path, "page")
