@@ -18,6 +18,7 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.realism import UESTC_LABELLED
+from benchmarks.reference_table import lasting
 from benchmarks.results import machine
 from benchmarks.transfer_pages import RESULTS, write_pages
 from features import feature_table
@@ -26,7 +27,7 @@ from gen import generate
 from gen.corpus import FAULTS
 from gen.recipe import read_recipe
 from raceway.importing import import_cwru, import_generic, import_mfpt
-from raceway.kept_models import LONG, lasting
+from raceway.kept_models import LONG
 
 RECIPE = "domain_randomised"
 ESTIMATORS = ("envelope_rule", "logistic_regression", "random_forest", "extra_trees", "ensemble")

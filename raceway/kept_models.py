@@ -1,18 +1,16 @@
-"""Models trained on a recipe; the reference model of ``diagnose`` is one of them, and is kept per user.
+"""The reference model of ``diagnose``, which is trained at its first use and kept per user.
 
-``recipe -> corpus in a temporary folder -> feature table -> model``
+It is trained on records of the recipe domain_randomised that last 2 s, in which lines rise higher above the floor than in the half seconds
+of the recipe, and holds a model trained on those for shorter recordings. The feature table of both ships with Raceway, so that the training
+takes seconds. ``make reference`` writes it (`benchmarks.reference_table`); unlike a model file it depends on no version of scikit-learn.
 
-The reference model is trained on records of 2 s, in which lines rise higher above the floor than in the half seconds of its recipe, and
-holds a model trained on those for shorter recordings. The feature table of both corpora ships with Raceway, so that its first use takes
-seconds. ``make reference`` writes it (`benchmarks.reference_table`); unlike a model file it depends on no version of scikit-learn.
-
-The kept file is named after the versions of Raceway and scikit-learn, and a hash of all that it was made from: the recipe, sources and
+The kept file is named after the versions of Raceway and scikit-learn, and a hash of all that it was made from: table, sources and
 libraries. A damaged one is made again. A lock keeps two processes from making it at once.
 """
 
 import hashlib
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from importlib.metadata import version
 from pathlib import Path
@@ -26,13 +24,12 @@ from features.table.durations import DURATION
 from gen.support.errors import CorpusError
 from gen.support.sources import hash_sources
 from raceway.console.options import USUAL, Team
-from raceway.console.progress_bar import notice, notice_compilation, progress
+from raceway.console.progress_bar import notice, progress
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from features.baselines import Model, Scores
-    from gen.recipe import Recipe
 
 REFERENCE = "domain_randomised"
 CACHE_VARIABLE = "RACEWAY_CACHE"
@@ -73,64 +70,13 @@ def train_and_score(
     return model, scores
 
 
-def recipe_tables(recipe: Path | str, team: Team = USUAL) -> "list[xr.Dataset]":
-    """Feature table of the corpus of a recipe, made now, with progress; both shipped ones for the recipe of the reference model.
-
-    Raises
-    ------
-    RecipeError, SimulationError, CorpusError
-        As `make_table`.
-    """
+def shipped_tables() -> "list[xr.Dataset]":
+    """Feature table that ships with Raceway, of records of 2 s and of those of half a second."""
     from features.table.table_files import read_table
-    from gen.recipe import read_recipe
 
     shipped = read_table(SHIPPED_TABLE)
-    if shipped.attrs["recipes"] != identities(both_lengths(read_recipe(recipe))):
-        return [make_table(recipe, team)]
     long = shipped[DURATION].values == LONG
     return [shipped.isel(record=long), shipped.isel(record=~long)]
-
-
-def both_lengths(recipe: "Recipe") -> tuple["Recipe", "Recipe"]:
-    """A recipe with records of 2 s, and as it is."""
-    return lasting(recipe, LONG), recipe
-
-
-def lasting(recipe: "Recipe", seconds: float) -> "Recipe":
-    """A recipe with records of another duration."""
-    return recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"duration_s": seconds})})
-
-
-def identities(recipes: Iterable["Recipe"]) -> str:
-    """What the records of a table depend on, whatever the number and the files of the corpora that it was made from."""
-    from gen.recipe import corpus_identity
-
-    return " ".join(map(corpus_identity, recipes))
-
-
-def make_table(recipe: "Path | str | Recipe", team: Team = USUAL) -> "xr.Dataset":
-    """Feature table of a corpus that is generated in a temporary folder and removed again, with progress.
-
-    Raises
-    ------
-    RecipeError, SimulationError
-        If the recipe cannot be simulated.
-    CorpusError
-        If the disk refuses the corpus.
-    """
-    from features import feature_table
-    from gen import generate
-    from gen.corpus import temporary_folder
-    from gen.support.executor import cores
-
-    workers = team.workers or cores()
-    # the corpus takes gigabytes, its features megabytes
-    with temporary_folder() as folder:
-        corpus = folder / "corpus"
-        with notice_compilation(), progress("generating", "records") as report:
-            generate(recipe, corpus, workers=workers, progress=report)
-        with progress("computing features", "parts") as report:
-            return feature_table(corpus, workers=workers, progress=report)
 
 
 def open_model(path: Path | None = None) -> tuple["Model", Path]:
@@ -169,11 +115,8 @@ def _kept(path: Path) -> "Model | None":
 
 
 def _trained(path: Path) -> "Model":
-    from gen.recipe import shipped_recipes
-
-    notice(f"training a model on the recipe {REFERENCE}; it is kept as {path}.")
-    # of this installation, whatever lies in the working folder
-    model, _ = train_and_score(recipe_tables(shipped_recipes()[REFERENCE]), DEFAULT_ESTIMATOR)
+    notice(f"training the reference model; it is kept as {path}.")
+    model, _ = train_and_score(shipped_tables(), DEFAULT_ESTIMATOR)
     path.unlink(missing_ok=True)
     model.save(path)
     return model
@@ -182,12 +125,8 @@ def _trained(path: Path) -> "Model":
 def reference_path() -> Path:
     """File of the reference model of this user, whether it exists or not."""
     from features.baselines.score_sources import score_sources
-    from gen.generation.record_sources import sources_sha256
-    from gen.recipe import shipped_recipes
 
-    made_from = [hashlib.sha256(shipped_recipes()[REFERENCE].read_bytes()).hexdigest()]  # reading it takes 0.3 s
-    made_from += [sources_sha256(), score_sources(), hash_sources(*_OWN_SOURCES)]
-    made_from += [version(library) for library in _LIBRARIES]
+    made_from = [score_sources(), hash_sources(*_OWN_SOURCES), *map(version, _LIBRARIES)]
     digest = hashlib.sha256("\n".join(made_from).encode()).hexdigest()[:HASH_LETTERS]
     versions = f"raceway-{version('raceway')}-scikit-learn-{version('scikit-learn')}"
     return cache_folder() / f"{REFERENCE}-{digest}-{versions}.skops"
@@ -213,9 +152,6 @@ def _lock(path: Path) -> Iterator[None]:
                 notice("waiting for another process that trains this model.")
                 held.enter_context(lock)
         except OSError as error:
-            message = (
-                f"{path.parent}: this cache folder cannot be written ({error.strerror}); set {CACHE_VARIABLE} to another folder, or write "
-                f"the model elsewhere with raceway train {REFERENCE} -o MODEL."
-            )
+            message = f"{path.parent}: this cache folder cannot be written ({error.strerror}); set {CACHE_VARIABLE} to another folder."
             raise CorpusError(message) from error
         yield

@@ -10,14 +10,11 @@ from raceway.console import show
 from raceway.console.corpus_table import notice_of_unknown, table_of
 from raceway.console.options import (
     A_CORPUS,
-    USUAL_ANALYSIS,
     Analysis,
     Team,
     analysis_options,
     channels_option,
-    complete_recipes,
     corpus_argument,
-    corpus_path,
     file_option,
     json_option,
     model_option,
@@ -34,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("source", metavar="DIR|RECIPE", shell_complete=complete_recipes)
+@corpus_argument
 @file_option("MODEL", "Model file.", kind="model")
 @click.option(
     "--estimator",
@@ -48,14 +45,14 @@ if TYPE_CHECKING:
 @worker_options
 @json_option
 def train(
-    source: str,
+    corpus: Path,
     output: Path,
     estimator: str,
     analysis: Analysis,
     team: Team,
     as_json: bool,
 ) -> None:
-    """Train a classifier on the corpus in DIR or of RECIPE.
+    """Train a classifier on the corpus in DIR.
 
     If the corpus has a test split (raceway info DIR), the model is trained on the other records and scored on the test split, which has
     other specimens. Otherwise it is trained on all records and not scored. Model files run no code when they are loaded.
@@ -63,11 +60,6 @@ def train(
       raceway train corpus -o model.skops
       raceway train corpus -o forest.skops --estimator random_forest
       raceway train corpus -o high.skops --channel fan_end --band 300 9000
-      raceway train my_recipe.yaml -o model.skops
-      raceway train domain_randomised -o model.skops   as the reference model of raceway diagnose
-
-    A folder comes before a recipe of the same name. The corpus of a RECIPE is removed after the training; for domain_randomised the
-    features of its records ship with Raceway.
 
     The model keeps the band, and raceway evaluate computes features from the same one.
 
@@ -76,20 +68,11 @@ def train(
     Next: raceway evaluate OTHER --model MODEL
     """
     from features.baselines import count_unknown
-    from raceway.kept_models import recipe_tables, train_and_score
+    from raceway.kept_models import train_and_score
 
-    folder = Path(source)
-    from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
-    corpus = corpus_path(folder) if from_folder else None
-    if corpus is None and (team.scheduler is not None or analysis != USUAL_ANALYSIS):
-        raise click.UsageError("--scheduler, --channel and --band are for DIR: generate the corpus of the RECIPE first")
-    if corpus is None:
-        from gen.recipe import find_recipe
-
-        find_recipe(source)  # a misspelt name is reported before the simulator is imported
-    tables = recipe_tables(source, team) if corpus is None else [table_of(corpus, "off", team, analysis)]
-    notice_of_unknown(corpus or folder, count_unknown(tables[0]))
-    model, scores = train_and_score(tables, estimator, team)
+    table = table_of(corpus, "off", team, analysis)
+    notice_of_unknown(corpus, count_unknown(table))
+    model, scores = train_and_score([table], estimator, team)
     model.save(output)
     warn_of_severities(scores)
     if as_json:

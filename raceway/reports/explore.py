@@ -85,13 +85,10 @@ LONGEST_TEXT = 200
 READ = ("fault", "sample_rate", "shaft_rate", "first_shaft_rate", "last_shaft_rate", *Orders._fields)
 
 
-class ExplorerColumn(NamedTuple):
-    """Quantity of the records for table, axes and conditions; numbers, or texts."""
+class Quantity(NamedTuple):
+    """Quantity of the records for table, axes and conditions: facts for the page, and numbers or texts."""
 
-    name: str
-    unit: str
-    meaning: str
-    role: str
+    about: Mapping[str, Any]
     values: list[Any]
 
 
@@ -181,10 +178,8 @@ def reduce_record(shown: DrawnRecord) -> dict[str, np.ndarray]:
     """Arrays of `FIELDS` of one record; without scales and levels if it cannot be drawn."""
     empty = {name: np.zeros(size, kind) for name, (kind, size) in FIELDS.items()}
     empty["scales"][:] = np.nan
-    if not can_be_drawn(shown):
-        return empty
     try:
-        return _reduced(shown)
+        return _reduced(shown) if can_be_drawn(shown) else empty
     except ValueError:  # too short for one of the spectra
         return empty
 
@@ -252,21 +247,19 @@ def _sound(shown: DrawnRecord) -> np.ndarray:
     return np.round(127 * samples).astype(np.int8)
 
 
-def _labels(corpus: xr.Dataset, places: np.ndarray) -> Iterator[ExplorerColumn]:
+def _labels(corpus: xr.Dataset, places: np.ndarray) -> Iterator[Quantity]:
     """Number and variables of the chosen records, without scenario and identity."""
-    yield ExplorerColumn("record", "", "number of the record in the corpus", "provenance", places.tolist())
+    yield _quantity("record", "", "number of the record in the corpus", "provenance", places.tolist())
     for name in per_record(corpus):
         variable = corpus[name].variable
         if name in (DRAWS, IDENTITY) or (role := variable.attrs["role"]) not in ROLES:
             continue
         values, words = variable[places].values.tolist(), class_names(variable.attrs)
         told = [words.get(value, str(value)) for value in values] if words else _plain(values)
-        yield ExplorerColumn(name, _unit(variable.attrs), _text(variable.attrs.get("long_name", "")), role, told)
+        yield _quantity(name, variable.attrs.get("units", ""), variable.attrs.get("long_name", ""), role, told)
 
 
-def _features(
-    path: Path | str | None, corpus: xr.Dataset, places: np.ndarray, channel: str
-) -> Iterator[ExplorerColumn]:
+def _features(path: Path | str | None, corpus: xr.Dataset, places: np.ndarray, channel: str) -> Iterator[Quantity]:
     """Features of the chosen records; a table of several channels has this one among them."""
     if path is None:
         return
@@ -279,8 +272,27 @@ def _features(
     if channel not in of:
         raise CorpusError(f"{path}: has features of {', '.join(of)}, not of {channel}; choose one of them.")
     for feature in of[channel]["features"][places].transpose("feature", "record"):
-        unit, meaning = _unit({"units": feature["units"].item()}), _text(feature["long_name"].item())
-        yield ExplorerColumn(str(feature["feature"].item()), unit, meaning, "feature", _plain(feature.values.tolist()))
+        name, unit, meaning = (feature[key].item() for key in ("feature", "units", "long_name"))
+        yield _quantity(str(name), unit, meaning, "feature", _plain(feature.values.tolist()))
+
+
+def _quantity(name: str, unit: object, meaning: object, role: str, values: list[Any]) -> Quantity:
+    stored = _text("" if unit == "1" else unit)
+    shown, factor = shown_unit(name, stored)
+    numeric = not any(isinstance(value, str) for value in values)
+    ends = extent(np.array(values, float)) if numeric and stored else None
+    about = {
+        "name": name,
+        "unit": stored,
+        "meaning": _text(meaning),
+        "role": role,
+        "range": ends and range_text(name, ends[0], ends[-1], stored),
+        "numeric": numeric,
+        "shown_unit": shown,
+        "factor": factor,
+        "columns": {name: 1.0} | keys_of(name, stored),
+    }
+    return Quantity(about, values)
 
 
 def _plain(values: Sequence[Any]) -> list[Any]:
@@ -299,30 +311,24 @@ def _plain(values: Sequence[Any]) -> list[Any]:
     ]
 
 
-def _unit(attributes: Mapping[Any, Any]) -> str:
-    unit = _text(attributes.get("units", ""))
-    return "" if unit == "1" else unit
-
-
 def _text(value: object) -> str:
     """Text of a corpus, shortened."""
     return visible(str(value))[:LONGEST_TEXT]
 
 
-def _axes(known: Sequence[ExplorerColumn]) -> list[str]:
+def _axes(known: Sequence[Quantity]) -> list[str]:
     """Names of the quantities on the axes at first: two combs of fault lines, or an operating condition and a severity."""
-    varying = [one for one in known if len(set(one.values)) > 1]
-    combs = [name for name in COMBS.values() if name in {one.name for one in varying}]
+    varying = {each.about["name"]: each.about for each in known if len(set(each.values)) > 1}
+    combs = [name for name in COMBS.values() if name in varying]
     operating, labels = (
-        [one.name for one in varying if one.role == role and one.unit] for role in ("operating", "label")
+        [name for name, about in varying.items() if about["role"] == role and about["unit"]]
+        for role in ("operating", "label")
     )
     across, *others = [*operating, "record"]
     return combs[:2] if len(combs) > 1 else [across, [*labels, *others, "record"][0]]
 
 
-def _parts(
-    facts: Mapping[str, Any], known: Sequence[ExplorerColumn], blocks: Sequence[Sequence[str]]
-) -> dict[str, str]:
+def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence[Sequence[str]]) -> dict[str, str]:
     """Deflated parts of the page by their names, in the order in which they are needed."""
     about = {
         **facts,
@@ -339,7 +345,7 @@ def _parts(
             name: {"colour": FAULT_COLOURS[name], "lines": row.lines, "side": row.side if row.comb else None}
             for name, row in ALL_CLASSES.items()
         },
-        "quantities": [_told(one) for one in known],
+        "quantities": [each.about for each in known],
     }
     # each part is inflated by the page when it is needed
     parts = {"about": about} | {f"quantity{n}": one.values for n, one in enumerate(known)}
@@ -347,16 +353,6 @@ def _parts(
     for number, texts in enumerate(blocks):
         parts |= dict(zip((f"block{number}", f"sound{number}"), texts, strict=False))
     return parts
-
-
-def _told(column: ExplorerColumn) -> dict[str, Any]:
-    unit, factor = shown_unit(column.name, column.unit)
-    numeric = not any(isinstance(value, str) for value in column.values)
-    about = {name: getattr(column, name) for name in ("name", "unit", "meaning", "role")}
-    ends = extent(np.array(column.values, float)) if numeric and column.unit else None
-    about["range"] = ends and range_text(column.name, ends[0], ends[-1], column.unit)
-    columns = {column.name: 1.0} | keys_of(column.name, column.unit)
-    return about | {"numeric": numeric, "shown_unit": unit, "factor": factor, "columns": columns}
 
 
 def _packed(content: bytes) -> str:

@@ -82,7 +82,6 @@ TABLE = [
     ("generate {recipe}", "raceway generate: Missing option '-o' / '--output'; see raceway generate --help."),
     ("info", "raceway info: Missing argument 'DIR'"),
     ("info {corpus} --colour", "raceway info: No such option '--colour'"),
-    ("train {recipe} -o {new} --scheduler tcp://a:1", "--scheduler is for DIR: generate the corpus of the RECIPE with it first"),
     ("import skf {folder} -o {new}", "raceway import: No such command 'skf'"),
     # where results go
     ("generate {recipe} -o /proc/corpus", "/proc/corpus: could not be written"),

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from benchmarks.reference_table import both_lengths, identities
 from features import feature_table
 from features.baselines import Model
 from features.baselines.records import DEFAULT_GROUPS
 from features.baselines.references import with_energies
 from gen import generate
-from gen.recipe import read_recipe, shipped_recipes
+from gen.recipe import read_recipe
 from raceway import kept_models
 from raceway.cli import cli
 from raceway.commands.model_commands import warn_of_durations
@@ -25,10 +26,10 @@ pytestmark = pytest.mark.usefixtures("unpainted", "quick_estimators", "tables_on
 
 @pytest.fixture
 def trainings(tiny_table, tmp_path, monkeypatch):
-    """List that grows with each training; the table of the tiny corpus replaces that of every recipe."""
+    """List that grows with each training; the table of the tiny corpus replaces the shipped one."""
     made = []
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(kept_models, "recipe_tables", lambda recipe, *_: made.append(recipe) or [tiny_table])
+    monkeypatch.setattr(kept_models, "shipped_tables", lambda: made.append(1) or [tiny_table])
     return made
 
 
@@ -37,28 +38,24 @@ def call(*arguments):
 
 
 @pytest.mark.usefixtures("trainings")
-def test_the_name_tells_the_recipe_as_shipped_and_the_versions(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "domain_randomised").write_text("not the shipped recipe", encoding="utf-8")
+def test_the_name_tells_the_recipe_and_the_versions():
     name = kept_models.reference_path().name
     assert re.fullmatch(r"domain_randomised-[0-9a-f]{16}-raceway-.*-scikit-learn-.*\.skops", name)
     assert f"raceway-{version('raceway')}" in name
     assert name.endswith(f"scikit-learn-{version('scikit-learn')}.skops")
 
 
-def test_another_recipe_other_sources_or_another_library_make_another_model(tiny_recipe, monkeypatch):
+def test_other_sources_or_another_library_make_another_model(monkeypatch):
     names = {kept_models.reference_path().name}
     for place, changed in (
-        ("gen.recipe.shipped_recipes", lambda: {"domain_randomised": tiny_recipe}),
         ("features.baselines.score_sources.score_sources", lambda: "other"),
-        ("gen.generation.record_sources.sources_sha256", lambda: "other"),
         ("raceway.kept_models.hash_sources", lambda *_: "other"),
         ("raceway.kept_models.version", lambda name: "0.0" if name == "scipy" else version(name)),
     ):
         with monkeypatch.context() as patch:
             patch.setattr(place, changed)
             names.add(kept_models.reference_path().name)
-    assert len(names) == 6
+    assert len(names) == 4
 
 
 def test_the_reference_model_is_made_once_and_loaded_afterwards(trainings, tmp_path):
@@ -90,15 +87,6 @@ def test_two_that_need_it_at_once_train_it_once(trainings):
         thread.join()
     assert len(trainings) == 1
     Model.load(kept_models.reference_path())
-
-
-@pytest.mark.usefixtures("trainings")
-def test_train_takes_a_recipe(tiny_recipe, tmp_path):
-    written = call("train", tiny_recipe, "--estimator", "logistic_regression", "-o", tmp_path / "m.skops", "--json")
-    assert written.exit_code == 0, written.output
-    facts = json.loads(written.stdout)
-    assert facts["test"]["records"] == 12
-    assert Model.load(tmp_path / "m.skops").records == facts["records"]
 
 
 def test_evaluate_takes_the_reference_model_by_name_and_by_default(tiny_corpus, trainings, tmp_path, monkeypatch):
@@ -156,13 +144,14 @@ def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(tiny_corpus, tmp_
     result = call("evaluate", tiny_corpus)
     assert result.exit_code == 2
     assert "RACEWAY_CACHE" in result.stderr
-    assert "-o MODEL" in result.stderr
 
 
 def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_path):
     """Other processors may round the signals otherwise by a count or two of the converter."""
-    tables, labels = (kept_models.recipe_tables("domain_randomised"), ["fault", "rig", "specimen", "split", "duration"])
-    for table, recipe in zip(tables, kept_models.both_lengths(read_recipe("domain_randomised")), strict=True):
+    tables, labels = kept_models.shipped_tables(), ["fault", "rig", "specimen", "split", "duration"]
+    recipes = both_lengths(read_recipe("domain_randomised"))
+    assert tables[0].attrs["recipes"] == identities(recipes)
+    for table, recipe in zip(tables, recipes, strict=True):
         seconds = recipe.recording.duration_s
         fresh = feature_table(generate(recipe, tmp_path / f"{seconds}", records=4).path)
         names = fresh["feature"].values[np.isin(fresh["group"].values, with_energies(DEFAULT_GROUPS))]
@@ -171,15 +160,6 @@ def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_p
         stored = stored.sel(record=again["record"])
         assert (stored[labels] == again[labels]).all()
         np.testing.assert_allclose(stored["features"], again["features"].sel(feature=names), rtol=1e-3, atol=1e-3)
-
-
-def test_another_recipe_is_not_trained_on_the_shipped_table(tmp_path, monkeypatch):
-    monkeypatch.setattr(kept_models, "make_table", lambda *_: "made")
-    text = shipped_recipes()["domain_randomised"].read_text(encoding="utf-8")
-    (tmp_path / "same.yaml").write_text(f"# another comment\n{text}", encoding="utf-8")
-    (tmp_path / "other.yaml").write_text(text.replace("seed: 20260", "seed: 20261"), encoding="utf-8")
-    assert [table.sizes["record"] > 2900 for table in kept_models.recipe_tables(tmp_path / "same.yaml")] == [True, True]
-    assert kept_models.recipe_tables(tmp_path / "other.yaml") == ["made"]
 
 
 def test_a_second_table_trains_the_model_for_shorter_records():

@@ -21,8 +21,8 @@ from raceway.reports.explore import (
     LEVELS,
     SCALES,
     STEP_DB,
-    ExplorerColumn,
     _axes,
+    _quantity,
     reduce_record,
     write_explorer,
 )
@@ -75,7 +75,7 @@ def test_the_stored_spectra_have_their_peaks_at_the_planted_lines():
 
 def test_without_combs_the_axes_are_an_operating_condition_and_a_size_that_vary():
     def column(name, unit, role, *values):
-        return ExplorerColumn(name, unit, "", role, [*values])
+        return _quantity(name, unit, "", role, [*values])
 
     record, rate = column("record", "", "provenance", 0, 1), column("shaft_rate", "Hz", "operating", 20.0, 30.0)
     axial, still = column("axial_load", "N", "operating", 1.0, 2.0), column("load", "N", "operating", 5.0, 5.0)
