@@ -82,11 +82,6 @@ def envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatAr
     return amplitude_spectrum(np.sqrt(squared_modulus(z)), rate)
 
 
-def squared_envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [Hz] and amplitude spectrum of the squared envelope, else as `envelope_spectrum`."""
-    return amplitude_spectrum(squared_modulus(z), rate)
-
-
 def amplitude_spectrum(y: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz] and amplitude spectrum of real signals, else as `envelope_spectrum`."""
     bins = ZERO_PADDING * y.shape[-1] // 2 + 1
@@ -207,6 +202,18 @@ def running_median(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatA
     window.sort(axis=-1)  # np.median takes eight times as long
     half = MEDIAN_POINTS // 2
     return _join(0.5 * (window[..., half - 1] + window[..., half]), step, bins)
+
+
+def spectrum_over_floor(y: FloatArray, width: FloatArray, bins: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Real signals under a Hann window, their amplitude spectrum, and its `log_level` at the first ``bins`` bins, or fewer.
+
+    ``width`` is that of `log_level`.
+    """
+    # leakage of the mean and of strong lines would hide weak ones
+    weighted, end = weight_by_hann(y), ZERO_PADDING * y.shape[-1] // 2 + 1
+    # spectra are cut behind the window of the highest bin
+    spectrum = fine_amplitudes(weighted, min(bins + int(width.max()) + 4, end))
+    return weighted, spectrum, log_level(spectrum, width, min(bins, end))
 
 
 def log_level(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from features.signal.arguments import as_records, ascending, check_positive, like
-from features.signal.demodulation import analytic_band, envelope_spectrum, squared_envelope_spectrum
-from features.signal.rows import FloatArray
+from features.signal.demodulation import amplitude_spectrum, analytic_band
+from features.signal.rows import FloatArray, squared_modulus
 from features.signal.spectra import fourier_coefficients
 
 
@@ -39,5 +40,6 @@ def band_envelope_spectrum(
             f"band: {low:g}-{high:g} Hz holds no frequency of these records; give one below {fs / 2:g} Hz."
         )
     z = analytic_band(fourier_coefficients(records, fs, high), round(low * duration), round(high * duration))
-    frequencies, spectrum = (squared_envelope_spectrum if squared else envelope_spectrum)(z, z.shape[1] / duration)
+    power = squared_modulus(z)
+    frequencies, spectrum = amplitude_spectrum(power if squared else np.sqrt(power), z.shape[1] / duration)
     return frequencies, like(x, spectrum)

@@ -28,7 +28,7 @@ from scipy.fft import rfft
 from scipy.special import gammainccinv
 
 from features.signal.arguments import as_records, check_finite, check_positive, check_probability, like, of_each
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
+from features.signal.demodulation import ZERO_PADDING, analytic_band, spectrum_over_floor
 from features.signal.lines import COMB_HARMONICS, combs
 from features.signal.rows import ComplexArray, FloatArray, IntArray, brief, squared_modulus
 from features.signal.spectra import fourier_coefficients, hann_segments
@@ -178,10 +178,9 @@ def spectral_kurtosis(x: ArrayLike, fs: float, *, segment: float = 0.005) -> Spe
 
 def _comb_level(z: ComplexArray, duration: float, rate: FloatArray) -> FloatArray:
     """Comb of each record in the squared envelope spectrum of its analytic signal, shape (record,)."""
-    place, end = rate * duration * ZERO_PADDING, ZERO_PADDING * z.shape[-1] // 2 + 1
-    bins, width = int((COMB_HARMONICS + 1) * place.max()), FLOOR_RATES * place
-    spectrum = fine_amplitudes(weight_by_hann(squared_modulus(z)), min(bins + int(width.max()) + 4, end))
-    level = log_level(spectrum, width, min(bins, end))
+    place = rate * duration * ZERO_PADDING
+    bins = int((COMB_HARMONICS + 1) * place.max())
+    _, _, level = spectrum_over_floor(squared_modulus(z), FLOOR_RATES * place, bins)
     return combs(level, place[:, None])[:, 0]
 
 

@@ -10,6 +10,7 @@ phase wanders with them [1]_, and the line is smeared. The degree of cyclostatio
 """
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from scipy.fft import fft, fftfreq, ifft
 from scipy.signal.windows import tukey
 
@@ -62,18 +63,16 @@ def phase_wander(envelope: FloatArray, fs: float, frequency: FloatArray, half_wi
     beside = np.abs(fftfreq(n, 1 / fs) - frequency[:, None]) > half_width[:, None]
     coefficients[beside] = 0.0
     line = np.asarray(ifft(coefficients, axis=-1))
-    return _wander(np.unwrap(np.angle(line), axis=-1), np.abs(line) ** 2)
+    return np.array([_wander(*row) for row in zip(np.unwrap(np.angle(line)), np.abs(line) ** 2, strict=True)])
 
 
-def _wander(phase: FloatArray, weight: FloatArray) -> FloatArray:
-    """Weighted rms of the residuals of a weighted straight line through each phase, shape (record,)."""
-    total = weight.sum(axis=-1, keepdims=True)
-    total[total == 0] = np.nan
-    time = np.linspace(-1.0, 1.0, phase.shape[-1])
-    time = time - (weight * time).sum(axis=-1, keepdims=True) / total
-    phase = phase - (weight * phase).sum(axis=-1, keepdims=True) / total
-    slope = (weight * time * phase).sum(axis=-1, keepdims=True) / (weight * time**2).sum(axis=-1, keepdims=True)
-    return np.sqrt((weight * (phase - slope * time) ** 2).sum(axis=-1) / total[:, 0])
+def _wander(phase: FloatArray, weight: FloatArray) -> float:
+    """Weighted rms of the residuals of a weighted straight line through a phase, shape (time,)."""
+    if not weight.any():
+        return np.nan
+    time = np.linspace(-1.0, 1.0, len(phase))
+    line = Polynomial.fit(time, phase, 1, w=np.sqrt(weight))
+    return float(np.sqrt(np.average((phase - line(time)) ** 2, weights=weight)))
 
 
 def sideband_ratio(spectrum: FloatArray, line: np.ndarray, spacing: FloatArray, reach: int) -> FloatArray:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 from scipy.fft import irfft, rfft
 from scipy.linalg import solve_toeplitz
+from scipy.ndimage import uniform_filter1d
 
 from features.signal.arguments import as_records, check_positive, like
 from features.signal.rows import ComplexArray, FloatArray, hann_window, row_kernel, squared_modulus, total
@@ -61,7 +62,8 @@ def power_density(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[Floa
     n = x.shape[-1]
     length = min(n, max(2, round(segment * fs)))
     transforms = np.asarray(rfft(hann_segments(x, length), axis=-1))
-    density = _mean_power(transforms) * (2 / (fs * np.sum(hann_window(length, x.dtype) ** 2)))
+    power = squared_modulus(transforms.reshape(len(x), -1)).reshape(transforms.shape)
+    density = power.mean(axis=1) * (2 / (fs * np.sum(hann_window(length, x.dtype) ** 2)))
     density[:, 0] *= 0.5
     if length % 2 == 0:
         density[:, -1] *= 0.5
@@ -87,19 +89,6 @@ def _segments(x: FloatArray, window: FloatArray) -> FloatArray:
     return out
 
 
-@row_kernel
-def _mean_power(coefficients: ComplexArray) -> FloatArray:
-    """Mean squared modulus over the segments, shape (record, frequency)."""
-    out = np.zeros((coefficients.shape[0], coefficients.shape[2]), coefficients.real.dtype)
-    for row in range(coefficients.shape[0]):
-        for number in range(coefficients.shape[1]):
-            for k in range(coefficients.shape[2]):
-                c = coefficients[row, number, k]
-                out[row, k] += c.real**2 + c.imag**2
-    out /= coefficients.shape[1]
-    return out
-
-
 def band_energies(density: FloatArray, frequencies: FloatArray, edges: ArrayLike) -> FloatArray:
     """Energy [unit of x squared] between neighbouring edges of a power spectral density.
 
@@ -122,24 +111,10 @@ def band_energies(density: FloatArray, frequencies: FloatArray, edges: ArrayLike
     """
     resolution = frequencies[1] - frequencies[0]
     bins = np.clip(np.asarray(edges, dtype=float) / resolution + 0.5, 0, density.shape[1])
-    return _sums_between(density, np.broadcast_to(bins, (len(density), bins.shape[-1]))) * resolution
-
-
-@row_kernel
-def _sums_between(values: FloatArray, bins: FloatArray) -> FloatArray:
-    """Sums of values between fractional bins, shape (record, band)."""
-    out = np.empty((len(values), bins.shape[1] - 1))
-    for row in range(len(values)):
-        for band in range(out.shape[1]):
-            start, stop = bins[row, band], bins[row, band + 1]
-            first, last = int(start), int(stop)
-            area = total(values[row, first:last])
-            if first < values.shape[1]:
-                area -= (start - first) * values[row, first]
-            if last < values.shape[1]:
-                area += (stop - last) * values[row, last]
-            out[row, band] = area
-    return out
+    below, place = np.zeros((len(density), density.shape[1] + 1)), np.arange(density.shape[1] + 1)
+    np.cumsum(density, axis=1, out=below[:, 1:])
+    rows = zip(np.broadcast_to(bins, (len(density), bins.shape[-1])), below, strict=True)
+    return np.diff([np.interp(edge, place, row) for edge, row in rows]) * resolution
 
 
 def fourier_coefficients(x: FloatArray, fs: float, top: float) -> ComplexArray:
@@ -171,13 +146,10 @@ def fourier_coefficients(x: FloatArray, fs: float, top: float) -> ComplexArray:
 
 @lru_cache(8)
 def _taper(n: int, dtype: DTypeLike) -> FloatArray:
-    width = int(0.5 * TAPERED * n)
-    place = 2.0 * np.arange(n + 1) / TAPERED / n
-    rise, fall = -1 + place[: width + 1], -2.0 / TAPERED + 1 + place[n - width :]
-    ends = [0.5 * (1 + np.cos(np.pi * part)) for part in (rise, fall)]
+    place = np.arange(n)
+    within = np.minimum(place, n - place) / (0.5 * TAPERED * n)
     # a Tukey window, one between its ends: divided by its sum, it raised envelopes by 1 %
-    taper = np.concatenate([ends[0], np.ones(n - 1 - 2 * width), ends[1]])[:-1]
-    return (taper / n).astype(dtype)
+    return ((0.5 - 0.5 * np.cos(np.pi * np.minimum(within, 1))) / n).astype(dtype)
 
 
 def sine_windowed(x: FloatArray, length: int) -> ComplexArray:
@@ -218,7 +190,8 @@ def whiten_cepstrally(coefficients: ComplexArray) -> ComplexArray:
 
 def whiten_by_psd(coefficients: ComplexArray, width: int) -> ComplexArray:
     """Coefficients divided by the root of their mean power over ``width`` bins, shape (record, frequency)."""
-    return _divide(coefficients, _running_mean(squared_modulus(coefficients), max(1, width)))
+    mean = uniform_filter1d(squared_modulus(coefficients), max(1, width), axis=1, mode="mirror")
+    return _divide(coefficients, np.maximum(mean, 0))  # the rounding of its sum may leave less than nothing
 
 
 @row_kernel
@@ -230,22 +203,4 @@ def _divide(coefficients: ComplexArray, power: FloatArray) -> ComplexArray:
         least = power.dtype.type(FAINTEST * np.sqrt(total(power[row]) / power.shape[1]) + tiny)
         for k in range(power.shape[1]):
             out[row, k] = coefficients[row, k] * (1 / max(np.sqrt(power[row, k]), least))
-    return out
-
-
-@row_kernel
-def _running_mean(power: FloatArray, width: int) -> FloatArray:
-    """Running mean over ``width`` bins of spectra mirrored at both ends, shape (record, frequency)."""
-    n = power.shape[1]
-    place = np.abs(np.arange(n + width) - width // 2) % max(2 * (n - 1), 1)
-    place = np.minimum(place, 2 * (n - 1) - place)
-    mirrored = np.empty(n + width)
-    out = np.empty(power.shape, power.dtype)
-    for row in range(len(power)):
-        for i in range(n + width):
-            mirrored[i] = power[row, place[i]]
-        within = total(mirrored[:width])
-        for i in range(n):
-            out[row, i] = max(within, 0.0) / width
-            within += mirrored[i + width] - mirrored[i]
     return out

@@ -89,6 +89,7 @@ def near_label(tolerance: float = TOLERANCE) -> FloatArray:
     return 1 + candidates(tolerance + SHAFT_SHIFT * STEP)
 
 
+@row_kernel
 def levels_at(level: FloatArray, bins: FloatArray, factors: FloatArray) -> FloatArray:
     """Levels of lines at every candidate speed, shape (record, line, candidate).
 
@@ -102,11 +103,6 @@ def levels_at(level: FloatArray, bins: FloatArray, factors: FloatArray) -> Float
     factors
         Candidate speeds over the labelled one, shape (candidate,).
     """
-    return _interpolated(level, bins, factors)
-
-
-@row_kernel
-def _interpolated(level: FloatArray, bins: FloatArray, factors: FloatArray) -> FloatArray:
     out = np.zeros((*bins.shape, len(factors)), np.float32)
     for row in range(bins.shape[0]):
         for line in range(bins.shape[1]):

@@ -21,7 +21,7 @@ from itertools import combinations
 import numpy as np
 from scipy.fft import irfft, next_fast_len
 
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
+from features.signal.demodulation import ZERO_PADDING, analytic_band, spectrum_over_floor
 from features.signal.lines import FAMILIES, Orders, families, fitted_combs, highest_order, read_lines
 from features.signal.rows import ComplexArray, FloatArray, centre, squared_modulus
 from features.signal.shape import envelope_shape, moments, peaks, time_statistics
@@ -190,7 +190,6 @@ def levels_and_shape(
     (record, band, value); and bins per order, shape (record,).
     """
     resolution = 1 / (ZERO_PADDING * duration)
-    # spectra are cut behind the highest line that is looked up
     bins = int(np.max(highest * shaft_rate) / resolution) + 2
     # the floor spans some lines of the shaft, and at least a width that noise needs
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
@@ -199,11 +198,8 @@ def levels_and_shape(
     for number, band in enumerate(bands):
         z = analytic_band(band, 0, band.shape[-1])
         power = squared_modulus(z)
-        # leakage of the mean and of strong lines would hide weak ones
-        weighted = weight_by_hann(np.sqrt(power))
-        end = ZERO_PADDING * z.shape[-1] // 2 + 1
-        spectrum = fine_amplitudes(weighted, min(bins + int(width.max()) + 4, end))
-        level[:, number, :end] = log_level(spectrum, width, min(bins, end))
+        weighted, spectrum, over_floor = spectrum_over_floor(np.sqrt(power), width, bins)
+        level[:, number, : over_floor.shape[1]] = over_floor
         shape[:, number] = envelope_shape(power, weighted, spectrum, z.shape[-1] / duration, shaft_rate)
     return level, shape, shaft_rate / resolution
 

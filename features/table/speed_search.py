@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
+from features.signal.demodulation import ZERO_PADDING, analytic_band, spectrum_over_floor
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray, centre, squared_modulus
 from features.signal.spectra import fourier_coefficients
@@ -129,13 +129,6 @@ def level_spectra(x: FloatArray, fs: float, shaft_rate: FloatArray, top: float) 
     # the mean over narrow bands needs no choice of the band that a fault excites
     for band in bands:
         z = analytic_band(band, 0, band.shape[-1])
-        level = _spectrum_level(np.sqrt(squared_modulus(z)), width, bins)
+        _, _, level = spectrum_over_floor(np.sqrt(squared_modulus(z)), width, bins)
         mean[:, : level.shape[-1]] += level / len(bands)
-    return resolution, mean, _spectrum_level(x, width, bins)
-
-
-def _spectrum_level(y: FloatArray, width: FloatArray, bins: int) -> FloatArray:
-    """Log level of the amplitude spectra of real signals, shape (record, frequency), at most ``bins`` long."""
-    end = ZERO_PADDING * y.shape[-1] // 2 + 1
-    spectrum = fine_amplitudes(weight_by_hann(y), min(bins + int(width.max()) + 4, end))
-    return log_level(spectrum, width, min(bins, end))
+    return resolution, mean, spectrum_over_floor(x, width, bins)[2]

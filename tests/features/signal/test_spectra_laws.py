@@ -8,11 +8,11 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal import lfilter, welch
 
 from features.signal.demodulation import (
+    amplitude_spectrum,
     analytic_band,
     envelope_spectrum,
     fine_amplitudes,
     running_median,
-    squared_envelope_spectrum,
     weight_by_hann,
 )
 from features.signal.spectra import (
@@ -79,7 +79,7 @@ def modulated(depth, frequency, fs, n):
     x = (1 + depth * np.cos(2 * np.pi * frequency * t + 1)) * np.sin(2 * np.pi * 3000.0 * t)
     z = analytic_band(fourier_coefficients(x[None], fs, 5000.0), round(2000 * n / fs), round(4000 * n / fs))
     (frequencies, lines), (_, squared) = (
-        spectrum(z, z.shape[1] * fs / n) for spectrum in (envelope_spectrum, squared_envelope_spectrum)
+        amplitude_spectrum(y, z.shape[1] * fs / n) for y in (np.abs(z), np.abs(z) ** 2)
     )
     return lines[0], squared[0], frequencies[1]
 
