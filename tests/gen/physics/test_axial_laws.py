@@ -99,12 +99,6 @@ def test_rings_that_an_axial_load_cannot_hold_together_are_refused(angle):
     assert approach_of(machine, 1.01 * least, places) > 0
 
 
-def test_an_axial_load_needs_a_slanted_contact():
-    machine = slanted(0.0, 5e-6, (9.26e9, 1.5), 300.0)
-    with pytest.raises(ValueError, match=r"an axial load of 500 N needs a contact angle above 0\."):
-        approach_of(machine, 500.0, np.zeros(1))
-
-
 def test_the_axial_load_holds_against_the_heaviest_radial_load_of_a_profile(recipe_with):
     profile = {"kind": "ramp", "from_percent": 100, "to_percent": 300}
     changes = {"specimen.contact_angle_deg": 15, "operation.load_n": 300, "operation.axial_load_n": 200}

@@ -11,16 +11,13 @@
 import math
 from itertools import product
 
-import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.hertz import POINT_EXPONENT, effective_modulus, load_deflection_factor
+from gen.physics.hertz import effective_modulus
 from gen.physics.lubricant import (
     Film,
     Lubricant,
-    density,
     dynamic_viscosity,
     film,
     kinematic_viscosity,
@@ -34,46 +31,11 @@ from tests.paths import ROOT
 STEEL = effective_modulus(207e9, 0.3)
 ALPHA = 2e-8
 PAGE = (ROOT / "docs" / "model.md").read_text(encoding="utf-8")
-MINERAL_OILS = (  # [1], mPa s at 30, 60, 100 C
-    (38, 12.1, 5.3),
-    (153, 34, 9.1),
-    (250, 50.5, 12.6),
-    (810, 135, 26.8),
-    (18.6, 6.3, 2.4),
-    (45, 12, 3.9),
-    (107, 23.3, 6.4),
-    (122, 26.3, 7.3),
-    (171, 31, 7.5),
-    (30.7, 8.6, 3.1),
-    (165, 30.0, 6.8),
-    (310, 44.2, 9.4),
-    (2000, 180, 24),
-)
 
 
 def test_the_equation_reproduces_the_worked_example():
     oil = Lubricant(404e-6, 28e-6)
     assert kinematic_viscosity(oil, 60) == pytest.approx(132.126e-6, rel=1e-5)
-
-
-def test_measured_oils_lie_on_the_line_through_two_of_their_points():
-    """Twelve of thirteen within 6 percent; the first row falls less from 60 to 100 C than any other oil of the table."""
-
-    def through(at_30, at_100):
-        """The oil with these dynamic viscosities."""
-        some = Lubricant()._replace(viscosity_100=at_100 / density(Lubricant(), 100))
-        at_40 = brentq(
-            lambda nu: dynamic_viscosity(some._replace(viscosity_40=nu), 30) - at_30, 1.01 * some.viscosity_100, 0.1
-        )
-        return some._replace(viscosity_40=at_40)
-
-    errors = sorted(
-        abs(dynamic_viscosity(through(1e-3 * at_30, 1e-3 * at_100), 60) / (1e-3 * at_60) - 1)
-        for at_30, at_60, at_100 in MINERAL_OILS
-    )
-    assert np.median(errors) < 0.02
-    assert errors[-2] < 0.06
-    assert errors[-1] < 0.13
 
 
 # radius, ratio of curvatures (14 to 45 in the catalogue), load, and U
@@ -116,24 +78,6 @@ def test_a_sphere_near_a_plane_is_damped_as_cox_and_brenner_say():
     radius, viscosity, gap = 4e-3, 0.02, 1e-6
     expected = 6 * math.pi * viscosity * radius**2 / gap
     assert point_squeeze_damping((1 / radius, 1 / radius), viscosity, gap) == pytest.approx(expected, rel=1e-12)
-
-
-def test_a_ball_in_its_film_is_damped_as_practice_says_of_rolling_bearings():
-    """Krämer's rule: damping over stiffness of (0.25 to 2.5)e-5 s.
-
-    Over the ball bearings of the catalogue, 40 to 80 C, 10 to 60 Hz, 30 to 1000 N, the film of rigid surfaces gives a median
-    of 0.56e-5 s, 85 percent of it within the rule. Slow shafts, small loads and cold oil make it more, fast ones less; no case
-    is off by more than a factor of six.
-    """
-    ratios = []
-    balls = [bearing for bearing in CATALOGUE.values() if bearing.rolling_element == "ball"]
-    for bearing, celsius, rate, load in product(balls, (40, 60, 80), (10, 30, 60), (30, 100, 300, 1000)):
-        stiffness = POINT_EXPONENT * load_deflection_factor(bearing) ** (2 / 3) * load ** (1 / 3)
-        ratios.append(film(bearing, Lubricant(), celsius, rate, load).damping / stiffness)
-    assert np.median(ratios) == pytest.approx(0.56e-5, rel=0.1)
-    assert np.mean([0.25e-5 < ratio < 2.5e-5 for ratio in ratios]) > 0.8
-    assert min(ratios) > 0.25e-5 / 6
-    assert max(ratios) < 6 * 2.5e-5
 
 
 def film_of_the_page(celsius: float) -> Film:

@@ -69,7 +69,3 @@ def test_a_smooth_profile_has_continuous_first_and_second_derivatives(given_poin
 def test_the_mean_share_is_the_integral_over_the_record(smooth, given_points, duration):
     profile = Profile(given_points[0], given_points[1], smooth)
     assert mean_share(profile, duration) == pytest.approx(integral(profile, 0, duration) / duration, rel=1e-4)
-
-
-def test_without_a_profile_the_shaft_turns_at_its_rate():
-    assert mean_share(None, 3.0) == 1.0

@@ -16,7 +16,6 @@ from gen.physics.rotor import (
     highest_damping_rate,
     likely_stiffness,
     rest,
-    sensor_springs,
 )
 from tests.strategies import angles, machines
 
@@ -107,14 +106,6 @@ def test_no_damping_rate_exceeds_its_bound_nor_is_it_below_a_third_of_it(machine
     bound = highest_damping_rate(machine, N_BALLS)
     assert largest <= bound * (1 + 1e-12)
     assert bound <= 3 * largest * (1 + 1e-12)
-
-
-@given(st.floats(0.01, 1), st.floats(100, 1e4), st.floats(0.001, 0.3))
-def test_sensor_springs_ring_at_their_frequency_and_die_at_their_damping(mass, frequency, damping):
-    spring, damper = sensor_springs(mass, frequency, damping)
-    poles = np.roots([mass, damper, spring])
-    assert abs(poles[0]) == pytest.approx(2 * math.pi * frequency, rel=1e-9)
-    assert -poles[0].real / abs(poles[0]) == pytest.approx(damping, rel=1e-9)
 
 
 @given(machines(), angles, st.floats(0, 1))

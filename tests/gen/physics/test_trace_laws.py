@@ -53,27 +53,6 @@ def test_a_wide_ball_bridges_a_narrow_scratch(half, race):
     assert not path[np.abs(spall_positions(width)) >= lip].any()
 
 
-@given(surfaces, widths, races, st.floats(5e-6, 2e-4), st.floats(0, 1e-4))
-def test_a_contact_feels_the_area_of_the_path_and_nothing_higher(surface, width, race, footprint, more):
-    path, margin = ball_path(np.array(surface), width, BALL, race), footprint + more
-    found = contact_mean(path, width, footprint, margin)
-    area = np.trapezoid(path, spall_positions(width))
-    assert np.trapezoid(found, spall_positions(width + 2 * margin)) == pytest.approx(area, rel=2e-3, abs=1e-15)
-    assert found.max() <= path.max() * (1 + 1e-12)
-    assert found.min() >= 0
-
-
-@pytest.mark.parametrize("site", RACES)
-def test_a_narrower_contact_feels_more_of_the_path_and_in_the_end_all_of_it(site):
-    width = 0.5e-3
-    path = ball_path(np.full(9, 1e-4), width, BALL, RACES[site])
-    contacts = (2e-4, 1e-4, 5e-5, 1e-5, 1e-7)
-    peaks = [contact_mean(path, width, footprint, footprint).max() for footprint in contacts]
-    assert peaks == sorted(peaks)
-    assert peaks[0] < 0.75 * path.max()
-    np.testing.assert_allclose(contact_mean(path, width, 1e-8, 0.0), path, rtol=0, atol=1e-3 * path.max())
-
-
 def test_under_a_contact_the_pressure_weighs_as_half_an_ellipse():
     """Over a step the contact feels the share of its load that has crossed it: 1/2 + (u sqrt(1 - u^2) + asin u) / pi."""
     width, footprint = 2e-3, 1e-4

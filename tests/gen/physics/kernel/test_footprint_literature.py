@@ -6,13 +6,9 @@ Closed forms are those of K. L. Johnson, *Contact Mechanics*, Cambridge Universi
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from scipy.special import ellipk
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import effective_modulus, ellipticity, footprints, race_curvatures, race_factors
-from tests.strategies import bearings
 
 LOAD = 200.0  # of one ball of a 6205 [N]
 # half the length and half the width of the ellipse [m], largest pressure [Pa], approach [m]; model study, three figures at most
@@ -30,17 +26,6 @@ def test_the_ellipse_of_a_6205_is_that_of_the_model_study(race):
     assert length == pytest.approx(long, abs=0.5e-5)
     assert 1.5 * LOAD / (math.pi * length * found) == pytest.approx(pressure, abs=0.5e7)
     assert (LOAD / race_factors(bearing)[race]) ** (2 / 3) == pytest.approx(approach, abs=0.5e-8)
-
-
-@given(bearings(), st.floats(1, 1e4))
-def test_half_widths_and_load_deflection_factors_belong_to_one_ellipse(bearing, load):
-    """Approach of the bodies 3 Q K(m) / (2 pi a E*), a the long semi-axis: two ways through the elliptic integrals, one contact."""
-    for width, curvatures, factor in zip(
-        footprints(bearing, load), race_curvatures(bearing), race_factors(bearing), strict=True
-    ):
-        ratio = ellipticity(*curvatures)
-        approach = 3 * load * ellipk(1 - ratio**-2) / (2 * math.pi * ratio * width * STEEL / 2)
-        assert approach == pytest.approx((load / factor) ** (2 / 3), rel=1e-9)
 
 
 def test_the_contact_of_a_roller_is_the_strip_of_two_cylinders():

@@ -8,9 +8,7 @@ import pytest
 from gen.physics.hertz import LINE_EXPONENT
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
-from gen.physics.kernel.drop import PROFILES
-from gen.physics.kernel.layout import PICKUPS, Angle, Drive, Param, Site, SpallRow
-from gen.physics.kernel_input import Spall, Turning, Waviness, at_rest
+from gen.physics.kernel.layout import PICKUPS, Param
 from tests.lanes import march_batch
 from tests.strategies import RIG, ball_waves, race_waves, record
 
@@ -33,21 +31,6 @@ SPALLS = (
     Spall("outer", 2e-3, 5e-6, -1.4, profile="table", table=(RAMP,), scatter=0.2, seed=2),
     Spall("ball", 2e-3, 2e-6, 0.5, ball=0, scatter=0.2, seed=3),
 )
-# rows that count or name something, and REACH, which may be larger than it must be: another value that matters
-OTHER = {
-    Drive.LATE_BALL: 5,
-    Drive.KNOCK_SEED: 77,
-    SpallRow.REACH: -1.0,
-    SpallRow.SITE: Site.OUTER,
-    SpallRow.CARRIER: 1,
-    SpallRow.PROFILE: PROFILES.index("rectangular"),
-    SpallRow.TABLE: 0,
-    SpallRow.SEED: 4,
-    Drive.WALK_SEED: 78,
-    Drive.AXIS_JUMPS: 0.0,
-    Drive.AXIS_ANGLE: -2.0,
-    Drive.AXIS_SEED: 79,
-}
 
 
 @pytest.fixture(scope="module")
@@ -80,57 +63,3 @@ def test_lanes_behind_the_vector_of_the_last_record_are_not_computed(laid_out):
     first, *_, last = march_batch(*laid_out, N_KNOTS, N_STEPS, KNOT)  # one record, and LANES trips
     assert (first.states[-1] != first.states[0]).any()
     assert (last.states == last.states[0]).all()
-
-
-def changed(values, row):
-    """Another value of a row."""
-    return OTHER.get(row, values * 1.02 + (values == 0) * 0.02)
-
-
-def rows_without_effect(laid_out, name, rows, place=0, n_rows=None):
-    """Names of the rows of array ``name`` of which another value does not change the motion.
-
-    Lane 0 keeps its values; every other lane has one row changed.
-    """
-    shape, batch = laid_out
-    rows, without_effect = list(rows), []
-    for first in range(0, len(rows), LANES - 1):
-        array = getattr(batch, name).copy()
-        by_row = array.reshape(-1, LANES)
-        some = rows[first : first + LANES - 1]
-        for lane, row in enumerate(some, start=1):
-            at = place * (n_rows or 0) + row
-            by_row[at, lane] = changed(by_row[at, lane], row)
-        trips = march_batch(shape, batch._replace(**{"n_records": LANES, name: array}), N_KNOTS, N_STEPS, KNOT)
-        without_effect += [
-            row.name
-            for lane, row in enumerate(some, start=1)
-            if np.array_equal(trips[lane].accelerations, trips[0].accelerations)
-        ]
-    return without_effect
-
-
-def test_every_constant_of_a_machine_is_read(laid_out):
-    constants = [row for row in Param if row not in HELD]
-    # the steady load is among the rows that hold until the next knot here
-    assert rows_without_effect(laid_out, "params", constants) == []
-
-
-def test_every_row_that_drives_the_motion_is_read(laid_out):
-    drawn_at_the_first_knot = {Drive.WALK_NOW, Drive.AXIS_TURN, Drive.AXIS_TILT, Drive.AXIS_SHIFT}
-    assert rows_without_effect(laid_out, "drive", [row for row in Drive if row not in drawn_at_the_first_knot]) == []
-
-
-def test_every_angle_is_read(laid_out):
-    assert rows_without_effect(laid_out, "angles", Angle) == []
-
-
-def test_every_row_of_a_spall_is_read(laid_out):
-    """A row need not matter for every kind of spall: depth does not for a table, nor a table for an edge."""
-    kinds = [rows_without_effect(laid_out, "spalls", SpallRow, place, len(SpallRow)) for place in range(3)]
-    assert set.intersection(*map(set, kinds)) == set()
-
-
-def test_sites_and_profiles_have_one_number_each():
-    assert len({*Site}) == 4
-    assert len(set(PROFILES)) == len(PROFILES)

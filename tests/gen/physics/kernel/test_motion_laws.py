@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given, settings
 
 from gen.physics.bearing import slipping_orders
-from gen.physics.kernel.layout import SPEED_TERMS
-from gen.physics.kernel_input import Turning
+from gen.physics.inputs import Turning
 from tests.lanes import march_lanes
-from tests.reference import process, turned
+from tests.reference import turned
 from tests.strategies import RIG, record, wandering_records
 
 KNOT = 1 / 12_000
@@ -39,11 +38,3 @@ def test_the_distances_between_successive_balls_at_the_outer_race_are_independen
         assert steps.std() == pytest.approx(walk * apart * np.sqrt(balls), rel=0.1)
         follower = np.corrcoef(steps[:, :-1].ravel(), steps[:, 1:].ravel())[0, 1]
         assert abs(follower) < 0.15
-
-
-@settings(max_examples=15)
-@given(wandering_records())
-def test_the_processes_have_the_rms_they_were_drawn_with(drawn):
-    far_apart = np.random.default_rng(0).uniform(0, 1e5, 20_000)
-    values = process(drawn, 0, SPEED_TERMS, far_apart)
-    assert np.sqrt(np.mean(values**2)) == pytest.approx(1.0, rel=0.05)

@@ -12,7 +12,6 @@ from gen.physics.extent import TABLE_POINTS
 from gen.physics.kernel.drop import GEOMETRIC, PROFILES, RECTANGULAR, TABLE, drop
 from gen.physics.kernel.spalls import tabulated
 from gen.simulation.damage import cached_drop
-from tests.reference import rigid_path
 from tests.strategies import depths
 
 every_profile = pytest.mark.parametrize("profile", range(TABLE), ids=PROFILES[:TABLE])  # that :func:`drop` knows
@@ -41,12 +40,6 @@ def test_a_ball_drops_no_deeper_than_the_spall_and_alike_on_both_sides(profile, 
     found = fall(profile, share * half, half, race, depth)
     assert 0.0 <= found <= depth * (1 + 1e-12)
     assert fall(profile, -share * half, half, race, depth) == found
-
-
-@given(shares, st.floats(1e-3, 0.16), races, depths)
-def test_the_geometric_drop_is_the_path_of_a_rigid_ball_over_two_edges(share, half, race, depth):
-    expected = rigid_path(share * half, half, abs(race), BALL, race, depth)
-    assert fall(GEOMETRIC, share * half, half, race, depth) == pytest.approx(expected, rel=1e-9, abs=1e-15)
 
 
 @every_profile
