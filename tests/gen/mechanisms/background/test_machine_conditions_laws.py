@@ -64,16 +64,6 @@ def test_the_condition_belongs_to_the_machine_and_not_to_the_class_of_its_bearin
     assert {np.argmax(one.level_db) for one in rubbing} == {1}
 
 
-def test_a_section_of_conditions_moves_no_other_draw(recipe_with):
-    plain = draw_scenarios(recipe_with(), 0, 5)
-    entries = [{"kind": "belt", "order": 0.4, "count": 3}]
-    found = draw_scenarios(recipe_with({"machine_conditions": {"probability": 1, "entries": entries}}), 0, 5)
-    for one, other in zip(plain, found, strict=True):
-        assert kind_of(other) == "belt"
-        origin = other.origin.model_copy(update={"corpus": one.origin.corpus})
-        assert other.edited(machine_conditions=None, origin=origin) == one
-
-
 def test_no_line_aliases_in_a_record_whose_speed_rises():
     """A line at half the sample rate or above would come back as one of no order of the shaft."""
     turns = np.cumsum(np.linspace(20.0, 60.0, N)) / 12_000

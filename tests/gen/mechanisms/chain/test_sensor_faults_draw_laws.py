@@ -21,35 +21,6 @@ def faults_of(scenario):
     return {fault.place: fault for fault in mechanisms_of(scenario.recipe.sensor_faults)}
 
 
-def without_sensor_faults(scenario):
-    """The scenario without its sensor faults and its gear, and without the recipe of its corpus."""
-    recipe = scenario.recipe
-    return scenario.edited(
-        sensor_faults=type(recipe.sensor_faults)(),
-        background=recipe.background.model_copy(update={"gear_mesh": None}),
-        origin=scenario.origin.model_copy(update={"corpus": "0"}),
-    )
-
-
-@pytest.mark.parametrize("sampling", ["random", "sobol", "halton"])
-def test_sensor_faults_and_gears_move_no_other_drawn_value(recipe_with, sampling):
-    changes = {"corpus.sampling": sampling}
-    clean = draw_scenarios(recipe_with(changes))
-    dirty = drawn(recipe_with, SENSOR_FAULTS, **changes, **{"background.gear_mesh": GEAR_MESH})
-    assert not any(faults_of(one) or one.recipe.background.gear_mesh for one in clean)
-    assert all(faults_of(one).keys() == SENSOR_FAULTS.keys() and one.recipe.background.gear_mesh for one in dirty)
-    assert [without_sensor_faults(scenario) for scenario in dirty] == [without_sensor_faults(one) for one in clean]
-
-
-@pytest.mark.parametrize("name", SENSOR_FAULTS)
-def test_a_sensor_fault_that_is_left_out_moves_no_other(recipe_with, name):
-    rest = {key: section for key, section in rarely(SENSOR_FAULTS, 0.5).items() if key != name}
-    for one, other in zip(drawn(recipe_with, rarely(SENSOR_FAULTS, 0.5)), drawn(recipe_with, rest), strict=True):
-        whole = faults_of(one)
-        whole.pop(name, None)
-        assert faults_of(other) == whole
-
-
 def test_a_sensor_fault_does_not_know_the_fault_of_the_bearing(recipe_with):
     sections, inner = rarely(SENSOR_FAULTS, 0.5), [{"kind": "inner", "width_mm": 0.5}]
     for one, other in zip(drawn(recipe_with, sections), drawn(recipe_with, sections, faults=inner), strict=True):
@@ -116,12 +87,3 @@ def test_sensor_faults_of_an_installation_are_the_same_in_all_records_of_a_rig_b
 def test_a_sensor_fault_without_effect_or_place_is_refused(recipe_with, path, value, sentence):
     with pytest.raises(RecipeError, match=sentence):
         recipe_with({"sensor_faults": {name: dict(section) for name, section in SENSOR_FAULTS.items()}, path: value})
-
-
-def test_an_amplifier_before_no_converter_may_have_any_limit(recipe_with):
-    recipe_with(
-        {
-            "recording.converter": {"kind": "float32"},
-            "sensor_faults": {"saturation": {**SENSOR_FAULTS["saturation"], "limit_m_s2": 9000}},
-        }
-    )
