@@ -43,10 +43,6 @@ def test_the_converter_rounds_in_steps_of_exactly_the_stored_scale_factor(recipe
     assert float(scale) == pytest.approx(full_scale / LARGEST_COUNT, rel=6e-8)
 
 
-def test_counts_at_the_default_full_scale_are_those_of_packing_in_double_precision():
-    assert np.float32(1 / float(np.float32(COUNT))) == np.float32(1 / COUNT)
-
-
 def test_without_a_converter_nothing_is_rounded_or_clipped(recipe_with):
     recipe = recipe_with(FLOAT | PLAIN)
     moved = response(recipe, 1, lambda time: 1e5 * np.cos(2 * np.pi * 500 * time))
@@ -106,9 +102,3 @@ def test_the_ratio_is_not_a_number_where_there_is_nothing_to_compare(recipe_with
     found = measured_tone(recipe_with, amplitude, background, PLAIN | converter)
     assert np.isnan(found.snr[0])
     assert found.signal.any() == (background > 0 or (bool(converter) and amplitude > 0))
-
-
-def test_a_quiet_bearing_in_a_background_has_the_ratio_it_has(recipe_with):
-    """A signal of a tenth of a count is still in the record, because the background acts as dither."""
-    found = measured_tone(recipe_with, 0.1 * COUNT, 1.0)
-    assert found.snr[0] == pytest.approx(20 * np.log10(0.1 * COUNT / np.sqrt(2)), abs=0.3)

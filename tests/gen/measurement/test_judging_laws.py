@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import fftconvolve
 
 from gen.measurement import judging
-from gen.measurement.judging import FALSE_ALARM, bands_of, judges_of
+from gen.measurement.judging import FALSE_ALARM, judges_of
 from gen.measurement.mixing import Parts
 
 FS, N, RATE, ORDER = 12_000, 6000, 30.0, 3.58
@@ -183,8 +183,3 @@ def test_a_judge_tells_for_any_gains_what_a_judge_of_the_scaled_parts_tells():
         told.append((judge((float(b), float(n))), scaled((1.0, 1.0))))
     assert {one == other for one, other in told} == {True}
     assert len(set(told)) == 2
-
-
-def test_the_bands_are_all_frequencies_and_their_quarters():
-    assert bands_of(N) == [(1, 3000), (1, 750), (750, 1500), (1500, 2250), (2250, 3000)]
-    assert bands_of(64) == [(1, 32)]
