@@ -8,7 +8,6 @@ of the small recipe.
 import numpy as np
 import pytest
 
-import gen
 from features.signal.demodulation import analytic_band, envelope_spectrum
 from features.signal.spectra import fourier_coefficients
 from gen.physics.bearing import orders
@@ -142,14 +141,3 @@ def test_one_percent_of_slip_moves_the_lines_of_the_races_as_the_cage_lags(recip
     moved = dict(envelopes(recipe_with(STEADY | slipping | {"faults": races})))
     assert moved["outer"].strongest(ORDERS.bpfo) / ORDERS.bpfo == pytest.approx(0.990, rel=2e-3)
     assert moved["inner"].strongest(ORDERS.bpfi) / ORDERS.bpfi == pytest.approx(1.0065, rel=2e-3)
-
-
-def test_a_wider_spall_is_louder(recipe_with):
-    widths = [0.18, 0.36, 0.53, 1]
-    ladder = {"faults": [{"kind": "outer", "width_mm": gen.grid(*widths)}], "corpus.rigs": 3}
-    recipe = recipe_with(STEADY | ladder)
-    scenarios = draw_scenarios(recipe)
-    loudness = accelerations_of(simulate(scenarios)).std(axis=(1, 2)).reshape(3, 4)
-    drawn_widths = np.array([scenario.spalls[0].width for scenario in scenarios]).reshape(3, 4)
-    np.testing.assert_allclose(drawn_widths, 1e-3 * np.tile(widths, (3, 1)))
-    assert (np.diff(np.median(loudness, axis=0)) > 0).all()

@@ -42,15 +42,6 @@ def test_a_loose_housing_lies_at_one_end_of_its_play(load_x, load_y, play):
 
 
 @law
-@given(angles, st.floats(10, 60))
-def test_a_support_without_play_is_a_tight_one(cage, shaft_rate):
-    motion = Turning(shaft_rate, cage_angle=cage, unbalance=2.75e-5)
-    loose, none = scheduled(RIG._replace(looseness=1e-5), motion), scheduled(RIG, motion)
-    tight = march_lanes([record(RIG, motion)], 240, 8, KNOT)[0]
-    assert np.array_equal(march_lanes([loose, none], 240, 8, KNOT)[1].states, tight.states)
-
-
-@law
 @given(st.floats(1000, 50_000), st.floats(1, 100), angles, st.floats(0.3, 3.0))
 def test_a_cage_knocks_once_a_turn_with_the_momentum_of_a_half_sine(knots_per_second, strength, place, ahead):
     """On a housing without support; each knock scatters independently."""

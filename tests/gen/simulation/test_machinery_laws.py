@@ -100,14 +100,6 @@ def test_rollers_push_back_by_the_power_ten_ninths(record_of, kind):
     assert shape.balls == 13
 
 
-@pytest.mark.parametrize("kind", ROLLERS)
-def test_oil_films_and_wide_contacts_do_for_rollers_too(record_of, kind):
-    oiled = OIL | {"contact.footprint": "hertz", "faults": [{"kind": "outer", "width_mm": 0.5}]}
-    dry, found = record_of({"bearing": ROLLERS[kind]}), record_of({"bearing": ROLLERS[kind]} | oiled)
-    assert found.machine.half_clearance < dry.machine.half_clearance
-    assert found.spalls[0].profile == "table"
-
-
 @pytest.mark.parametrize("site", ["inner", "outer", "ball"])
 @pytest.mark.parametrize("footprint", ["point", "hertz"])
 def test_outer_spalls_alone_count_from_the_load_in_the_kernel_and_in_the_labels(recipe_with, site, footprint):
@@ -122,32 +114,12 @@ def test_outer_spalls_alone_count_from_the_load_in_the_kernel_and_in_the_labels(
     assert labels(recipe)["angle"].values == pytest.approx(expected)
 
 
-def test_a_wide_contact_feels_a_spall_from_further_off_and_less_of_it(record_of):
-    changes = {"faults": [{"kind": "inner", "width_mm": 0.5}], "operation.load_n": 800}
-    wide = record_of(changes | {"contact.footprint": "hertz"}).spalls[0]
-    narrow = record_of(changes | {"faults": [{"kind": "inner", "width_mm": 0.5, "roughness_um": 1e-6}]}).spalls[0]
-    assert narrow.width == 0.5e-3 < wide.width < 1.0e-3
-    assert (wide.profile, narrow.profile) == ("table", "table")
-    assert 0 < max(wide.table[0]) < max(narrow.table[0])
-
-
-def test_the_heaviest_ball_carries_five_times_its_even_share(recipe_with):
-    scenario = draw_scenarios(recipe_with({"operation.load_n": 900}), 0, 1)[0]
-    assert heaviest_ball_load(scenario) == pytest.approx(500)
-
-
 @means
 def test_labels_of_load_and_shaft_rate_follow_the_mean_of_their_profile(recipe_with, profile, mean):
     steady = {"operation.shaft_rpm": 1800, "operation.load_n": 400}
     found = labels(recipe_with(steady | {"operation.speed_profile": profile, "operation.load_profile": profile}))
     assert found["shaft_rate"].values == pytest.approx(30 * mean, rel=1e-4)
     assert found["load"].values == pytest.approx(400 * mean, rel=1e-4)
-
-
-def test_the_rates_at_both_ends_of_a_run_up_are_labelled(recipe_with):
-    found = labels(recipe_with({"operation.shaft_rpm": 1800, "operation.speed_profile": RUN_UP}))
-    assert found["first_shaft_rate"].values == pytest.approx(12)
-    assert found["last_shaft_rate"].values == pytest.approx(39)
 
 
 @means
@@ -176,13 +148,6 @@ def test_a_profile_starts_with_the_record_and_not_with_its_settling(record_of):
     assert record.schedule[start + round(0.05 * FS), 0] == pytest.approx(0.85, abs=0.01)
 
 
-def test_a_broken_cage_knocks_where_its_pocket_has_left_the_load_zone(record_of):
-    """The cage turns in the positive direction, so a pocket that has left the load zone is at a larger angle than the load."""
-    for angle in (-90, 20):
-        changes = {"faults": [{"kind": "cage"}], "machine.load_angle_deg": angle}
-        assert record_of(changes).turning.knock_angle == pytest.approx(math.radians(angle + 60))
-
-
 def test_a_wandering_load_has_its_rms_and_never_pulls_the_other_way(record_of):
     gentle, wild = (
         record_of({"operation.load_wander_percent": wander, "recording.duration_s": 60}).schedule[:, 1]
@@ -200,10 +165,6 @@ def test_a_sum_of_cosines_is_the_sum_of_its_cosines(n, terms, start, step, seed)
     expected = np.cos(np.outer(times, rates) + phases).sum(axis=1)
     rounding = 4 * np.finfo(float).eps * (1000 * np.abs(times).max() + 7)  # of the argument of a cosine
     np.testing.assert_allclose(cosine_sum(times, rates, phases), expected, rtol=0, atol=(1 + terms) * rounding)
-
-
-def test_steady_records_have_no_schedule(record_of):
-    assert record_of({}).schedule.shape == (0, 2)
 
 
 def test_waviness_that_would_fold_down_is_left_out(record_of):

@@ -10,10 +10,10 @@ from gen.generation.undetected import made_from
 from gen.measurement.measure import Measured
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import highest_angular_frequency
-from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens
+from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
 from gen.simulation.steps import COARSEST_STEP, FINE_STEP
-from gen.support.errors import RecipeError, SimulationError
+from gen.support.errors import SimulationError
 from tests.lanes import march_lanes
 from tests.reference import contact_stiffness, contacts, slow_motion
 from tests.responses import input_of
@@ -125,31 +125,6 @@ def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
     assert faults.index("inner", failed + 1) in [made[place] for place in tried]
 
 
-@pytest.mark.parametrize("records", [None, 21, 3, 1])
-@pytest.mark.parametrize("specimens", [2, 4, 5])
-def test_the_first_specimen_of_each_class_is_the_first_one_drawn_with_it(recipe_with, specimens, records):
-    recipe = recipe_with({"corpus.specimens_per_rig": specimens, "records": records})
-    drawn = [(scenario.fault, scenario.origin.specimen) for scenario in draw_scenarios(recipe)]
-    assert first_specimens(recipe) == dict(reversed(drawn))
-
-
-def test_rigs_beyond_the_first_specimens_of_all_classes_are_not_looked_at(recipe_with, monkeypatch):
-    seen = []
-
-    def looked_at(recipe, rig):
-        seen.append(rig)
-        return fault_of_each_specimen(recipe, rig)
-
-    monkeypatch.setattr("gen.scenarios.classes.fault_of_each_specimen", looked_at)
-    assert first_specimens(recipe_with({"corpus.rigs": 1000, "seed": 12345})).keys() == set(FAULTS[:4])
-    assert seen == [0]
-
-
-def test_a_part_of_which_nothing_is_to_be_checked_is_not_run_again(recipe_with):
-    recipe = recipe_with({"storage.records_per_part": 2})
-    assert np.isnan(step_errors_of(recipe, range(10, 12))).all()
-
-
 def test_chosen_steps_follow_the_stiffest_contacts_and_no_finer_than_they_need(checked):
     assert all(FINE_STEP / 8 < run.step_phase < FINE_STEP for run in checked[2])
 
@@ -200,32 +175,7 @@ def test_as_many_steps_as_the_sentence_asks_for_are_enough(recipe_with):
         assert run.step_phase < 1.1 * FINE_STEP
 
 
-def test_records_left_out_are_not_tried(recipe_with):
-    errors = step_errors_of(recipe_with(ROUGH), range(12))
-    assert errors.shape == (8,)
-    assert np.isfinite(errors).any()
-
-
 def test_a_shaft_that_turns_too_far_between_two_samples_is_refused(recipe_with):
     recipe = recipe_with({"operation.shaft_rpm": 9000, "recording.sample_rate_hz": 1000})
     with pytest.raises(SimulationError, match=r"^record 0: its shaft turns 54 degrees per sample; raise .* to 1347\.$"):
         simulate(draw_scenarios(recipe, 0, 1))
-
-
-def test_oil_too_thick_for_the_formulas_leaves_the_record_out(recipe_with):
-    thick = {"contact": {"lubricant": {"viscosity_40_mm2_s": 1000}}, "operation.temperature_celsius": -20}
-    recipe = recipe_with(thick)
-    (run,) = simulate(draw_scenarios(recipe, 0, 1))
-    assert "um is above the 10 um for which film formulas hold; take thinner or warmer oil." in run.failure
-
-
-def test_a_contact_too_steep_for_a_radial_bearing_is_refused(recipe_with):
-    bearing = {
-        "kind": "geometry",
-        "n_balls": 9,
-        "pitch_diameter_mm": 39,
-        "ball_diameter_mm": 7.8,
-        "contact_angle_deg": 40,
-    }
-    with pytest.raises(RecipeError, match=r"^specimen 0: a contact angle of 60 degrees"):
-        draw_scenarios(recipe_with({"bearing": bearing, "specimen.contact_angle_deg": 20}), 0, 1)
