@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_records, first_specimens
 from gen.scenarios.classes import class_shares
 
@@ -53,27 +52,6 @@ def test_over_the_rigs_the_classes_have_the_shares_of_their_weights(recipe_with,
     assert np.abs(excess).max() < 12
 
 
-@pytest.mark.parametrize("specimens", [1, 3])
-def test_over_the_seeds_the_classes_of_a_rig_have_the_shares_of_their_weights(recipe_with, specimens):
-    weights = (2, 1, 0.6, 0.4)
-    seeds_tried = 3000
-    recipe = recipe_with({"corpus.specimens_per_rig": specimens, "faults": faults(weights)})
-    recipes = (recipe.model_copy(update={"seed": seed}) for seed in range(seeds_tried))
-    counts = sum(counted(recipe, 1)[0] for recipe in recipes)
-    np.testing.assert_allclose(counts / seeds_tried, specimens * np.array(weights) / 4, atol=0.04)  # 4 sigma
-
-
-@pytest.mark.parametrize("specimens", [1, 3])
-def test_the_shipped_training_recipe_has_equal_classes_whatever_its_specimens_per_rig(specimens):
-    """Independent draws would leave an excess of 24 to 39 (standard deviation) after 3,000 to 8,000 specimens."""
-    recipe = read_recipe("domain_randomised")
-    corpus = recipe.corpus.model_copy(update={"specimens_per_rig": specimens, "rigs": 1000})
-    for seed in range(3):
-        excess = counted(recipe.model_copy(update={"corpus": corpus, "seed": seed}), 1000).sum(axis=0) - 250 * specimens
-        assert np.abs(excess[0]) < 5
-        assert np.abs(excess).max() < 12
-
-
 def test_healthy_and_faulty_classes_meet_on_a_rig_in_every_combination(recipe_with):
     recipe = recipe_with({"corpus.specimens_per_rig": 2})
     pairs = Counter(tuple(sorted(fault_of_each_specimen(recipe, rig))) for rig in range(200))
@@ -86,15 +64,6 @@ def test_healthy_and_faulty_classes_meet_on_a_rig_in_every_combination(recipe_wi
         ("ball", "outer"),
     }
     assert min(pairs.values()) > 20
-
-
-@pytest.mark.parametrize("by", ["specimen", "rig"])
-def test_rigs_of_a_single_specimen_have_every_class_on_both_sides_of_the_split(recipe_with, by):
-    corpus = {"rigs": 300, "specimens_per_rig": 1, "records_per_specimen": 1, "split": {"by": by, "test": 0.25}}
-    sides = Counter((one.fault, one.origin.split) for one in draw_scenarios(recipe_with({"corpus": corpus})))
-    for kind in CLASSES:
-        assert sides[kind, "test"] == pytest.approx(300 / 16, abs=12)
-        assert sides[kind, "train"] == pytest.approx(3 * 300 / 16, abs=12)
 
 
 @given(seeds, st.integers(1, 5), weights_of_all, st.sampled_from([(0, 1), (0, 0.25, 0.5, 1), (0.5, 1)]))

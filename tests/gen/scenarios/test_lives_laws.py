@@ -49,12 +49,6 @@ def test_half_the_cadence_changes_no_remaining_life(recipe_with, lives):
             assert known[one.origin.life.age] == pytest.approx(one.origin.life.rul, rel=1e-9)
 
 
-def test_the_times_of_snapshots_tell_nothing_of_the_end(lives):
-    longest = max((states(of, "age") for of in lives.values()), key=len)
-    for of in lives.values():
-        np.testing.assert_array_equal(states(of, "age"), longest[: len(of)])
-
-
 def test_a_spall_stays_itself_while_it_grows(lives):
     for of in lives.values():
         lengths = states(of, "spall_length")

@@ -5,7 +5,6 @@ from collections import Counter
 import numpy as np
 import pytest
 
-import gen
 from features.baselines.splits import grouped_splits
 from gen.corpus import FAULTS, open_corpus
 from gen.generation.corpus import generate
@@ -14,7 +13,6 @@ from gen.generation.replaying import replay
 from gen.scenarios import draw_scenarios, read_scenarios
 from raceway.sharing.card.card_page import data_card
 from tests.recipes import EVERY_FAULT
-from tests.responses import input_of
 
 RUNGS = (0, 0.25, 0.5, 1)
 MANY_HEALTHY = [{"kind": "healthy", "weight": 10}, *EVERY_FAULT[1:]]
@@ -71,16 +69,6 @@ def test_a_rung_is_its_share_of_the_severity(recipe_with):
     assert faults_seen == set(FAULTS) - {"healthy"}
 
 
-def test_a_pair_without_its_fault_is_the_record_at_rung_0_to_the_last_bit(recipe_with):
-    recipe = recipe_with({"corpus.rungs": (0, 1), "faults": MANY_HEALTHY})
-    for before, after in groups_of(draw_scenarios(recipe)).values():
-        one, other = (input_of(item) for item in (before, after.without_fault()))
-        assert (one.machine, one.turning) == (other.machine, other.turning)
-        for field in ("frequencies", "phases", "schedule"):
-            np.testing.assert_array_equal(getattr(one, field), getattr(other, field))
-        np.testing.assert_array_equal(one.waviness.races, other.waviness.races)
-
-
 def test_groups_are_neighbours_and_specimens_are_whole(recipe_with):
     recipe = recipe_with(LADDERS)
     scenarios = draw_scenarios(recipe)
@@ -125,14 +113,6 @@ def test_the_conditions_of_faulty_specimens_cover_their_ranges(recipe_with, samp
     for groups in ([one for one in drawn if one.origin.pair >= 0], [one for one in drawn if one.origin.pair < 0]):
         quantiles = [(60 * one.conditions["shaft_rate"] - 1500) / 500 for one in groups]
         assert set(np.digitize(quantiles, np.arange(1, 8) / 8)) == set(range(8))
-
-
-def test_grids_run_through_all_their_values_on_faulty_specimens(recipe_with):
-    speeds = [600, 900]
-    changes = {"corpus.rungs": (0, 1), "corpus.records_per_specimen": 1, "faults": MANY_HEALTHY}
-    recipe = recipe_with(changes | {"operation.shaft_rpm": gen.grid(*speeds)})
-    groups = groups_of(draw_scenarios(recipe)).values()
-    assert {round(60 * group[0].conditions["shaft_rate"]) for group in groups} == set(speeds)
 
 
 @pytest.mark.parametrize("by", ["specimen", "rig"])

@@ -9,11 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gen
-from gen.drawing import stream
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
-from gen.support.errors import RecipeError
-from gen.support.units import decibel_to_ratio
 from tests.conftest import small_with
 from tests.drawn_values import anywhere
 
@@ -99,14 +96,6 @@ def test_what_was_drawn_for_a_rig_or_a_specimen_says_nothing_about_what_runs_on_
     assert np.abs(correlation - np.eye(3)).max() < 0.25  # 4 sigma of 256 independent rigs
 
 
-def test_another_seed_gives_other_rigs_specimens_and_records(recipe_with):
-    one, other = (draw_scenarios(recipe_with({"seed": seed})) for seed in (1, 2))
-    for here, there in zip(one, other, strict=True):
-        assert here.machine != there.machine
-        assert here.properties != there.properties
-        assert here.conditions != there.conditions
-
-
 def test_records_of_a_specimen_share_it_and_specimens_of_a_rig_share_it(recipe_with):
     whole = draw_scenarios(recipe_with())
     for scenario in whole:
@@ -181,53 +170,3 @@ def test_grids_of_one_level_give_every_combination_once_before_they_come_again(r
         of_rig.add(round(scenario.properties["diametral_clearance"] * 1e6))
     assert all(sorted(found) == sorted(product(rpm, load)) for found in combinations.values())
     assert all(found == set(clearance) for found in clearances.values())
-
-
-def test_streams_of_different_places_and_names_are_different():
-    keys = [
-        (level, of, name)
-        for level in ("corpus", "rig", "specimen", "record")
-        for of in (0, 1, 11)
-        for name in ("noise", "motion", "motion.1")
-    ]
-    first = {tuple(stream(7, *key).integers(0, 2**63, 2)) for key in keys}
-    assert len(first) == len(keys)
-    assert stream(7, "record", 1, "noise").random() == stream(7, "record", 1, "noise").random()
-
-
-def test_values_are_in_si_units(recipe_with):
-    recipe = recipe_with(
-        {"operation.shaft_rpm": 1800, "specimen.diametral_clearance_um": 8, "operation.slip_percent": 2}
-    )
-    scenario = draw_scenarios(recipe, 0, 1)[0]
-    assert scenario.conditions["shaft_rate"] == pytest.approx(30.0)
-    assert scenario.conditions["slip"] == pytest.approx(0.02)
-    assert scenario.properties["diametral_clearance"] == pytest.approx(8e-6)
-
-
-def test_resonances_are_damping_ratios_and_amplitudes(recipe_with):
-    modes = {"count": 8, "frequency_hz": 2500, "damping_percent": 3, "gain_db": 6}
-    recipe = recipe_with({"path.modes": modes, "background.modes": modes, "machine.resonator.damping_percent": 4})
-    rig = draw_scenarios(recipe, 0, 1)[0].recipe
-    for found in (rig.path.modes.si(), rig.background.modes.si()):
-        assert found["frequency"].tolist() == [2500.0] * 8
-        assert found["damping"] == pytest.approx([0.03] * 8)
-        assert np.abs(found["sign"]).tolist() == [1.0] * 8
-        assert decibel_to_ratio(found["gain"]) == pytest.approx([10 ** (6 / 20)] * 8)
-    assert rig.machine.resonator.si()["damping"] == pytest.approx(0.04)
-
-
-def test_a_profile_of_steps_changes_within_the_step_time_between_equal_intervals(recipe_with):
-    steps = {"kind": "steps", "levels_percent": [50, 100, 80], "step_s": 0.01}
-    recipe = recipe_with({"recording.duration_s": 0.3, "operation.speed_profile": steps})
-    profile = draw_scenarios(recipe, 0, 1)[0].speed_profile
-    assert profile.times == pytest.approx((0.095, 0.105, 0.195, 0.205))
-    assert profile.shares == (0.5, 1.0, 1.0, 0.8)
-
-
-def test_a_spall_that_does_not_fit_its_ball_is_refused_by_name(recipe_with):
-    wide = [{"kind": "healthy"}, {"kind": "ball", "width_mm": 9.0}]
-    with pytest.raises(
-        RecipeError, match=r"^specimen \d+: a spall of 9 mm does not fit the ball radius .* keep width_mm below 5\.56"
-    ):
-        draw_scenarios(recipe_with({"faults": wide}))

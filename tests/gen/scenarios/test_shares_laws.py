@@ -8,14 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gen import uniform
-from gen.drawing.distributions import DISTRIBUTIONS
 from gen.physics.bearing import ball_spacing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import static_rating
 from gen.recipe import ranges
 from gen.scenarios import draw_scenarios
-from gen.simulation.surroundings import machine_of
-from gen.support.errors import RecipeError
+from gen.simulation.machine import machine_of
 from tests.drawn_values import anywhere, with_key_of
 
 SAMPLINGS = ("random", "sobol", "halton")
@@ -82,18 +80,6 @@ def test_a_share_can_name_quantities_of_every_level_above(recipe_with):
         assert scenario.recipe.contact.lubricant.si()["viscosity_100"] == pytest.approx(68e-6 / 8)
 
 
-def test_the_dimensions_of_a_bearing_by_geometry_can_be_shares(recipe_with):
-    geometry = {
-        "kind": "geometry",
-        "n_balls": 9,
-        "pitch_diameter_mm": uniform(30, 60),
-        "ball_diameter_mm": "0.2 * pitch_diameter_mm",
-    }
-    geometry["roller_length_mm"] = share("pitch_diameter_mm", 0.3, 0.3)
-    for scenario in draw_scenarios(recipe_with({"bearing": geometry})):
-        assert scenario.drawing.roller_length == pytest.approx(0.3 * scenario.drawing.pitch_diameter)
-
-
 def test_a_chain_of_shares_is_a_product_in_any_order(recipe_with):
     chain = {"operation.load_n": share("axial_load_n", 4, 4), "operation.axial_load_n": share("bow_n", 2, 2)}
     recipe = recipe_with(SLANTED | chain | {"machine.bow_n": uniform(10, 20)})
@@ -122,19 +108,6 @@ def test_the_contact_angle_of_a_specimen_is_that_of_its_clearance_and_grooves(re
         angles.add(drawn["contact_angle"])
     assert 0.0 in angles  # some specimens have no clearance
     assert max(angles) > math.radians(5)
-
-
-def test_a_bearing_with_a_contact_angle_on_its_drawing_has_no_free_angle(recipe_with):
-    free = {"specimen.contact_angle_deg": share("free_contact_angle_deg", 1, 1)}
-    geometry = {
-        "kind": "geometry",
-        "n_balls": 9,
-        "pitch_diameter_mm": 39,
-        "ball_diameter_mm": 7.8,
-        "contact_angle_deg": 15,
-    }
-    for scenario in draw_scenarios(recipe_with(free | {"bearing": geometry})):
-        assert scenario.properties["contact_angle"] == 0
 
 
 @pytest.mark.parametrize("site", ["inner", "outer"])
@@ -180,14 +153,6 @@ def test_a_share_above_1_of_the_least_axial_load_holds_the_rings_together(recipe
                 machine_of(scenario)
 
 
-def test_the_shares_of_the_parts_of_a_compound_are_those_of_the_part(recipe_with):
-    width = {"width_mm": share("ball_spacing_mm", 0.1, 0.1)}
-    parts = [{"kind": "inner", **width}, {"kind": "outer", **width}]
-    for scenario in draw_scenarios(recipe_with({"faults": [{"kind": "compound", "parts": parts}]})):
-        for spall in scenario.spalls:
-            assert spall.width == pytest.approx(0.1 * ball_spacing(scenario.bearing, spall.site))
-
-
 @given(st.tuples(*[st.floats(0.01, 2)] * 2), st.tuples(*[st.floats(10, 1000)] * 2), st.integers(0, 2**31))
 def test_every_product_lies_in_its_support(recipe_with, shares, loads, seed):
     axial, load = share("load_n", *sorted(shares)), uniform(*sorted(loads))
@@ -198,20 +163,6 @@ def test_every_product_lies_in_its_support(recipe_with, shares, loads, seed):
         assert low * (1 - 1e-9) <= scenario.conditions["axial_load"] <= high * (1 + 1e-9)
 
 
-def test_the_support_of_a_share_that_is_known_only_when_drawn_is_that_of_its_field(recipe_with):
-    recipe = recipe_with({"specimen.contact_angle_deg": share("free_contact_angle_deg", 1, 1)})
-    assert ranges(recipe)["specimen"]["contact_angle_deg"] == (0, 30)
-    assert recipe.specimen.contact_angle_deg.support() == (1, 1)
-
-
-def test_the_limits_of_loads_see_the_product(recipe_with):
-    """A share of at least 20 of a bow of at least 1 kN is above the limit of a 6205, 15.8 kN; one of at least 10 is not."""
-    heavy = {"machine.bow_n": uniform(1000, 2000), "operation.load_n": share("bow_n", 20, 30)}
-    with pytest.raises(RecipeError, match=r"operation.load_n: gives an equivalent static load of at least 2e\+04 N"):
-        recipe_with(heavy)
-    recipe_with(heavy | {"operation.load_n": share("bow_n", 10, 30)})
-
-
 def test_the_unbalance_follows_the_highest_product_of_a_speed_that_is_a_share(recipe_with):
     rated = {"machine.support_frequency_hz": uniform(200, 500), "machine.balance_mm_s": 1}
     share_of_it, plain = share("support_frequency_hz", 0.02, 0.1), uniform(240, 3000)
@@ -219,18 +170,3 @@ def test_the_unbalance_follows_the_highest_product_of_a_speed_that_is_a_share(re
         draw_scenarios(recipe_with(rated | {"operation.shaft_rpm": speed}), 0, 1)[0] for speed in (share_of_it, plain)
     )
     assert one.recipe.machine.unbalance == pytest.approx(other.recipe.machine.unbalance)
-
-
-def test_every_distribution_can_be_a_share():
-    given = {"value": 0.5, "low": 0.1, "high": 0.6, "mean": 0.3, "sd": 0.1, "values": (0.1, 0.6)}
-    for model in DISTRIBUTIONS:
-        own = {key: given[key] for key in set(model.model_fields) & set(given)}
-        found = model(kind=model.model_fields["kind"].annotation.__args__[0], share_of="load_n", **own)
-        assert found.share_of == "load_n"
-
-
-def test_quantiles_of_a_share_are_as_even_as_those_of_any_quantity(recipe_with):
-    changes = {"corpus.sampling": "sobol", "corpus.rigs": 8, "machine.bow_n": 100}
-    recipe = recipe_with(changes | {"operation.load_n": share("bow_n", 1, 65)})
-    quantiles = [one.conditions["load"] / 100 - 1 for one in draw_scenarios(recipe)]
-    assert sorted(int(found) for found in quantiles) == list(range(64))

@@ -49,12 +49,6 @@ def test_a_scenario_as_a_recipe_gives_the_scenario_and_its_text_again(name, tmp_
         assert again.text == scenario.text
 
 
-@pytest.mark.parametrize("name", RECIPES)
-def test_a_text_does_not_depend_on_the_scenarios_written_with_it(name):
-    scenarios = scenarios_of(name)
-    assert [scenario_texts([scenario])[0] for scenario in scenarios] == scenario_texts(scenarios)
-
-
 SERIES = {"trace_um", "times_s", "percent", "levels_percent"}  # of one quantity
 
 
