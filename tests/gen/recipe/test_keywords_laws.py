@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 import gen
 from gen.drawing.section import plain
-from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_hash, recipe_text, shipped_recipes
+from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_hash, shipped_recipes
 from gen.recipe.keywords import _places
 from gen.recipe.life import LifeSection
-from gen.support.errors import CorpusError, RecipeError
+from gen.support.errors import RecipeError
 from tests.conftest import small_with
 
 OUTER = gen.outer(width_mm=0.5)
@@ -37,37 +37,6 @@ def test_a_key_by_its_own_name_is_that_of_its_section():
         "level": {"kind": "physical", "gain": 2},
     }
     assert named == gen.make_recipe(OUTER, **sections)
-
-
-def test_a_designation_can_be_a_number_in_python():
-    assert gen.make_recipe(OUTER, bearing=6206) == gen.make_recipe(OUTER, bearing="6206")
-    geometry = {"n_balls": 22, "pitch_diameter_mm": 60, "ball_diameter_mm": 6}
-    assert gen.make_recipe(bearing=geometry).bearing == gen.make_recipe(**geometry).bearing
-    assert gen.make_recipe(OUTER, bearing=[6205, "6206"]) == gen.make_recipe(OUTER, bearing=["6205", "6206"])
-
-
-def test_a_roller_bearing_has_the_same_hash_by_the_keys_of_rollers_and_of_balls():
-    balls = {"n_balls": 12, "pitch_diameter_mm": 40, "ball_diameter_mm": 7, "roller_length_mm": 8}
-    rollers = {"n_rollers": 12, "pitch_diameter_mm": 40, "roller_diameter_mm": 7, "roller_length_mm": 8}
-    one, other = (gen.make_recipe(bearing=bearing) for bearing in (balls, rollers))
-    assert recipe_hash(one) == recipe_hash(other)
-
-
-@pytest.mark.parametrize("keys", [("n_balls", "ball_diameter_mm"), ("n_rollers", "roller_diameter_mm")])
-def test_the_dimensions_of_a_record_with_rollers_give_its_orders(keys):
-    rollers = {keys[0]: 14, "pitch_diameter_mm": 50, keys[1]: 8, "roller_length_mm": 9}
-    text = ",".join(f"{key}={value}" for key, value in rollers.items())
-    record = gen.record(bearing=rollers, duration_s=0.05)
-    stored = [float(record[name]) for name in ("ftf", "bpfo", "bpfi", "bsf")]
-    assert stored == [*gen.bearing_orders(rollers)] == [*gen.bearing_orders(text)]
-
-
-def test_the_keys_that_a_geometry_allows_are_those_of_balls_and_of_rollers():
-    allowed = "n_balls, n_rollers, pitch_diameter_mm, roller_diameter_mm, roller_length_mm"
-    wrong = {"teeth": 14, "pitch_diameter_mm": 50}
-    with pytest.raises(CorpusError, match=allowed):
-        gen.bearing_orders(wrong)
-    assert allowed in sentences_of(lambda: gen.make_recipe(bearing=wrong))
 
 
 def test_every_name_has_a_section_unless_several_share_it():
@@ -182,18 +151,6 @@ def test_one_fault_can_be_used_for_several_bearings():
     assert first.faults[0].width_mm.support() == before
 
 
-def test_distributions_by_calls_are_those_of_a_recipe():
-    calls = [
-        gen.uniform(1, 2),
-        gen.loguniform(1, 2),
-        gen.normal(1.5, 1, 1, 2),
-        gen.choice(1, 2, weights=(1, 3)),
-        gen.grid(1, 2, per="rig"),
-    ]
-    kinds = [type(gen.make_recipe(shaft_rpm=call).operation.shaft_rpm).__name__ for call in calls]
-    assert kinds == ["Uniform", "LogUniform", "Normal", "Choice", "Grid"]
-
-
 @pytest.mark.parametrize("name", [*shipped_recipes()])
 def test_a_recipe_survives_its_text_and_its_dict(name, tmp_path):
     recipe = read_recipe(name)
@@ -216,15 +173,6 @@ def test_a_section_that_a_recipe_leaves_out_changes_neither_its_hash_nor_the_ide
     assert corpus_identity(larger) == corpus_identity(recipe)
 
 
-@given(text, st.from_regex(r"[A-Za-z0-9_.-]{1,12}", fullmatch=True))
-def test_any_title_and_name_survive_the_text_of_a_recipe(tmp_path_factory, title, name):
-    path = tmp_path_factory.getbasetemp() / "any.yaml"
-    recipe = gen.make_recipe(title=title, name=name)
-    gen.write_recipe(recipe, path)
-    assert read_recipe(path) == recipe
-    assert recipe_text(read_recipe(path)) == recipe_text(recipe)
-
-
 def test_a_recipe_from_a_dict_has_the_errors_of_the_file(tmp_path):
     data = plain(read_recipe("quickstart")) | {"sed": 3, "bearing": {"kind": "catalog"}}
     path = tmp_path / "r.yaml"
@@ -233,10 +181,3 @@ def test_a_recipe_from_a_dict_has_the_errors_of_the_file(tmp_path):
     assert sentences_of(lambda: read_recipe(data)) == sentences_of(lambda: Recipe.model_validate(data)) == expected
     assert sentences_of(lambda: read_recipe(path)) == "\n".join(f"{path}: {line}" for line in expected.split("\n"))
     assert "sed: no such key; did you mean seed?" in expected
-
-
-def test_faults_recipes_and_scenarios_are_shown_in_one_short_line():
-    recipe = gen.make_recipe([gen.outer(width_mm=gen.loguniform(0.1, 2)), "healthy"], n=4, seed=3)
-    assert str(recipe.faults[0]) == "outer(width_mm=loguniform(0.1, 2))"
-    assert repr(recipe) == "<Recipe records: 8 records, 2 faults, seed 3>"
-    assert repr(gen.draw_scenarios(recipe, 1, 2)[0]) == "<Scenario of records: rig 0, specimen 1, record 1, healthy>"

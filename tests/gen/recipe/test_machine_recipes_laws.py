@@ -70,26 +70,11 @@ def test_a_bent_or_misaligned_shaft_shakes_the_housing_at_its_own_order(signal_o
     assert line(crooked, 3 - order) < 0.05 * line(crooked, order)
 
 
-def test_a_misaligned_shaft_shakes_along_its_own_direction(signal_of):
-    along, across = (signal_of({"machine.misalignment_n": 100, "machine.misalignment_angle_deg": a}) for a in (0, 90))
-    assert line(across, 2) < 0.05 * line(along, 2)
-
-
 def test_a_loose_housing_rattles_at_orders_that_a_fast_one_has_not(signal_of):
     bent = {"machine.bow_n": 500, "operation.load_n": 100}
     fast, loose = signal_of(bent), signal_of(bent | {"machine.looseness_um": 5})
     assert loose.std() > 2 * fast.std()
     assert line(loose, 2) + line(loose, 3) > 5 * (line(fast, 2) + line(fast, 3))
-
-
-def test_a_run_up_sweeps_the_line_of_a_bent_shaft(signal_of):
-    """Half the rate in the first fifth, the whole in the last; the acceleration grows with the square."""
-    profile = {"kind": "run_up", "from_percent": 50, "to_percent": 100, "start_s": 0.2, "lasting_s": 0.6}
-    signal = signal_of({"machine.bow_n": 100, "operation.speed_profile": profile})
-    first, last = signal[: round(0.2 * FS)], signal[-round(0.2 * FS) :]
-    assert line(first, 0.5) == pytest.approx(shaken(100, 0.5), rel=0.08)
-    assert line(last, 1.0) == pytest.approx(shaken(100, 1.0), rel=0.08)
-    assert line(first, 1.0) < 0.3 * line(last, 1.0)
 
 
 def test_a_channel_with_a_path_of_its_own_hears_by_that_path(recipe_with):

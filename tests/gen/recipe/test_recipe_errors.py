@@ -260,53 +260,10 @@ def test_every_thing_that_is_wrong_gets_a_sentence_of_its_own(tmp_path):
     assert [line.partition(":")[0] for line in said.splitlines()] == ["corpus.rigs", "faults[1].width_mm", "mashine"]
 
 
-def test_a_recipe_that_swells_is_refused(tmp_path):
-    layers = ["a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]"]
-    layers += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, 9)]
-    assert "up to line 5, with aliases expanded, holds 23460 values" in sentence_of(
-        tmp_path, "\n".join([*layers, WHOLE])
-    )
-
-
-def test_a_recipe_of_a_megabyte_is_refused(tmp_path):
-    said = sentence_of(tmp_path, "#" * 1_000_001)
-    assert said.startswith(
-        "is 1000001 bytes, and the limit is 1000000; if that is meant, raise it with raceway --limit yaml_bytes="
-    )
-
-
 def test_a_thousand_things_that_are_wrong_are_not_all_told(tmp_path):
     said = sentence_of(tmp_path, WHOLE + "path: {" + ", ".join(f"odd{n}: 1" for n in range(1000)) + "}\n").splitlines()
     assert len(said) == 21
     assert said[-1] == "there are up to 980 more errors; correct these first."
-
-
-def test_a_key_of_a_thousand_letters_is_shown_in_part(tmp_path):
-    said = sentence_of(tmp_path, WHOLE + "? " + "k" * 1000 + "\n: 1\n")
-    assert len(said) < 300
-
-
-def test_a_corpus_that_ends_early_is_checked_as_a_whole(tmp_path):
-    said = sentence_of(tmp_path, WHOLE.replace("rigs: 2", "rigs: 1000000000000") + "records: 1\n")
-    assert "are 8000000000000 records, and the limit is 10000000;" in said
-    path = tmp_path / "whole.yaml"
-    with pytest.raises(RecipeError, match="and the limit is 10000000"):
-        read_recipe(path, records=1)
-
-
-def test_long_profiles_count_for_every_record_of_a_part(tmp_path):
-    times, shares = [n / 1e5 for n in range(9000)], [100] * 9000
-    profile = f"speed_profile: {{kind: table, times_s: {times}, percent: {shares}}}"
-    many = WHOLE.replace("records_per_specimen: 2", "records_per_specimen: 200")
-    many = many.replace("machine:", "storage: {records_per_part: 1600}\nmachine:")
-    assert "1600 records need " in sentence_of(tmp_path, many.replace(RPM, f"{RPM}, {profile}"))
-
-
-def test_a_limit_is_the_users_to_raise(tmp_path, monkeypatch):
-    path = tmp_path / "whole.yaml"
-    path.write_text(WHOLE.replace("rigs: 2", "rigs: 10000000"))
-    monkeypatch.setenv("RACEWAY_LIMITS", "records=1e9")
-    assert read_recipe(path).n_records == 80_000_000
 
 
 @settings(deadline=None)
