@@ -57,11 +57,6 @@ def test_growth_without_noise_is_the_solution_of_its_equation(exponent, first, a
     np.testing.assert_allclose(length_after(law, first, solved.t), solved.y[0], rtol=1e-3)
 
 
-def test_a_longer_way_takes_the_drive_of_its_parts():
-    whole = drive_between(LAW, 0.2e-3, 5e-3)
-    assert whole == pytest.approx(drive_between(LAW, 0.2e-3, 3e-3) + drive_between(LAW, 3e-3, 5e-3))
-
-
 def test_a_spall_that_grows_ever_faster_is_infinite_in_finite_time():
     assert length_after(Growth(2e-9, 2.0, 1.0, 1.0), 1e-3, 1e9) == math.inf
 
