@@ -15,8 +15,8 @@ import pytest
 from distributed import LocalCluster
 
 from gen.support.errors import ClusterError, RecipeError
-from gen.support.executor import connected, run
-from tests.worker_processes import SHARED, worker_processes
+from gen.support.executor import run
+from tests.worker_processes import worker_processes
 
 
 @pytest.fixture(autouse=True)
@@ -59,12 +59,6 @@ def test_processes_and_schedulers_work_elsewhere_and_one_worker_here():
     assert os.getpid() not in set(run(process, range(3), 2))
     with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0") as cluster:
         assert set(run(process, range(3), cluster.scheduler_address)) == {os.getpid()}
-
-
-def test_several_calls_share_their_processes(two_processes):
-    with connected(two_processes, __name__) as client:
-        found = {*run(process, range(20), client), *run(process, range(20), client)}
-    assert found <= {child.pid for child in SHARED}
 
 
 def uneven(item):

@@ -46,13 +46,6 @@ def test_a_function_that_cannot_be_saved_is_compiled_all_the_same(twice, monkeyp
     assert not is_on_disk(function, (float64,))
 
 
-def test_a_function_stays_in_memory_where_numba_finds_no_folder(twice, monkeypatch):
-    monkeypatch.setattr("numba.core.caching.CacheImpl._locator_classes", [])
-    function = twice()
-    assert function(1.5) == 3.0
-    assert not is_on_disk(function, (float64,))
-
-
 def flip(content, place):
     return content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :]
 
