@@ -23,7 +23,7 @@ from gen.corpus import (
 from gen.support.errors import CorpusError
 from tests.corpora import SIZES, dataset, write_corpus, write_parts
 from tests.disks import full_disk
-from tests.tampering import edit_manifest, edited, manifest_content, seal
+from tests.tampering import edit_manifest, edited, seal
 
 FORMS = ("c", "c.nc")
 
@@ -303,12 +303,6 @@ def test_counts_of_useless_records_are_those_of_the_signals(tmp_path, form):
     else:
         set_fact("signals", json.dumps(none))(tmp_path / form)
     assert any("1 dead of its records cannot be used, none are listed" in p for p in validate_corpus(tmp_path / form))
-
-
-def test_a_manifest_without_its_hash_is_refused(copied_folder):
-    (copied_folder / "manifest.json").write_text(json.dumps(manifest_content(copied_folder)))
-    with pytest.raises(CorpusError, match=r"manifest\.json: is altered"):
-        open_corpus(copied_folder)
 
 
 def test_sizes_alone_do_not_see_what_hashes_see(copied_folder, copied_file):

@@ -1,8 +1,6 @@
 """Laws of the format: every reader returns the written values, wherever the corpus is stored."""
 
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import netCDF4
@@ -13,7 +11,6 @@ from hypothesis import strategies as st
 
 from gen.corpus import (
     CODECS,
-    FAULT_NAMES,
     SCHEMA,
     SIGNAL,
     corpus_files,
@@ -75,24 +72,6 @@ def test_every_part_is_a_corpus_of_its_own(nine):
 def test_an_index_alone_is_refused_with_the_name_of_its_folder(nine):
     with pytest.raises(CorpusError, match=r"index\.nc: is the index of a corpus and holds no signals; give its folder"):
         open_corpus(nine / "c" / "index.nc")
-
-
-def test_both_forms_take_what_they_know_from_the_same_facts(nine):
-    folder, file = (read_manifest(nine / form) for form in FORMS)
-    assert folder.model_copy(update={"parts": ()}) == file
-    index, single = (open_corpus(nine / form).attrs for form in FORMS)
-    assert index == single
-
-
-def test_the_lister_of_the_netcdf4_wheel_shows_dimensions_and_classes(nine):
-    lister = Path(sys.executable).with_name("ncinfo")
-    header, fault = (
-        subprocess.run([lister, *chosen, nine / "c.nc"], capture_output=True, text=True, check=True).stdout
-        for chosen in ((), ("-v", "fault"))
-    )
-    assert "dimensions(sizes): record(9), channel(2), elapsed_time(50)," in header
-    assert f"int16 {SIGNAL}(record, channel, elapsed_time)" in header
-    assert f"flag_meanings: {' '.join(FAULT_NAMES.values())}\n" in fault
 
 
 @pytest.mark.parametrize("form", FORMS)

@@ -26,12 +26,3 @@ def test_a_folder_is_refused_while_another_process_holds_its_lock_and_free_once_
     process.communicate()
     with lock(tmp_path):
         assert list(tmp_path.iterdir()) == []
-
-
-def test_a_file_is_no_folder_to_lock(tmp_path):
-    (tmp_path / "file").write_text("")
-    with (
-        pytest.raises(CorpusError, match=r"cannot be opened \(Not a directory\); give a folder"),
-        lock(tmp_path / "file"),
-    ):
-        pass

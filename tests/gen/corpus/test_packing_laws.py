@@ -9,21 +9,12 @@ from hypothesis import strategies as st
 
 from gen.corpus import MISSING_COUNT, SIGNAL, open_corpus, open_part, part_name, validate_corpus, write_part
 from gen.corpus.schema import signal_attributes
-from gen.recipe.sensing import Converter
 from gen.support.errors import CorpusError
 from tests.corpora import SIZES, dataset, write_parts
 
 EVERY_COUNT = np.arange(-(2**15), 2**15).astype(np.int16)
 LARGEST = 32767
 LIMITS = (1e-6, 1e6)  # of recording.converter.full_scale_m_s2
-
-
-def test_a_recipe_allows_no_other_full_scale():
-    least, most = LIMITS
-    assert [Converter(full_scale_m_s2=number).full_scale_m_s2 for number in LIMITS] == [least, most]
-    for number in (0.99 * least, 1.01 * most):
-        with pytest.raises(ValueError, match="full_scale_m_s2"):
-            Converter(full_scale_m_s2=number)
 
 
 def decoded_by_xarray(counts, attributes):
