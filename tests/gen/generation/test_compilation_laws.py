@@ -1,7 +1,6 @@
 """Laws of compiling: once per machine, before the first record."""
 
 import numba
-import pytest
 
 from gen.generation import compilation
 from gen.generation.compilation import compile_kernels
@@ -29,8 +28,3 @@ def test_the_kernel_is_announced_before_it_is_compiled(recipe_with, monkeypatch)
     monkeypatch.setattr(compilation, "load_kernel", lambda: done.append("compiled"))
     compile_kernels(recipe_with({}), done.append)
     assert done == ["compiling the kernel for this machine, 10 to 20 s; it is kept for the next time.", "compiled"]
-
-
-def test_a_kernel_that_is_compiled_is_not_announced(recipe_with, monkeypatch):
-    monkeypatch.setattr(compilation, "is_compiled", lambda: True)
-    compile_kernels(recipe_with({}), lambda _: pytest.fail("there is nothing to compile"))

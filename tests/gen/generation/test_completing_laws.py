@@ -48,15 +48,6 @@ def begun(copied):
     return unfinished(copied)
 
 
-def test_a_finished_corpus_stays_finished_while_the_same_call_looks_it_through(recipe_file, copied):
-    def interrupted(*_counts):
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        generate(recipe_file, copied, progress=interrupted)
-    assert read_manifest(copied).complete
-
-
 @pytest.mark.parametrize(("kept", "name"), [(1, "c"), (2, "c"), (1, "c.nc")])
 def test_an_interrupted_corpus_is_refused_until_the_same_call_completes_it(
     recipe_file, whole, single, tmp_path, kept, name

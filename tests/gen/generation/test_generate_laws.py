@@ -1,19 +1,13 @@
 """Laws of generation: a corpus is the same for any number of workers."""
 
-import shutil
-
 import numpy as np
 import pytest
 from distributed import LocalCluster
 
-from gen import replay
 from gen.corpus import SIGNAL, open_corpus, read_manifest, recipe_text, validate_corpus
-from gen.corpus.manifest import Overrides
 from gen.generation.corpus import generate
-from gen.support.errors import CorpusError, RecipeError
-from raceway.sharing.card.card_page import data_card
+from raceway.sharing.card.page import data_card
 from tests.same_corpora import assert_the_same_corpus
-from tests.worker_processes import worker_processes
 
 
 def counts(folder):
@@ -54,27 +48,6 @@ def test_processes_make_the_same_corpus_as_one(recipe_file, whole, single, tmp_p
     assert done == [(8, 24), (16, 24), (24, 24)]
 
 
-@pytest.mark.usefixtures("started_processes")
-def test_processes_share_out_what_is_missing_alone(recipe_file, whole, tmp_path):
-    shutil.copytree(whole.path, tmp_path / "c")
-    (tmp_path / "c" / "parts" / "part-00001.nc").unlink()
-    made = generate(recipe_file, tmp_path / "c", workers=2)
-    assert made.kept == 2
-    assert_the_same_corpus(tmp_path / "c", whole)
-
-
-def test_an_error_in_a_process_ends_all_processes_and_is_told(recipe_file, tmp_path):
-    (tmp_path / "c" / "parts").mkdir(parents=True)
-    generate(recipe_file, tmp_path / "d", records=8)
-    for name in ("manifest.json", "recipe.yaml"):
-        shutil.copy(tmp_path / "d" / name, tmp_path / "c" / name)
-    shutil.copy(tmp_path / "d" / "parts" / "part-00000.nc", tmp_path / "c" / "parts")
-    (tmp_path / "c" / "parts" / "part-00001.nc").mkdir()  # where a process writes a part
-    with pytest.raises(CorpusError, match=r"part-00001\.nc"):
-        generate(recipe_file, tmp_path / "c", workers=2)
-    assert worker_processes() == []
-
-
 def test_workers_of_a_given_scheduler_make_the_same_corpus(recipe_file, whole, tmp_path):
     done = []
 
@@ -86,29 +59,3 @@ def test_workers_of_a_given_scheduler_make_the_same_corpus(recipe_file, whole, t
         generate(recipe_file, tmp_path / "given", scheduler=cluster.scheduler_address, progress=note)
     assert_the_same_corpus(tmp_path / "given", whole)
     assert done == [(8, 24), (16, 24), (24, 24)]
-
-
-def test_less_than_one_worker_is_refused_before_anything_is_written(recipe_file, tmp_path):
-    with pytest.raises(RecipeError, match="workers: 0 is not allowed; use 1 or more"):
-        generate(recipe_file, tmp_path / "c", workers=0)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_records_count_when_their_part_is_on_disk(recipe_file, tmp_path):
-    """On a cluster: the test of a given scheduler."""
-    corpus, done = tmp_path / "c", []
-
-    def note(count, total):
-        done.append((count, total))
-        assert len(list((corpus / "parts").glob("part-*.nc"))) * 8 >= count
-
-    generate(recipe_file, corpus, progress=note)
-    assert done == [(8, 24), (16, 24), (24, 24)]
-
-
-def test_seed_and_size_given_in_the_call_are_remembered(recipe_file, whole, tmp_path):
-    made = generate(recipe_file, tmp_path / "c", seed=11, records=5)
-    assert (made.records, made.parts) == (5, 1)
-    assert read_manifest(made.path).overrides == Overrides(seed=11, records=5)
-    assert not np.array_equal(counts(made.path), counts(whole.path)[:5])
-    assert replay(made.path, 4).identical

@@ -57,16 +57,6 @@ def test_no_drawn_value_depends_on_the_number_of_records(write_recipe, tmp_path,
     assert few == many[:12]
 
 
-def test_rigs_beyond_those_of_the_recipe_have_its_classes_and_splits(write_recipe, tmp_path):
-    path = write_recipe(tmp_path / "r.yaml", {"corpus.split": {"by": "rig", "test": 0.3}})
-    own = read_recipe(path).corpus
-    many = draw_scenarios(read_recipe(path, records=10 * own.n_records))
-    splits = {scenario.origin.rig: scenario.origin.split for scenario in many}
-    assert (own.rigs, len(splits)) == (3, 30)
-    assert list(splits.values()).count("test") == 10
-    assert {scenario.fault for scenario in many[own.n_records :]} == {one.fault for one in many}
-
-
 def test_parts_of_one_corpus_made_apart_are_completed_or_joined(write_recipe, tmp_path):
     recipe = write_recipe(tmp_path / "r.yaml")
     at_once = generate(recipe, tmp_path / "at_once")

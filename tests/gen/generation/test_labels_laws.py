@@ -106,11 +106,6 @@ def test_both_clearances_are_diametral(labels_with):
     assert warm["operating_clearance"].values == pytest.approx(10e-6 - 2 * 10 * 12.5e-6 * outer)
 
 
-def test_loads_along_and_across_the_shaft_are_not_mixed_up(labels_with):
-    found = labels_with({"operation.axial_load_n": 350, "specimen.contact_angle_deg": 10})
-    assert (first(found, "axial_load"), first(found, "load")) == pytest.approx((350, 400))
-
-
 def test_what_the_run_found_stands_beside_its_record(recipe_with):
     recipe = recipe_with({"records": 4})
     errors = np.array([np.nan, 1e-4, 2e-4, np.nan])
@@ -158,12 +153,6 @@ def test_a_record_has_the_identity_that_its_numbers_have_in_every_corpus_of_the_
     numbers = [tuple(map(int, text.split("/")[1:])) for text in found["identity"].values]
     wanted = [found[name].values.tolist() for name in ("rig", "specimen", "recording", "pair")]
     assert numbers == list(zip(*wanted, strict=True))
-
-
-def test_a_gear_is_labelled_by_its_teeth(labels_with):
-    gear = {"probability": 1, "teeth": 23, "mate_teeth": 47, "count": 2, "level_db": 0}
-    assert labels_with({"background.gear_mesh": gear})["gear_mesh"].values.tolist() == [23] * 24
-    assert labels_with({})["gear_mesh"].values.tolist() == [0] * 24
 
 
 def test_every_label_of_the_measuring_chain_is_a_variable_and_0_without_faults(labels_with):

@@ -88,18 +88,6 @@ def test_every_record_of_a_dataset_that_was_cut_or_joined_is_replayed(ladder, tm
     assert replayed(directory)
 
 
-def test_further_variables_are_written(ladder, tmp_path):
-    attributes = {"long_name": "name of the shift", "role": "provenance"}
-    shifts, grades = [f"shift {n}" for n in range(6)], np.arange(6.0)
-    more = ladder.assign(shift=("record", shifts, attributes), grade=("record", grades, attributes | {"units": "m"}))
-    directory = gen.write_corpus(more, tmp_path / "corpus")
-    assert gen.validate_corpus(directory) == []
-    with gen.open_corpus(directory) as corpus:
-        assert corpus["shift"].values.tolist() == shifts
-        assert corpus["grade"].values.tolist() == grades.tolist()
-        assert corpus["grade"].attrs["units"] == "m"
-
-
 @pytest.mark.parametrize(
     ("changed", "stored", "replayable"),
     [
@@ -132,24 +120,6 @@ def test_a_record_that_was_changed_is_written_without_its_scenario(ladder, tmp_p
     for record in np.flatnonzero(~with_scenario)[-1:]:
         with pytest.raises(CorpusError, match=f"record {record} has no scenario"):
             gen.replay(directory, record)
-
-
-def test_the_class_names_of_records_choose_them_and_are_not_stored(ladder, tmp_path):
-    directory = gen.write_corpus(ladder, tmp_path / "corpus")
-    with gen.open_corpus(directory) as corpus:
-        for records in (ladder, corpus):
-            inner = records.sel(record=records.fault_name == "inner")
-            np.testing.assert_array_equal(inner[SIGNAL], ladder[SIGNAL][ladder.fault.values == 1])
-            assert set(records.split_name.values) <= {"train", "validation", "test"}
-    assert "fault_name" not in xr.open_dataset(directory / "index.nc")
-    assert gen.record(OUTER, **SHORT).fault_name == "outer"
-
-
-def test_an_opened_corpus_is_written_as_it_was(ladder, tmp_path):
-    with gen.open_corpus(gen.write_corpus(ladder, tmp_path / "first")) as corpus:
-        gen.write_corpus(corpus, tmp_path / "second")
-    parts = [(tmp_path / name / "parts" / "part-00000.nc").read_bytes() for name in ("first", "second")]
-    assert parts[0] == parts[1]
 
 
 @pytest.mark.parametrize(
@@ -187,22 +157,6 @@ def test_records_of_two_recipes_in_one_dataset_are_replayed_and_their_machines_k
         assert corpus["rig"].values.tolist() == [0, 1, 1, 0]
         assert corpus["pair"].values.tolist() == [0, -1, -1, 1]
         assert corpus["identity"].values.tolist() == both["identity"].values.tolist()
-
-
-def test_a_relative_and_an_empty_folder_are_taken(ladder, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "empty").mkdir()
-    assert gen.write_corpus(ladder.isel(record=[0]), "empty") == tmp_path / "empty"
-    assert gen.validate_corpus("empty") == []
-
-
-def test_a_corpus_in_another_order_has_no_recipe(ladder, tmp_path):
-    directory = gen.write_corpus(ladder.isel(record=[5, 4, 3, 2, 1, 0]), tmp_path / "corpus")
-    assert not (directory / "recipe.yaml").exists()
-    gen.write_recipe(gen.read_recipe(ladder), tmp_path / "recipe.yaml")
-    with pytest.raises(CorpusError, match="choose another name"):
-        gen.generate(tmp_path / "recipe.yaml", directory)
-    assert gen.validate_corpus(directory) == []
 
 
 def test_a_record_that_cannot_be_simulated_is_an_error_or_left_out_with_a_warning(tmp_path):
@@ -288,11 +242,6 @@ def test_scenarios_of_different_recordings_are_simulated_in_different_calls(ladd
     for change in ({"seed": 6}, {"truth": {"twins": False}}, {"recording": {"duration_s": 0.2}}):
         with pytest.raises(SimulationError, match=r"scenarios\[1\]: its recording or truth is not that of"):
             gen.simulate([one, other.with_(**change)])
-
-
-def test_no_scenarios_are_no_records():
-    with pytest.raises(SimulationError, match="scenarios: there are none; give at least one"):
-        gen.simulate([])
 
 
 WRONG_TYPES = [

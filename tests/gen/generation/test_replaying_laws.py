@@ -8,10 +8,8 @@ import pytest
 import xarray as xr
 
 from gen import (
-    draw_scenarios,
     generate,
     open_corpus,
-    read_recipe,
     read_scenarios,
     replay,
     simulate,
@@ -22,7 +20,6 @@ from gen.corpus import FAULTS, SIGNAL, finish_corpus, part_name, write_part
 from gen.corpus.numbering import NUMBERS
 from gen.support.errors import CorpusError, RecipeError
 from gen.support.yaml_files import parse_yaml
-from tests import corpora
 from tests.tampering import edited, seal
 
 
@@ -104,12 +101,6 @@ def test_a_record_is_replayed_with_channels_cut_renamed_or_exchanged_and_in_floa
         assert again.identical
         assert again.dataset["channel"].values.tolist() == copy["channel"].values.tolist()
         np.testing.assert_array_equal(xr.decode_cf(again.dataset)["acceleration"][0], copy["acceleration"][2])
-
-
-def test_the_stored_scenario_of_every_record_is_the_drawn_one(tiny_corpus):
-    with open_corpus(tiny_corpus) as corpus:
-        drawn = draw_scenarios(read_recipe(corpus))
-        assert read_scenarios(corpus) == [drawn[number] for number in corpus["recording"].values]
 
 
 @pytest.fixture(scope="module")
@@ -202,21 +193,6 @@ def test_a_corpus_without_its_recipe_still_replays(tiny_corpus, tmp_path):
     assert replay(copied, 7).identical
 
 
-@pytest.mark.parametrize("record", [-1, 48])
-def test_a_record_that_is_not_there_is_not_replayed(tiny_corpus, record):
-    with pytest.raises(CorpusError, match=f"record {record} is not in it; it has records 0 to 47"):
-        replay(tiny_corpus, record)
-
-
 def test_a_stored_text_that_is_no_scenario_is_refused_with_corpus_and_record(nine):
     with pytest.raises(CorpusError, match=r"c: record 4: stored scenario: is not the JSON text of a recipe"):
         replay(nine / "c", 4)
-
-
-def test_a_corpus_that_stores_no_scenarios_is_refused(tmp_path, monkeypatch):
-    with_draws = corpora.columns
-    monkeypatch.setattr(corpora, "EXTRA", ())
-    monkeypatch.setattr(corpora, "columns", lambda *part: {k: v for k, v in with_draws(*part).items() if k != "draws"})
-    corpora.write_corpus(tmp_path / "corpus")
-    with pytest.raises(CorpusError, match="record 0 has no scenario"):
-        replay(tmp_path / "corpus", 0)

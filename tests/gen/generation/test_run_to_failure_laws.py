@@ -10,7 +10,6 @@ import gen
 from gen.corpus import LIFE, open_corpus
 from gen.generation.corpus import generate
 from gen.generation.replaying import replay
-from gen.measurement.ends_of_life import velocity_rms
 from gen.physics.trace import spall_positions
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import spall_paths
@@ -127,9 +126,3 @@ def test_a_single_file_of_lives_is_kept_by_a_second_call(recipe_with, tmp_path):
     few = recipe_with(SHORT | {"records": 80})
     first, second = (generate(few, tmp_path / "c.nc").records for _ in range(2))
     assert first == second < 80
-
-
-def test_the_velocity_of_a_sine_is_its_amplitude_over_its_frequency():
-    time = np.arange(12_800) / 12_800
-    tone = np.stack([3 * np.sin(2 * np.pi * 50 * time), 100 * np.sin(2 * np.pi * 3000 * time)])
-    assert velocity_rms(tone, 12_800.0) == pytest.approx(3 / (2 * np.pi * 50) / np.sqrt(2), rel=0.01)

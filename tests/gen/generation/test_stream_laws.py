@@ -128,12 +128,6 @@ def test_a_wrong_number_is_refused(recipe, wrong):
         gen.stream(recipe, **wrong)
 
 
-def test_more_workers_than_cores_are_told(recipe, monkeypatch):
-    monkeypatch.setattr("gen.support.executor.cores", lambda: 1)
-    with pytest.warns(UserWarning, match="workers: 2 is above the number of cores, 1; more processes"):
-        gen.stream(recipe, workers=2)
-
-
 def test_without_pytorch_its_stream_says_so(recipe, monkeypatch):
     monkeypatch.setitem(sys.modules, "torch", None)
     monkeypatch.delitem(sys.modules, "gen.generation.torch_items", raising=False)
