@@ -20,13 +20,6 @@ def test_a_flat_density_rolls_off_at_the_share_of_its_width_whatever_its_gain(sh
     assert centroid(flat, FREQUENCIES)[0] == pytest.approx(2000)
 
 
-def test_a_single_bin_has_its_roll_off_and_centroid_at_its_frequency():
-    density = np.zeros((1, 1001))
-    density[0, 300] = 1.0
-    assert abs(roll_off(density, FREQUENCIES, 0.85)[0] - 1200) <= 2
-    assert centroid(density, FREQUENCIES)[0] == 1200
-
-
 @pytest.mark.parametrize("measure", [centroid, tonality, lambda density, f: roll_off(density, f, 0.85)])
 def test_a_record_has_the_same_value_in_every_batch(measure):
     density = np.random.default_rng(0).random((37, 1001))

@@ -73,12 +73,6 @@ def test_the_sidebands_of_an_amplitude_modulation_are_half_its_depth(depth, spac
     assert found[0] == pytest.approx(depth / 2, rel=0.02)
 
 
-def test_a_sideband_outside_the_spectrum_counts_as_zero():
-    spectrum = np.array([[0.0, 0.0, 0.0, 2.0, 0.0, 1.0]])
-    assert sideband_ratio(spectrum, np.array([3]), of(2.0), 0)[0] == 0.25
-    assert sideband_ratio(spectrum, np.array([3]), of(40.0), 1)[0] == 0.0
-
-
 @law
 @given(st.floats(0.0, 1.0), st.floats(0.01, 100.0))
 def test_the_cyclostationarity_of_a_cosine_is_a_quarter_of_its_squared_depth(depth, gain):

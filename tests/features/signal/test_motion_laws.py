@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_trapezoid
-from scipy.signal import butter, sosfilt
 
 from features.signal import displacement, velocity, velocity_rms
 
@@ -40,13 +38,6 @@ def test_the_velocity_rms_of_a_tone_is_its_closed_form_through_third_order_butte
     )  # the slope varies within a line
 
 
-def test_the_velocity_rms_of_noise_is_that_of_its_integral_in_time():
-    x = np.random.default_rng(1).standard_normal(round(60 * FS))
-    filters = [butter(3, *kind, fs=FS, output="sos") for kind in ((10, "highpass"), (1000, "lowpass"))]
-    filtered = sosfilt(np.concatenate(filters), cumulative_trapezoid(x, dx=1 / FS))
-    assert velocity_rms(x[None], FS, 25.0) == pytest.approx(filtered.std(), rel=0.03)
-
-
 def test_each_record_has_the_velocity_rms_of_its_own_shaft_rate():
     x = np.random.default_rng(2).standard_normal((3, round(6 * FS)))
     found = velocity_rms(x, FS, [5.0, 25.0, 9.0])
@@ -60,8 +51,3 @@ def test_a_signal_without_the_band_and_a_machine_beyond_the_standard_have_no_vel
     assert np.isnan(velocity_rms(np.ones((1, 6000)), 2000.0, 25.0)).all()
     np.testing.assert_array_equal(np.isnan(velocity_rms(x, FS, [9.9, 10.0])), [True, False])
     np.testing.assert_array_equal(np.isnan(velocity_rms(x, FS, [1.9, 501.0])), [True, True])
-
-
-def test_a_high_pass_beyond_the_signal_is_refused():
-    with pytest.raises(ValueError, match="high_pass: 6000 Hz is not between"):
-        velocity(np.ones((1, 100)), FS, 6000.0)

@@ -111,12 +111,6 @@ def test_lines_of_a_run_up_stand_at_their_orders_along_the_speed_that_is_tracked
     assert_lines(x, angles_from_speed(track_speed(x, FS, 4, 60).rate, FS), lines)
 
 
-def test_orders_above_half_the_samples_per_turn_are_removed_at_every_speed():
-    x = np.cos([[80.0], [100.0]] * ANGLE)
-    y = resample_to_angle(x, ANGLE, PER_TURN)
-    assert np.abs(y[:, EDGE:-EDGE]).max() < 1e-3
-
-
 def test_both_ways_to_resample_agree_at_a_constant_speed_and_the_first_sample_is_at_a_whole_turn():
     angle = 2 * np.pi * (25.0 * TIME[None] - 3.25)
     x = np.cos(5 * angle)

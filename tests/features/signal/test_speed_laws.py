@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from features.signal.lines import FAMILIES, Orders
+from features.signal.lines import FAMILIES
 from features.signal.speed import (
     COMBS,
     EVIDENCE,
@@ -16,7 +16,6 @@ from features.signal.speed import (
     candidates,
     find_speed,
     levels_at,
-    line_orders,
     near_label,
 )
 
@@ -39,13 +38,6 @@ def levels_with(comb=None, shaft=None, height=2.0):
     return levels
 
 
-def test_candidates_are_symmetric_and_hold_the_label():
-    error = candidates(0.08)
-    np.testing.assert_allclose(error, -error[::-1], atol=1e-15)
-    assert error[len(error) // 2] == 0
-    assert error[-1] == pytest.approx(0.08)
-
-
 @given(st.floats(1.0, 8.0), st.floats(-0.07, 0.07), st.floats(10.0, 40.0))
 def test_the_level_of_a_line_is_read_at_the_candidate_that_hits_it(order, error, bins_per_order):
     place = order * bins_per_order * (1 + error)
@@ -53,18 +45,6 @@ def test_the_level_of_a_line_is_read_at_the_candidate_that_hits_it(order, error,
     read = levels_at(level, np.array([[order * bins_per_order]]), near_label())[0, 0]
     found = candidates(0.08 + SHAFT_SHIFT * 0.001)[read.argmax()]
     assert abs(found - error) * order * bins_per_order <= 1.0  # a bin
-
-
-def test_lines_beyond_the_end_of_a_spectrum_have_the_level_of_the_floor():
-    assert (levels_at(np.ones((1, 50), np.float32), np.array([[80.0]]), near_label()) == 0).all()
-
-
-def test_line_orders_are_those_of_combs_and_shaft():
-    one = np.ones(1)
-    envelope, signal = line_orders(Orders(0.4 * one, 3.6 * one, 5.4 * one, 2.4 * one))
-    np.testing.assert_allclose(envelope[0, :9], [3.6, 7.2, 10.8, 5.4, 10.8, 16.2, 4.8, 9.6, 14.4])
-    np.testing.assert_allclose(envelope[0, 9:12], [7.2, 14.4, 21.6])
-    np.testing.assert_array_equal(envelope[0, 12:], signal)
 
 
 @given(st.integers(0, len(FAMILIES) - 1), errors, st.integers(-SHAFT_SHIFT, SHAFT_SHIFT), st.floats(8.0, 50.0))
