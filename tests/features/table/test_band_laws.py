@@ -7,7 +7,7 @@ import xarray as xr
 from features import feature_table
 from features.baselines import Model, predict
 from features.table.band import DEFAULT_BAND, ENERGY_EDGES, Band, checked_band
-from features.table.indicators import Orders, feature_names, indicators
+from features.table.indicators import Orders, indicators
 from gen.support.errors import CorpusError
 from tests.tone_corpora import write_corpus
 
@@ -45,12 +45,6 @@ def test_narrow_bands_lie_side_by_side_within_the_band(band):
     assert band.low <= edges[0] < edges[-1] == band.high
     assert np.diff(band.energy_edges).min() > 0
     assert set(band.energy_edges) <= {*ENERGY_EDGES, band.high}
-
-
-def test_the_default_band_has_the_features_it_always_had():
-    assert DEFAULT_BAND.narrow == ((500, 1500), (1500, 2500), (2500, 3500), (3500, 5000))
-    assert feature_names(("bands",))[:2] == ("energy_20-100_Hz", "energy_100-200_Hz")
-    assert feature_names(("bands",))[7] == "energy_3500-5000_Hz"
 
 
 @pytest.mark.parametrize("edges", [(5000, 300), (300, 900), (-1, 5000), (300, 2e5), (float("nan"), 5000)])

@@ -1,7 +1,5 @@
 """The feature table: computed from signal and operating variables, with all other variables copied."""
 
-import re
-
 import netCDF4
 import numpy as np
 import pytest
@@ -10,7 +8,7 @@ from distributed import Client
 
 from features import feature_table
 from features.table.band import Band, band_attributes, band_of
-from features.table.corpus_features import band_warnings, block_features
+from features.table.corpora import band_warnings
 from features.table.definitions import GROUPS
 from features.table.indicators import Orders, feature_names, indicators
 from features.table.table_files import read_table, write_table
@@ -23,8 +21,6 @@ from gen.corpus import (
     make_dataset,
     new_corpus,
     open_corpus,
-    record_blocks,
-    write_part,
 )
 from gen.support.errors import CorpusError
 
@@ -109,12 +105,6 @@ def in_counts(dataset, missing):
     )
 
 
-def test_counts_give_the_features_of_their_accelerations(tmp_path, table):
-    counts = feature_table(make_corpus(tmp_path / "c", change=lambda dataset: in_counts(dataset, ())))
-    in_time = table["group"].values == "time"
-    np.testing.assert_allclose(counts["features"][:, in_time], table["features"][:, in_time], rtol=0.05)
-
-
 def test_a_missing_count_is_not_used_as_a_sample(tmp_path):
     """Read as a sample, the fill value would be an impact of full scale. Missing counts of other channels are ignored."""
     missing = [(1, 0, 5), (2, 0), (3, 1)]  # a sample, a channel, and the channel without features
@@ -125,12 +115,6 @@ def test_a_missing_count_is_not_used_as_a_sample(tmp_path):
     assert found.attrs["records_with_missing_features"] == 2 * PARTS
 
 
-def test_rows_are_in_the_order_of_the_corpus(corpus, table):
-    for number, block in enumerate(record_blocks(corpus)):
-        rows = slice(RECORDS * number, RECORDS * (number + 1))
-        np.testing.assert_array_equal(table["features"].values[rows], block_features(block))
-
-
 def test_a_single_file_is_worked_on_block_by_block(tmp_path, table, monkeypatch):
     monkeypatch.setattr("gen.corpus.slices._BLOCK_RECORDS", 4)
     done = []
@@ -139,30 +123,12 @@ def test_a_single_file_is_worked_on_block_by_block(tmp_path, table, monkeypatch)
     assert done == [(1, 4), (2, 4), (3, 4), (4, 4)]
 
 
-def test_groups_are_chosen_by_name(corpus, table):
-    chosen = feature_table(corpus, groups=("time", "lines"))
-    assert tuple(chosen["feature"].values) == feature_names(("time", "lines"))
-    xr.testing.assert_equal(chosen["features"], table["features"].sel(feature=chosen["feature"]))
-
-
-def test_another_channel_has_other_features(corpus, table):
-    assert not np.allclose(feature_table(corpus, channel=1)["features"], table["features"])
-
-
 def test_two_workers_and_this_process_give_the_same_numbers(corpus, table):
     done = []
     with Client(n_workers=2, threads_per_worker=1, processes=False, dashboard_address=":0") as client:
         parallel = feature_table(corpus, scheduler=client, progress=lambda *counts: done.append(counts))
         xr.testing.assert_identical(feature_table(corpus, scheduler=client.scheduler.address), table)
     xr.testing.assert_identical(parallel, table)
-    assert done == [(1, 3), (2, 3), (3, 3)]
-
-
-@pytest.mark.usefixtures("started_processes")
-def test_processes_give_the_same_numbers(corpus, table):
-    done = []
-    found = feature_table(corpus, workers=2, progress=lambda *counts: done.append(counts))
-    xr.testing.assert_identical(found, table)
     assert done == [(1, 3), (2, 3), (3, 3)]
 
 
@@ -178,15 +144,6 @@ def test_features_do_not_change_when_labels_latents_and_provenance_are_shuffled(
     assert not shuffled["snr"].equals(table["snr"])
     assert not shuffled["fault"].equals(table["fault"])
     np.testing.assert_array_equal(shuffled["features"], table["features"])
-
-
-def test_features_do_not_need_labels_latents_or_provenance(tmp_path, corpus):
-    block = record_blocks(corpus)[0]
-    with xr.open_dataset(block.file, decode_times=False) as part:
-        hidden = [name for name, known in part.variables.items() if known.attrs.get("role") in ROLES[1:]]
-        bare = part.drop_vars(hidden).load()
-    write_part(bare, tmp_path / "bare.nc")
-    np.testing.assert_array_equal(block_features(block._replace(file=tmp_path / "bare.nc")), block_features(block))
 
 
 def test_records_without_a_usable_signal_are_nan_and_counted(tmp_path):
@@ -261,18 +218,6 @@ def test_columns_of_several_channels_are_named_by_channel(tmp_path, corpus):
     for name in ("sensor", "housing"):
         held = both["features"].sel(channel=name, feature="time_rms")
         np.testing.assert_array_equal(again[f"{name}_time_rms"].to_numpy(), held)
-
-
-@pytest.mark.parametrize("name", ["table.csv", "table", "table.nc.gz"])
-def test_another_suffix_is_refused(tmp_path, table, name):
-    with pytest.raises(CorpusError, match=re.escape("use .nc or .parquet.")):
-        write_table(table, tmp_path / name)
-
-
-@pytest.mark.parametrize("name", ["table.nc", "table.parquet"])
-def test_a_table_that_cannot_be_written_is_named(tmp_path, table, name):
-    with pytest.raises(CorpusError, match=rf"{name}: could not be written"):
-        write_table(table, tmp_path / "nowhere" / name)
 
 
 def test_a_file_without_a_feature_table_is_refused_by_name(tmp_path, corpus):

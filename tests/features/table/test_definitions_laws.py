@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from features.table.band import DEFAULT_BAND, Band
-from features.table.definitions import GROUPS, define_features, feature_coordinates
+from features.table.definitions import GROUPS, define_features
 from features.table.indicators import Orders, feature_names, indicators
 
 FS = 12_000.0
@@ -71,19 +71,3 @@ def test_extreme_signals_have_features_in_their_ranges(rate, dtype):
 def test_random_signals_have_features_in_their_ranges(seed, rate, decibels, share, extreme, band):
     noise = np.random.default_rng(seed).standard_normal((3, len(TIME)))
     assert_in_range(10 ** (decibels / 20) * (share * noise + (1 - share) * EXTREME[extreme]), rate, band)
-
-
-def test_an_alternating_signal_has_the_least_factors():
-    values = assert_in_range(EXTREME["alternating"][None], 30.0)
-    for name in ("crest_factor", "kurtosis", "shape_factor", "impulse_factor", "clearance_factor"):
-        assert values[f"time_{name}"][0] == pytest.approx(1.0)
-
-
-def test_coordinates_name_the_unit_and_the_meaning_of_every_feature():
-    coordinates = feature_coordinates(("time",))
-    assert {name: values[0] for name, (_, values, _) in coordinates.items()} == {
-        "feature": "time_rms",
-        "group": "time",
-        "units": "m s-2",
-        "long_name": "root mean square",
-    }

@@ -8,9 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from features.signal.lines import FAMILIES
-from features.table.band import DEFAULT_BAND
 from features.table.definitions import GROUPS, define_features
-from features.table.indicators import GROUP_FEATURES, Orders, feature_names, indicators
+from features.table.indicators import Orders, feature_names, indicators
 
 law = settings(max_examples=12)
 seeds = st.integers(0, 2**32 - 1)
@@ -42,16 +41,6 @@ def impulse_train(order, shaft_rate, fs=12_000, duration=0.5, seed=0):
     since = np.mod(t + 0.003, 1 / (order * shaft_rate))
     impulses = np.exp(-800 * since) * np.sin(2 * np.pi * 3000 * since)
     return (impulses + 0.05 * noise(seed, 1, len(t))[0])[None]
-
-
-def test_each_group_has_one_function_that_computes_all_its_features():
-    assert tuple(GROUP_FEATURES) == GROUPS
-    for group, compute in GROUP_FEATURES.items():
-        found = compute(noise(0).astype(np.float32), 12_000.0, np.full(4, 30.0), orders(4), DEFAULT_BAND)
-        assert group in found
-        assert {name: values.shape for name, values in found.items()} == {
-            name: (4, len(feature_names((name,)))) for name in found
-        }
 
 
 def test_groups_are_returned_in_the_requested_order_with_the_same_values():
@@ -147,13 +136,6 @@ def test_noise_has_no_comb_and_no_impulsiveness(seed, rate):
     np.testing.assert_allclose(values["whitened_impulsiveness"], np.log(2), atol=0.15)
 
 
-def test_differences_between_families_are_those_of_their_combs():
-    values = named(features(impulse_train(BPFI, 30.0), 12_000.0, 30.0))
-    for view in ("cepstral", "whitened", "bands_max", "bands_mean"):
-        difference = values[f"{view}_bpfo_comb"] - values[f"{view}_bpfi_comb"]
-        np.testing.assert_array_equal(values[f"{view}_bpfo_over_bpfi"], difference)
-
-
 def test_a_load_that_varies_once_per_cage_revolution_gives_a_slow_fluctuation():
     t = np.arange(12_000) / 12_000
     x = noise(1, n=12_000)
@@ -203,16 +185,6 @@ def test_a_record_of_less_than_two_revolutions_has_no_lines_and_no_shape_but_sta
 )
 def test_common_lengths_sample_rates_and_speeds_give_finite_features(n, fs, rate):
     assert np.isfinite(features(noise(5, 2, n), fs, rate)).all()
-
-
-def test_a_signal_with_empty_bands_gives_finite_features():
-    t = np.arange(6000) / 12_000
-    empty = np.stack([np.sin(2 * np.pi * 50 * t), np.where(t == 0.25, 1.0, 0.0), np.sign(t - 0.2)])
-    assert np.isfinite(features(empty, 12_000.0, 30.0)).all()
-
-
-def test_zero_records_give_zero_rows():
-    assert features(np.empty((0, 6000)), 12_000.0, 30.0).shape == (0, len(define_features()))
 
 
 @law

@@ -10,15 +10,12 @@ from features.table.recording_speeds import (
     ESTIMATE,
     UNCERTAINTY,
     Sums,
-    block_sums,
     other_speed,
     rates_to_use,
-    recording_numbers,
     recording_speeds,
     speed_warnings,
 )
-from features.table.table_files import read_table, write_table
-from gen.corpus import FAULTS, Variable, open_corpus, record_blocks
+from gen.corpus import FAULTS, Variable, open_corpus
 from tests.corpora import write_records
 from tests.pulses import LINES, ORDERS, pulse_train
 
@@ -84,13 +81,6 @@ def test_check_leaves_the_features_as_they_are(corpus, checked):
     assert "speed" not in plain.attrs
 
 
-def test_found_rates_are_operating_variables_with_units(checked):
-    for name in (ESTIMATE, UNCERTAINTY):
-        assert checked[name].attrs["role"] == "operating"
-        assert checked[name].attrs["units"] == "Hz"
-    assert checked[BY].attrs["flag_meanings"] == "unclear bpfo bpfi 2bsf shaft"
-
-
 def test_correct_computes_the_features_at_the_found_speed_where_it_is_clear(checked, corrected, tmp_path):
     found = {fault: float(rate) for fault, rate in zip(SPEEDS, corrected[ESTIMATE].values[::WINDOWS], strict=True)}
     clear = dict(zip(SPEEDS, corrected[BY].values[::WINDOWS] > 0, strict=True))
@@ -118,17 +108,6 @@ def test_the_estimate_of_a_recording_is_that_of_shaft_speed(corpus, checked):
     assert found.uncertainty == pytest.approx(checked[UNCERTAINTY].values[WINDOWS])
 
 
-def test_blocks_of_records_may_come_in_any_order(corpus, checked):
-    recording = recording_numbers(checked)
-    rate = checked["shaft_rate"].values
-    starts = np.arange(7, len(recording), 7)
-    sums = [
-        (number, block_sums(task))
-        for number, task in enumerate(zip(record_blocks(corpus), np.split(recording, starts), strict=True))
-    ]
-    assert recording_speeds(recording, rate, sums) == recording_speeds(recording, rate, reversed(sums))
-
-
 @pytest.mark.usefixtures("started_processes")
 def test_two_workers_give_the_same_table(corpus, corrected):
     done = []
@@ -151,30 +130,12 @@ def test_simulated_corpora_are_corrected_on_request_and_never_checked(tmp_path):
     assert ESTIMATE in feature_table(simulated, GROUPS, speed="correct")
 
 
-def test_a_table_with_speeds_is_unchanged_after_netcdf(tmp_path, corrected):
-    write_table(corrected, tmp_path / "table.nc")
-    again = read_table(tmp_path / "table.nc")
-    xr.testing.assert_equal(again, corrected)
-    assert speed_warnings(again) == speed_warnings(corrected)
-
-
 def test_a_warning_names_the_recording_both_speeds_and_the_lines(checked, corrected):
     inner, ball = speed_warnings(checked)
     assert inner.startswith("inner.csv: labelled 1500 rpm, but its BPFI lines fit 15")
     assert ball.startswith("ball.csv: labelled 1560 rpm, but its shaft harmonics fit 14")
     assert inner.endswith("%); check the label and the bearing, or use the speed 'correct'.")
     assert speed_warnings(corrected)[0].endswith("%); its features use the estimated speed.")
-
-
-def test_more_than_five_recordings_are_summarised(tmp_path):
-    speeds = {f"outer {number}": (25.0, 26.0) for number in range(7)}
-    sentences = speed_warnings(feature_table(write_machines(tmp_path / "many", speeds=speeds), GROUPS, speed="check"))
-    assert len(sentences) == 6
-    assert sentences[-1] == "2 more recordings with lines that fit another speed."
-
-
-def test_a_table_without_speeds_warns_of_nothing(corpus):
-    assert speed_warnings(feature_table(corpus, GROUPS)) == []
 
 
 def test_another_treatment_of_speeds_is_refused(corpus):

@@ -1,9 +1,7 @@
 """The scikit-learn transformer passes the checks of scikit-learn and computes the features of the feature table."""
 
 import numpy as np
-import pytest
 from sklearn import config_context
-from sklearn.base import clone
 from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import make_pipeline
 from sklearn.utils.estimator_checks import parametrize_with_checks
@@ -59,21 +57,3 @@ def test_a_wrong_speed_is_corrected_signal_by_signal():
     right = [combs(shaft_rate=rate)[number] for number, rate in enumerate(rates)]
     np.testing.assert_allclose(combs(speed="correct"), right, atol=0.2)
     assert combs()[0] < right[0] - 1
-
-
-def test_another_treatment_of_speeds_is_refused():
-    with pytest.raises(ValueError, match="'check' is no treatment of shaft speeds; choose off or correct"):
-        IndicatorTransformer(speed="check").fit_transform(np.ones((1, 100)))  # pyright: ignore[reportArgumentType]
-
-
-def test_the_transformer_has_no_state():
-    x = np.random.default_rng(0).standard_normal((2, 6000))
-    transformer = IndicatorTransformer()
-    np.testing.assert_array_equal(transformer.transform(x), clone(transformer).fit(-x).transform(x))
-
-
-def test_signals_too_short_for_a_line_have_only_statistics():
-    x = np.random.default_rng(0).standard_normal((2, 40))
-    values = IndicatorTransformer().fit_transform(x)
-    assert np.isfinite(IndicatorTransformer(groups=("time", "bands")).fit_transform(x)).all()
-    assert np.isnan(values[:, : len(feature_names(("lines", "shape")))]).all()

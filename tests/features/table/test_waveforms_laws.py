@@ -15,7 +15,6 @@ from sklearn.preprocessing import FunctionTransformer
 from features import open_waveforms
 from features.baselines import controls, cross_validate
 from features.table.waveforms import _samples_in_turns
-from gen.corpus import UNKNOWN_CODE
 from gen.support.errors import CorpusError
 from tests.tone_corpora import FS, TONES, write_corpus
 
@@ -99,15 +98,6 @@ def test_a_pipeline_on_the_psd_is_cross_validated_with_its_controls(corpus):
     assert scores.balanced_accuracy > 0.9
     assert scores.records == 48
     assert controls(X, ON_THE_PSD, folds=4)["null"].balanced_accuracy < 0.5
-
-
-def test_records_of_unknown_class_are_left_out(tmp_path):
-    fault = np.repeat(np.arange(16), 3) % 4
-    write_corpus(tmp_path / "corpus")
-    X = open_waveforms(tmp_path / "corpus", normalise=True)
-    labels = X.labels.assign(fault=("record", np.where(np.arange(48) < 3, UNKNOWN_CODE, fault)))
-    scores = cross_validate(replace(X, labels=labels), ON_THE_PSD, folds=3)
-    assert scores.records == 45
 
 
 def test_samples_that_are_not_finite_are_zero(corpus):
