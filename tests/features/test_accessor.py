@@ -75,8 +75,3 @@ def test_orders_follow_the_angle_of_each_record(signals):
 def test_an_array_without_time_is_refused_in_one_sentence():
     with pytest.raises(ValueError, match="needs signals with a coordinate elapsed_time"):
         xr.DataArray(np.zeros(3), dims="record").raceway.psd()
-
-
-def test_what_is_no_corpus_has_no_summary(signals):
-    with pytest.raises(ValueError, match="needs the records of a corpus"):
-        _ = signals.to_dataset(name="acceleration").raceway

@@ -20,10 +20,6 @@ def coloured(decibels: float, records: int = 1, channels: int = 1) -> Colour:
     return Colour(change, np.full((channels, records), SCATTER))
 
 
-def test_frequencies_of_the_shaft_do_not_count():
-    assert COUNTED[0] == "energy_200-400_Hz"
-
-
 @given(st.floats(-50, 50), st.floats(0, 40))
 def test_a_gain_has_no_colour_and_a_change_of_all_bands_is_its_size(gain, decibels):
     change = coloured(decibels).changes[0, 0]

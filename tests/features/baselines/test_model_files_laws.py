@@ -123,21 +123,11 @@ def test_a_part_that_is_no_model_is_refused(files, tmp_path, part, value):
     assert "not a complete model" in refusal(tmp_path / "m")
 
 
-def test_a_missing_file_and_a_folder_are_no_models(tmp_path):
-    assert "no such file; give a model made with raceway train" in refusal(tmp_path / "none.skops")
-    assert "not a file" in refusal(tmp_path)
-
-
 def test_a_model_of_another_version_of_scikit_learn_is_refused(files, tmp_path):
     archive = Archive(files["svm"])
     for place in archive.places("_sklearn_version"):
         place["content"] = json.dumps("0.1")
     assert "was trained with scikit-learn 0.1, and " in refusal(archive.write(tmp_path / "m"))
-
-
-def test_a_model_larger_than_the_limit_is_refused(files, monkeypatch):
-    monkeypatch.setenv("RACEWAY_LIMITS", "file_bytes=5000")
-    assert "raceway --limit file_bytes=NUMBER" in refusal(files["extra_trees"])
 
 
 def test_the_model_for_shorter_records_is_in_the_same_file(tmp_path):

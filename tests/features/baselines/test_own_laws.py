@@ -15,9 +15,8 @@ from features.baselines import EstimatorError, Model, benchmark, cross_validate,
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import OwnClassifier
 from features.baselines.results_file import write_results
-from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
-from tests.features.baselines.test_baselines_laws import make_table, records_of
+from tests.features.baselines.test_baselines_laws import make_table
 from tests.features.table.test_waveforms_laws import psd
 from tests.tone_corpora import write_corpus
 
@@ -68,18 +67,6 @@ def test_a_given_classifier_is_copied_before_each_fit():
     assert not hasattr(other, "coef_")
 
 
-def test_an_own_copy_of_a_baseline_scores_as_the_baseline():
-    from features.baselines.estimators import ESTIMATORS
-
-    table = make_table(told=0.7)
-    theirs, mine = (
-        cross_validate(table, "logistic_regression"),
-        cross_validate(table, ESTIMATORS["logistic_regression"]),
-    )
-    assert (theirs.confusion, theirs.folds) == (mine.confusion, mine.folds)
-    assert theirs.log_loss == pytest.approx(mine.log_loss)
-
-
 @pytest.mark.parametrize(
     "maker",
     [
@@ -91,10 +78,6 @@ def test_an_own_copy_of_a_baseline_scores_as_the_baseline():
 )
 def test_a_function_or_class_is_given_the_seed_if_it_takes_one(maker):
     assert OwnClassifier(maker, 17).made.random_state == 17
-
-
-def test_a_function_without_arguments_is_called_without_a_seed():
-    assert OwnClassifier(lambda: LogisticRegression(), 17).made.random_state is None
 
 
 def test_an_own_classifier_is_benchmarked_beside_the_untrained_baselines_and_on_another_corpus():
@@ -207,12 +190,6 @@ def test_a_classifier_that_cannot_be_used_is_refused_in_one_sentence(made, sente
     assert "\n" not in str(caught.value)
 
 
-def test_a_classifier_that_fails_on_signals_is_not_told_to_take_them(tmp_path):
-    write_corpus(tmp_path / "corpus")
-    with pytest.raises(EstimatorError, match=r"by zero; it got signals\); RACEWAY"):
-        Model(Broken("fit")).fit(open_waveforms(tmp_path / "corpus"))
-
-
 @pytest.fixture
 def module(tmp_path, monkeypatch):
     """Write a module into the current folder: ``module("name", text)``."""
@@ -274,10 +251,3 @@ def test_an_address_that_gives_no_classifier_is_refused_in_one_sentence(module, 
     with pytest.raises(EstimatorError, match=sentence) as caught:
         load_maker(address)
     assert "\n" not in str(caught.value)
-
-
-def test_names_are_those_of_the_format():
-    fitted = make_estimator(Nearest, 0).fit(np.eye(len(FAULTS)), np.arange(len(FAULTS)))
-    assert tuple(fitted.fitted.names) == tuple(sorted(FAULTS))
-    np.testing.assert_array_equal(fitted.classes_, np.arange(len(FAULTS)))
-    assert len(records_of(make_table()).features) == 80

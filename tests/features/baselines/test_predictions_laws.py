@@ -8,11 +8,10 @@ import xarray as xr
 from sklearn.exceptions import NotFittedError
 
 from features.baselines import UNSURE, Model, predict
-from features.baselines.calibration import COVERAGE, HEALTHY_SHARE, IMPULSIVENESS, UNCALIBRATED
+from features.baselines.calibration import HEALTHY_SHARE, IMPULSIVENESS, UNCALIBRATED
 from features.baselines.cross_calibration import calibration_splits, fit_and_calibrate
 from features.baselines.predictions import predictions
 from features.baselines.records import features_of, labelled_records
-from gen.support.errors import CorpusError
 from tests.model_files import make_table
 
 pytestmark = pytest.mark.usefixtures("few_trees")
@@ -56,12 +55,6 @@ def test_predictions_are_those_that_are_scored():
     assert scores.answered_accuracy == pytest.approx(right[found.answered].mean())
     assert scores.by_recording is not None
     assert scores.by_recording.records == len(np.unique(table.recording))
-
-
-def test_training_calibrates_by_rig_and_states_the_coverage():
-    found = Model("logistic_regression").fit(windowed()).calibration
-    assert found.by == "rig"
-    assert COVERAGE <= found.coverage < COVERAGE + 1 / 96
 
 
 @pytest.mark.parametrize(("rigs", "by", "folds"), [(6, "rig", 3), (2, "rig", 2), (1, "specimen", 3)])
@@ -158,11 +151,6 @@ def test_a_fault_that_one_channel_does_not_show_is_known_from_the_others():
     assert found.probabilities[0, 2] > 0.7
 
 
-def test_a_model_is_trained_on_one_channel():
-    with pytest.raises(CorpusError, match="a model is trained on one channel; give the feature table of one"):
-        Model("logistic_regression").fit(channels(windowed(), windowed()))
-
-
 def with_impulsiveness(table: xr.Dataset, values: np.ndarray) -> xr.Dataset:
     """The table with a further feature of its own group."""
     more = table.isel(feature=[-1]).assign_coords(feature=[IMPULSIVENESS])
@@ -182,12 +170,4 @@ def test_recordings_are_impulsive_whose_mean_exceeds_99_of_100_healthy_training_
         found = predict(with_impulsiveness(tested, limit + offsets + np.where(recording == 5, above, -1.0)), model)
         assert found.by_recording is not None
         np.testing.assert_array_equal(found.by_recording.impulsive[found.recording], (above > 0) & (recording == 5))
-    assert not found.impulsive.any()
-
-
-def test_a_model_without_the_feature_calls_nothing_impulsive():
-    model = Model("logistic_regression").fit(windowed())
-    assert model.calibration.impulsive is None
-    found = predict(windowed(seed=1), model).by_recording
-    assert found is not None
     assert not found.impulsive.any()

@@ -1,7 +1,6 @@
 """Laws of the tracks: no specimen on both sides, tested groups that were not trained, and controls that say so."""
 
 import numpy as np
-import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,7 +8,7 @@ from hypothesis import strategies as st
 from features.baselines import TRACKS, benchmark, controls, cross_validate, learning_curve
 from features.baselines.inspection import _by_specimen
 from features.baselines.records import SHAPES, records_of
-from features.baselines.splits import control_cases, grouped_case, permuted_labels
+from features.baselines.splits import grouped_case
 from features.baselines.tracks import held_out_groups, ranges, track_splits
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
@@ -160,15 +159,6 @@ def test_the_null_control_is_at_chance_although_the_labels_are_told_by_the_featu
     assert 0.15 < np.mean(scores) < 0.3
 
 
-def test_the_null_control_of_a_held_out_track_splits_like_the_track():
-    found = records(ladder=True)
-    _, splits = grouped_case(found, "severity", 4, 3)
-    labels, permuted = control_cases(found, "severity", 4, 3)["null"]
-    np.testing.assert_array_equal(labels, permuted_labels(found, 3))
-    for one, other in zip(splits, permuted, strict=True):
-        np.testing.assert_array_equal(one[1], other[1])
-
-
 @pytest.mark.parametrize(
     ("track", "changed", "sentence"),
     [
@@ -197,27 +187,6 @@ def test_tracks_without_groups_are_left_out():
     results = benchmark(one, tracks="all", estimators={"majority": "majority"}, folds=3)
     assert set(results.left_out) == {"bearing", "speed"}
     assert (results.track, set(results.further)) == ("specimen", {*TRACKS} - {"specimen", "bearing", "speed"})
-
-
-def test_all_tracks_are_scored_by_three_baselines_and_single_ones_by_all():
-    results = benchmark(varied_table(), tracks="all", folds=3)
-    assert (results.track, tuple(results.further), results.left_out) == (TRACKS[0], TRACKS[1:], {})
-    for found in results.further.values():
-        assert list(found.baselines) == ["majority", "envelope_rule", "ensemble"] == list(results.baselines)
-        assert found.baselines["ensemble"].leaky == results.baselines["ensemble"].leaky
-        assert found.tested <= found.records == 144
-    assert results.further["speed"].tested < 144
-
-
-def test_the_first_specimens_of_a_training_set_have_all_classes():
-    found = records()
-    order = _by_specimen(found, np.arange(len(found.fault)), 0)
-    assert sorted(order) == list(range(len(found.fault)))
-    specimens = found.specimen[order]
-    assert np.count_nonzero(np.diff(specimens)) == 47  # the records of a specimen follow one another
-    for size in range(4, 49, 4):
-        classes = found.fault[np.isin(found.specimen, pd.unique(specimens)[:size])]
-        assert np.ptp(np.unique_counts(classes).counts) == 0
 
 
 def test_the_learning_curve_ends_at_the_score_of_the_cross_validation():
