@@ -1,13 +1,10 @@
 """``raceway diagnose``: a sentence, a JSON object and a page for good recordings, one sentence for all others."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.io import savemat
 
 import raceway
 from features.signal import velocity_rms
@@ -141,16 +138,6 @@ def test_all_axes_of_a_file_are_used_without_being_chosen_and_the_answer_says_so
     assert told(path, *options, "--channel", "y")["channels"] == ["y"]
 
 
-def test_the_only_acceleration_of_a_file_is_read_and_told(model, recordings, tmp_path):
-    signal, rpm = recordings["outer"]
-    path = write_axes(tmp_path / "r.csv", "speed [rpm],case [m/s2]", np.full(signal.size, rpm), signal)
-    alone = write_axes(tmp_path / "h.csv", "case [m/s2]", signal)
-    options = ("--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model)
-    assert (
-        "r.csv: case is read, which alone may be acceleration." in told(path, *options, "--healthy", alone)["warnings"]
-    )
-
-
 def test_a_healthy_recording_has_the_channels_of_the_recording(model, recordings, tmp_path):
     signal, rpm = recordings["outer"][0][:FS], recordings["outer"][1]
     options = ("--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model, "--unit", "g")
@@ -213,24 +200,6 @@ def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
             raceway.diagnose(wrong, FS, rpm=rpm, **known)
     with pytest.raises(ValueError, match="not positive numbers"):
         raceway.diagnose(signal, FS, rpm=-rpm, **known)
-
-
-def test_channels_of_a_matlab_file_are_its_variables_or_the_columns_of_one(model, recordings, tmp_path):
-    signal, rpm = recordings["outer"]
-    savemat(tmp_path / "r.mat", {"DE_time": signal, "FE_time": signal[:-5], "both": np.stack([signal, signal], axis=1)})
-    options = ("--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model)
-    variables = told(tmp_path / "r.mat", "--channel", "DE_time,FE_time", *options)
-    columns = told(tmp_path / "r.mat", "--variable", "both", "--channel", "0,1", *options)
-    assert variables["verdict"] == columns["verdict"] == "outer"
-    assert variables["channels"] == ["DE_time", "FE_time"]
-
-
-def test_rate_and_speed_in_a_matlab_file_are_used_and_the_speed_is_told(model, recordings, tmp_path):
-    signal, rpm = recordings["inner"]
-    savemat(tmp_path / "r.mat", {"X1_DE": signal, "fs": FS, "X1RPM": rpm})
-    found = told(tmp_path / "r.mat", "--bearing", "6205", "--model", model)
-    assert (found["verdict"], found["sample_rate_hz"]) == ("inner", FS)
-    assert f"r.mat: it states a speed of {rpm:g} rpm, which is used." in found["warnings"]
 
 
 def test_a_signal_that_tells_nothing_gives_unsure_and_advice(model, recordings, tmp_path):
@@ -313,21 +282,3 @@ def test_an_assumed_unit_is_told_in_text_in_json_and_on_the_page(model, recordin
     assert assumed in told(*options)["warnings"]
     assert f"warning: {assumed.removeprefix('r.csv: ')}" in call(*options, "-o", page).stderr
     assert assumed in page.read_text(encoding="utf-8")
-
-
-def test_the_mark_between_columns_settles_what_commas_mean(model, recordings, tmp_path):
-    signal, rpm = recordings["inner"]
-    (tmp_path / "r.csv").write_text("".join(f"{x:.5f}\n" for x in signal).replace(".", ","), encoding="utf-8")
-    options = (tmp_path / "r.csv", "--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model)
-    assert "give the mark between columns with --delimiter." in call(*options).stderr
-    assert told(*options, "--delimiter", "semicolon")["verdict"] == "inner"
-
-
-def test_a_missing_rate_is_told_before_anything_is_loaded(tmp_path):
-    np.savetxt(tmp_path / "r.csv", np.zeros(600))
-    done = subprocess.run(
-        [sys.executable, "-X", "importtime", "-m", "raceway", "diagnose", tmp_path / "r.csv", "--rpm", "1500"],
-        capture_output=True, text=True, timeout=60, check=False,
-    )  # fmt: skip
-    assert "does not state its sample rate; give it with --rate HZ." in done.stderr
-    assert not re.search(r"\| +(sklearn|numba|xarray|dask)$", done.stderr, re.MULTILINE)

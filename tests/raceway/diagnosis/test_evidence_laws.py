@@ -5,8 +5,8 @@ import pytest
 from scipy.signal import lfilter
 
 from features.table.indicators import Orders
-from raceway.diagnosis.evidence import _near_shaft, find_evidence
-from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
+from raceway.diagnosis.evidence import find_evidence
+from raceway.diagnosis.spectrum import band_spectra
 
 FS, RATE = 12_000.0, 29.5
 ORDERS = Orders(0.3983, 3.5848, 5.4152, 2.3567)
@@ -82,19 +82,6 @@ def test_a_line_beside_a_multiple_of_the_shaft_rate_is_told_at_its_peak(order):
     assert line.level == pytest.approx(10 * np.log10(near.max()))
 
 
-def test_a_notch_at_the_line_removes_the_evidence():
-    """The modulation is undone: the same noise, divided by it, has no line any more."""
-    x = modulated(5.4152, 0.6, 5.0, np.random.default_rng(4))
-    assert evidence(x)
-    undone = x / (1 + 0.6 * np.cos(2 * np.pi * 5.4152 * RATE * np.arange(x.size) / FS))
-    assert evidence(undone) == []
-
-
-def test_a_line_at_another_speed_is_no_evidence():
-    x = modulated(5.4152 * 1.04, 0.6, 5.0, np.random.default_rng(5))
-    assert evidence(x) == []
-
-
 def test_sidebands_belong_to_the_family_of_their_line():
     t = np.arange(round(5 * FS)) / FS
     depth = 0.6 * (1 + 0.8 * np.cos(2 * np.pi * RATE * t))
@@ -138,16 +125,3 @@ def test_a_family_10_db_below_the_strongest_is_not_told():
     e = np.random.default_rng(9).standard_normal(t.size)
     assert {line.fault for line in evidence(e * (1 + weak))} == {"ball"}
     assert {line.fault for line in evidence(e * (1 + weak + strong))} == {"inner"}
-
-
-def spectrum_with(*frequencies, ratio=100.0, width=0.4):
-    """A spectrum of noise with lines, of many segments."""
-    bins = np.ones(6000)
-    bins[np.rint(np.array(frequencies) / 0.1).astype(int)] = ratio
-    return BandSpectrum((1000.0, 3000.0), 0.1, width, bins, 50.0)
-
-
-def test_multiples_of_the_shaft_rate_are_left_out_more_widely_the_higher_they_are():
-    near = _near_shaft(spectrum_with(), RATE)
-    assert near[[round(multiple * RATE * 1.0035 / 0.1) for multiple in (1, 10, 19)]].all()
-    assert not near[int(10.2 * RATE / 0.1)]

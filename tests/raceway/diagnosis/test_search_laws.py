@@ -82,12 +82,6 @@ def test_one_axis_with_lines_tells_the_speed_of_all():
     assert pairs[0].rate == pytest.approx(RATE, rel=0.01)
 
 
-@pytest.mark.parametrize(("rate", "seconds"), [(0.5, 20.0), (1.5, 3.0), (40.0, 0.06), (150.0, 1.0)])
-def test_slow_and_fast_shafts_and_short_recordings_are_searched(rate, seconds):
-    pairs, _ = found(recording(ORDER["bpfo"], 8, seconds=seconds, rate=rate), Given({"nine": NINE}, (rate, rate)))
-    assert pairs[0].rate == pytest.approx(rate, rel=0.08)
-
-
 def spectra_with(*orders, height=3.0):
     """Levels of noise with lines at orders of the shaft."""
     level = np.full(6000, -0.11)

@@ -12,7 +12,7 @@ from raceway.diagnosis import Given, Pair
 from raceway.diagnosis.answer import Judged, _conclude, _usable
 from raceway.diagnosis.evidence import Line
 from raceway.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
-from raceway.diagnosis.wording import MISSED, answer_in_words, missed_faults
+from raceway.diagnosis.wording import MISSED, missed_faults
 from raceway.importing.recorded import LONGEST, Recorded
 
 FS, RATE = 12_000.0, 25.0
@@ -120,25 +120,12 @@ def test_lines_that_plain_are_answered_although_the_classifier_says_healthy(like
     assert judge(probabilities("healthy", likely), 0.5, foreign)[0] in ("healthy", UNSURE)
 
 
-def test_an_answer_of_the_lines_names_what_the_classifier_says():
-    told = answer_in_words("outer", probabilities("healthy", 0.76), COMB)
-    assert told.startswith("Outer race fault: ")
-    assert told.endswith("although the classifier alone says healthy (probability 0.76)")
-
-
 def test_missed_faults_are_told_for_the_nearest_length():
     for seconds, alone, compared in MISSED:
         for near in (0.9 * seconds, 1.1 * seconds):
             assert (missed_faults(near, compared=False), missed_faults(near, compared=True)) == (alone, compared)
     assert missed_faults(1e-3, compared=False) == MISSED[0][1]
     assert missed_faults(1e3, compared=False) == MISSED[-1][1]
-
-
-def test_below_the_threshold_the_reason_names_the_strongest_lines():
-    verdict, why = judge(probabilities("inner", 0.4), 0.5, [line("inner")])
-    assert verdict == UNSURE
-    assert "0.50" in why
-    assert "tells of inner" in why
 
 
 def judged(name, pair):
