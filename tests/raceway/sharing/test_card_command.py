@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gen.corpus import lock, open_corpus, read_manifest, validate_corpus
-from gen.support.errors import CorpusError
+from gen.corpus import open_corpus, read_manifest, validate_corpus
 from raceway import describe
-from raceway.sharing import card_pictures
-from raceway.sharing.card.card_page import card_folder
+from raceway.sharing.card.page import card_folder
 from tests.tone_corpora import write_corpus
 
 ORDERS = {"ftf": 0.4, "bpfo": 9.0, "bpfi": 4.0, "bsf": 2.4}  # so that the lines of the pictures are those of the tones
@@ -176,10 +174,3 @@ def test_a_file_of_a_corpus_gets_no_card(run, copied):
     result = run("card", copied / "parts" / "part-00000.nc", "--license", "MIT")
     assert f"is a file of the corpus {copied.resolve()}; give that corpus." in result.stderr
     assert contents(copied) == before
-
-
-def test_one_call_at_a_time_makes_a_card(copied):
-    folder = card_folder(copied)
-    folder.mkdir(exist_ok=True)
-    with lock(folder), pytest.raises(CorpusError, match="another raceway command is writing into it"):
-        card_pictures.complete_card(copied)

@@ -2,9 +2,8 @@
 
 import pytest
 
-from gen.corpus import validate_corpus
 from raceway.console.ending import BAD_INPUT
-from tests import corpora, tone_corpora
+from tests import tone_corpora
 
 
 @pytest.fixture(scope="module")
@@ -24,29 +23,6 @@ def test_a_choice_is_copied_and_described(run, tones, tmp_path):
     assert f"{tmp_path / 's.nc'}: 6 of 12 records, 1 channel (a) in 1 file, " in result.stdout
     assert f"Next: raceway info {tmp_path / 's.nc'}" in result.stdout
     assert "copying: 6 of 6 records" in result.stderr
-
-
-def test_a_copy_there_and_back_is_the_same_corpus(told, tones, tmp_path):
-    told("copy", tones[0], "-o", tmp_path / "c.nc")
-    told("copy", tmp_path / "c.nc", "-o", tmp_path / "again")
-    assert told("validate", tmp_path / "c.nc")["valid"]
-    one, file, again = (told("info", path) for path in (tones[0], tmp_path / "c.nc", tmp_path / "again"))
-    for other in (file, again):
-        assert {key for key in one if one[key] != other[key]} <= {"corpus", "bytes", "parts", "part_mb", "files"}
-    assert told("features", tmp_path / "c.nc", "-o", tmp_path / "features.nc")["records"] == 12
-
-
-def test_several_corpora_are_joined(run, told, tones, tmp_path):
-    found = told("copy", *tones, "-o", tmp_path / "m")
-    assert found == {
-        "target": str(tmp_path / "m"), "form": "folder", "records": 24, "of": 24, "channels": ["housing"], "filled": [],
-        "files": found["files"], "bytes": sum(path.stat().st_size for path in (tmp_path / "m").rglob("*") if path.is_file()),
-    }  # fmt: skip
-    assert validate_corpus(tmp_path / "m") == []
-    corpora.write_parts(tmp_path / "random", [corpora.dataset(0, 4)])
-    corpora.write_parts(tmp_path / "plain", [corpora.dataset(9, 4).drop_vars("draws")])
-    result = run("copy", tmp_path / "random", tmp_path / "plain", "-o", tmp_path / "both")
-    assert "variables that one of the sources lacks are marked as not known in its records: draws." in result.stderr
 
 
 def test_a_form_for_another_program_says_where_to_read_on(run, tones, tmp_path):

@@ -138,14 +138,6 @@ def test_a_choice_of_nothing_is_refused_and_leaves_nothing(source, tmp_path, cho
     assert [path.name for path in tmp_path.iterdir()] == ["source"]
 
 
-@pytest.mark.parametrize("target", ["source", "source/parts/x.nc", "source/inner", ".", "again/../source"])
-def test_a_copy_never_lies_in_its_source_nor_the_other_way_round(source, tmp_path, target):
-    before = files(source)
-    with pytest.raises(CorpusError, match=r"exists and is not an empty folder|is in the corpus"):
-        copy(source, tmp_path / target)
-    assert files(source) == before
-
-
 @pytest.mark.parametrize("target", ["there.nc", "there.parquet", "there", "table.nc"])
 def test_nothing_is_overwritten(source, tmp_path, target):
     (tmp_path / "there").mkdir()
@@ -155,10 +147,3 @@ def test_nothing_is_overwritten(source, tmp_path, target):
     with pytest.raises(CorpusError, match=r"exists( and is not an empty folder)?; give a new name, or remove it first"):
         copy(source, tmp_path / target)
     assert (tmp_path / "there.nc").read_text() == (tmp_path / "there/note").read_text() == "mine"
-
-
-def test_an_altered_corpus_is_not_copied(source, tmp_path):
-    part = source / "parts" / "part-00001.nc"
-    part.write_bytes(part.read_bytes()[:-1] + b"\x01")
-    with pytest.raises(CorpusError, match=r"part-00001\.nc: is altered"):
-        copy(source, tmp_path / "out")

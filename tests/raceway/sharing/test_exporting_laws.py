@@ -120,27 +120,6 @@ def test_a_single_file_gives_the_same_bytes_as_its_folder(counts, tmp_path):
     assert (tmp_path / "folder.parquet").read_bytes() == (tmp_path / "one.nc.parquet").read_bytes()
 
 
-@pytest.mark.parametrize("to", FORMS)
-def test_a_form_of_several_corpora_is_that_of_the_joined_corpus(counts, tmp_path, to):
-    write_parts(tmp_path / "other", [dataset(100, 3)])
-    choice = {"where": "fault != 'outer'", "channels": ["b"]}
-    raceway.copy([counts, tmp_path / "other"], tmp_path / "at_once", to=to, **choice)
-    raceway.copy([counts, tmp_path / "other"], tmp_path / "joined", **choice)
-    raceway.copy(tmp_path / "joined", tmp_path / "in_steps", to=to)
-    one, other = (read_labels_and_signals(tmp_path / name) for name in ("at_once", "in_steps"))
-    assert [*one] == [*other]
-    for name in one:
-        np.testing.assert_array_equal(one[name], other[name], err_msg=name)
-    assert (tmp_path / "at_once/README.md").read_text().count("10 of 12 records of 2 corpora") == 1
-
-
-def read_labels_and_signals(folder):
-    """All columns but the number of the record, as arrays by name."""
-    table = pq.read_table(folder / "data")
-    labels = [name for name in table.column_names if not name.startswith(("record", "accel"))]
-    return {name: table[name].to_numpy() for name in labels} | {"signal": np.stack(table["acceleration_b"].to_numpy())}
-
-
 def test_licence_and_creators_go_along(tmp_path):
     write_corpus(tmp_path / "c", (3,))
     publish(tmp_path / "c", Publication(license="CC-BY-4.0", creators=[{"name": "Jane Doe"}]))

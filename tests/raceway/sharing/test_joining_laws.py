@@ -134,13 +134,6 @@ def test_corpora_that_do_not_fit_together_are_refused_with_the_difference(nine, 
         copy([nine / "c", tmp_path / "other"], tmp_path / "joined")
 
 
-def test_corpora_of_another_sample_rate_are_refused(nine, tmp_path, monkeypatch):
-    monkeypatch.setattr(corpora, "FS", 2000.0)
-    corpora.write_parts(tmp_path / "other", [corpora.dataset(100, 3)])
-    with pytest.raises(CorpusError, match=r"has the sample rate 2000 Hz, and .*c has 1000 Hz;"):
-        copy([nine / "c", tmp_path / "other"], tmp_path / "joined")
-
-
 def test_counts_and_floating_point_join_in_floating_point_if_asked(nine, tmp_path):
     corpora.write_parts(tmp_path / "floats", [corpora.dataset(100, 3, kind="float32")])
     copy([nine / "c", tmp_path / "floats"], tmp_path / "joined", float32=True)
