@@ -21,8 +21,6 @@ from raceway.reports.explore import (
     LEVELS,
     SCALES,
     STEP_DB,
-    _axes,
-    _quantity,
     reduce_record,
     write_explorer,
 )
@@ -71,19 +69,6 @@ def test_the_stored_spectra_have_their_peaks_at_the_planted_lines():
     assert max(stored["highest"].max(), -stored["lowest"].min()) == 127
     assert scales["peak"] == pytest.approx(np.abs(x[: round(8 / 30 * FS)]).max(), rel=0.05)
     assert {name: (value.dtype.name, value.size) for name, value in stored.items()} == dict(FIELDS)
-
-
-def test_without_combs_the_axes_are_an_operating_condition_and_a_size_that_vary():
-    def column(name, unit, role, *values):
-        return _quantity(name, unit, "", role, [*values])
-
-    record, rate = column("record", "", "provenance", 0, 1), column("shaft_rate", "Hz", "operating", 20.0, 30.0)
-    axial, still = column("axial_load", "N", "operating", 1.0, 2.0), column("load", "N", "operating", 5.0, 5.0)
-    parts_, knock = column("parts", "", "label", "", "cage"), column("knock", "N", "label", 0.0, 20.0)
-    assert _axes([record, rate, still, axial, parts_, knock]) == ["shaft_rate", "knock"]
-    assert _axes([record, rate, still, axial]) == ["shaft_rate", "axial_load"]
-    assert _axes([record, still, knock]) == ["record", "knock"]
-    assert _axes([record, still]) == ["record", "record"]
 
 
 def test_the_page_has_all_records_in_blocks_with_their_labels_features_and_sound(page):

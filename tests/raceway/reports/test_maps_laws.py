@@ -39,16 +39,6 @@ def test_a_record_is_drawn_as_it_is_among_several(compute, records):
         np.testing.assert_array_equal(one, other)
 
 
-@pytest.mark.parametrize(
-    ("compute", "quantity"), [("kurtogram", "kurtosis"), ("comb_bands", "level of the fault line")]
-)
-def test_the_title_of_bands_tells_the_quantity_its_highest_value_and_its_band(compute, quantity, records):
-    bands = RESULTS[compute](records[1])
-    title, _ = drawn(bands)
-    assert title.startswith(f"Highest {quantity}")
-    assert f": {bands.score.max():.3g}, in {bands.best()[0] / 1e3:.3g}-{bands.best()[1] / 1e3:.3g} kHz" in title
-
-
 def test_the_coherence_of_an_impact_train_is_darkest_at_its_rate(records):
     axes = raceway.plot(signal.spectral_coherence(records[1], FS, 400.0), Figure().subplots())
     (mesh,) = axes.collections
@@ -56,14 +46,3 @@ def test_the_coherence_of_an_impact_train_is_darkest_at_its_rate(records):
     edges = mesh.get_coordinates()[0, :, 0]
     darkest = edges[np.argmax(shade.max(axis=0))]
     assert darkest == pytest.approx(RATE * round(darkest / RATE), abs=2 * (edges[2] - edges[1]))
-
-
-def test_another_result_is_refused():
-    with pytest.raises(TypeError, match="tuple is not a BandTree, OrderMap or Coherence"):
-        raceway.plot((), Figure().subplots())
-
-
-@pytest.mark.parametrize("compute", RESULTS.values())
-def test_a_result_is_printed_on_one_line_without_its_values(compute, records):
-    assert len(repr(compute(records))) < 150
-    assert "(2, " in repr(compute(records))

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from features.baselines import ESTIMATORS, Model, benchmark, learning_curve
+from features.baselines import ESTIMATORS, benchmark
 from features.baselines.detection import detection
 from features.table.band import DEFAULT_BAND
 from features.table.corpus_features import feature_table
@@ -19,19 +19,15 @@ from features.table.indicators import Orders
 from gen.corpus import FAULTS, open_corpus
 from gen.support.errors import CorpusError
 from raceway.reports import examples
-from raceway.reports.curves import draw_curve, draw_detection, draw_reliability, draw_roc
+from raceway.reports.curves import draw_detection
+from raceway.reports.page import _findings, quantities, write_report
 from raceway.reports.pictures import (
-    DrawnRecord,
     draw_record,
     fault_lines,
-    picture,
-    squared_envelope,
     thin,
     write_picture,
 )
-from raceway.reports.report_page import _findings, quantities, write_report
-from raceway.reports.subject import shown_record
-from raceway.reports.summaries import draw_scores
+from raceway.reports.shown import shown_record
 from tests.browser import CHROMIUM, browser
 from tests.corpora import write_records
 
@@ -146,14 +142,6 @@ def test_the_page_contains_the_counts_of_the_corpus_and_every_score(page, result
     assert "compound" not in text
 
 
-def test_a_model_scores_the_folder_of_a_corpus_as_its_feature_table(corpus):
-    table = feature_table(corpus)
-    model = Model("envelope_rule").fit(table)
-    assert model.score(corpus) == model.score(table)
-    with pytest.raises(CorpusError, match="the model takes features of the group 'colour', and the groups are lines"):
-        replace(model, groups=("colour",)).score(corpus)
-
-
 @pytest.mark.usefixtures("unpainted")
 def test_all_classes_are_counted_drawn_and_scored_and_text_of_a_corpus_is_escaped_and_cut_short(results_of, tmp_path):
     title, classes = HOSTILE + 400 * "x", len(FAULTS)
@@ -174,13 +162,6 @@ def test_all_classes_are_counted_drawn_and_scored_and_text_of_a_corpus_is_escape
         assert f"{fault} 6 2 2 6 0 0" in text
     assert f"true \\ predicted {' '.join(FAULTS)} healthy" in text
     assert f"chance is {1 / len(FAULTS):.3f}" in text
-
-
-def test_a_histogram_of_widths_omits_the_records_without_a_spall(tmp_path):
-    with open_corpus(write_corpus(tmp_path / "corpus", specimens=2 * len(FAULTS), classes=len(FAULTS))) as corpus:
-        drawn = quantities(corpus)
-        np.testing.assert_array_equal(np.isnan(drawn["width [mm]"]), np.isin(corpus["fault"].values, [0, 4]))
-        np.testing.assert_array_equal(drawn["load [N]"], corpus["load"].values)
 
 
 def test_quantities_are_drawn_in_the_unit_in_which_people_read_them(corpus):
@@ -227,25 +208,6 @@ def test_a_score_above_chance_with_permuted_labels_is_reported_as_a_leak(results
     assert "at chance, as expected" in _findings(fine, 0.25)[3]
 
 
-def test_an_unknown_interval_is_reported_as_such_and_not_drawn(results):
-    found = results.baselines["ensemble"]
-    alone = replace(
-        found, grouped=replace(found.grouped, interval=None), null=replace(found.null, interval=None), tests=()
-    )
-    sentences = _findings(replace(results, baselines=results.baselines | {"ensemble": alone}), 0.25)
-    assert sentences[1].startswith("It predicts a fault for 0 of 6 healthy records.")
-    assert "(95 % interval not known); chance is" in sentences[0]
-    assert sentences[3].endswith("(95 % interval not known).")
-    known, unknown = (draw_scores({"one": one}, 0.25, "specimen").axes[0] for one in (found, alone))
-    assert len(known.collections) == len(unknown.collections) + 1
-
-
-def test_severities_that_were_tested_and_not_trained_are_among_the_findings(results):
-    assert len(_findings(replace(results, uncovered_widths={}), 0.25)) == 4
-    sentences = _findings(replace(results, uncovered_widths={"inner": (0.0014,)}), 0.25)
-    assert sentences[4].startswith("Cross-validation: tested but not trained: inner 1.4 mm wide")
-
-
 @pytest.mark.parametrize(("suffix", "start"), [(".svg", b"<?xml"), (".pdf", b"%PDF"), (".PNG", b"\x89PNG")])
 def test_a_record_is_drawn_reproducibly_in_the_format_of_the_suffix_and_replaces_its_picture(
     corpus, tmp_path, suffix, start
@@ -281,29 +243,6 @@ def test_a_record_without_a_shaft_rate_is_refused(tmp_path):
         shown_record(unknown, 1, 0, DEFAULT_BAND)
 
 
-@pytest.mark.parametrize("fault", ["inner", "outer", "ball", "cage"])
-def test_the_drawn_envelope_has_its_highest_lines_where_the_fault_is_marked(fault):
-    rng = np.random.default_rng(2)
-    shown = DrawnRecord("made up", signal_of(fault, 31.0, rng), FS, 31.0, Orders(**ORDERS), fault)
-    order, spectrum = squared_envelope(shown)
-    own, others = fault_lines(shown.orders, fault)
-    seen = order > 0.2
-    assert order[seen][spectrum[seen].argmax()] == pytest.approx(min(own.values()), abs=0.05)
-    for line in others.values():
-        assert np.interp(line, order, spectrum) < 0.3 * spectrum[seen].max()
-
-
-def test_the_lines_of_a_class_have_its_orders_and_others_those_of_the_other_parts_and_of_the_shaft():
-    """Which lines a class has is tested in tests/features/test_fault_classes_laws.py."""
-    own, others = fault_lines(Orders(**ORDERS), "ball")
-    assert own == pytest.approx({"2 BSF": 4.7, "4 BSF": 9.4, "6 BSF": 14.1})
-    assert others.items() >= {"BPFO": 3.6, "BPFI": 5.4, "shaft": 1.0, "FTF": 0.4}.items()
-    assert fault_lines(Orders(**ORDERS), "healthy")[0] == {}
-    own, others = fault_lines(Orders(**ORDERS), "compound")
-    assert own == pytest.approx({"BPFO": 3.6, "BPFI": 5.4, "2 BSF": 4.7, "FTF": 0.4})
-    assert others["shaft"] == 1.0
-
-
 @given(length=st.integers(2, 40_000), place=st.floats(0, 0.99), seed=st.integers(0, 99))
 def test_a_thinned_waveform_keeps_its_highest_peak(length, place, seed):
     values = np.random.default_rng(seed).standard_normal(length)
@@ -312,13 +251,6 @@ def test_a_thinned_waveform_keeps_its_highest_peak(length, place, seed):
     assert drawn.max() == 20.0
     assert time.shape == drawn.shape
     assert drawn.size < 6100
-
-
-def test_the_reliability_diagram_has_a_point_for_each_bin(results):
-    found = results.baselines["ensemble"].grouped
-    (panel,) = draw_reliability(found).axes
-    drawn = panel.collections[0].get_offsets()
-    np.testing.assert_allclose(drawn, [(one.probability, one.accuracy) for one in found.reliability])
 
 
 def test_detection_is_drawn_with_its_bins_intervals_and_false_alarms():
@@ -332,20 +264,6 @@ def test_detection_is_drawn_with_its_bins_intervals_and_false_alarms():
     np.testing.assert_allclose(ends[..., 1], [(one.low, one.high) for one in found])
     (alarms,) = panel.lines
     assert list(alarms.get_ydata()) == [0.2, 0.2]
-
-
-def test_the_curve_of_false_alarms_has_the_points_of_the_results(results):
-    found = results.baselines["ensemble"].grouped.roc
-    (panel,) = draw_roc(found).axes
-    np.testing.assert_allclose(panel.lines[0].get_ydata()[1:], found.detected)
-
-
-def test_the_learning_curve_has_the_points_of_the_results(corpus, results):
-    points = learning_curve(feature_table(corpus), "logistic_regression", folds=2)
-    figure = draw_curve(points, 0.25, results.baselines["envelope_rule"].grouped)
-    drawn = figure.axes[0].lines[0].get_xydata()
-    np.testing.assert_allclose(drawn, [(point.specimens, point.balanced_accuracy) for point in points])
-    assert picture(figure, "svg").startswith(b"<?xml")
 
 
 @pytest.mark.usefixtures("page")

@@ -1,14 +1,12 @@
 """Views of a record: lines stand where they belong at any speed, and a chosen band is the planted one."""
 
-import re
-
 import numpy as np
 import pytest
 
 from features.table.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
-from raceway.reports.pictures import draw_record, picture, squared_envelope
-from raceway.reports.subject import shown_recording
+from raceway.reports.pictures import picture, squared_envelope
+from raceway.reports.shown import shown_recording
 from raceway.reports.views import MAPS, VIEWS, band_by, draw_view
 from tests.pulses import pulse_train
 
@@ -59,16 +57,6 @@ def test_the_envelope_of_a_run_up_has_its_line_within_half_a_bin_of_its_order(ru
     assert found == pytest.approx(BPFO, abs=0.5 / run_up.turns[-1])
     _, smeared = squared_envelope(run_up._replace(angle=None))
     assert spectrum[near].max() > 5 * smeared[(np.abs(_ - BPFO) < 0.3)].max()
-
-
-def test_the_title_of_a_run_up_has_its_range_and_the_waveform_counts_its_revolutions(run_up):
-    assert run_up.title == "run-up, 900-1800 rpm"
-    assert draw_record(run_up).axes[0].get_title(loc="left").startswith("Waveform: first 0.5")  # 8 turns at 15 to 16 Hz
-
-
-def test_the_heading_of_a_kurtogram_tells_its_result(steady):
-    heading = draw_view("kurtogram", steady).axes[0].get_title(loc="left")
-    assert re.fullmatch(r"Highest kurtosis: [\d.]+, in [\d.]+-[\d.]+ kHz", heading)
 
 
 @pytest.mark.parametrize("seconds", [0.5, 6.0])
