@@ -6,7 +6,6 @@ import pytest
 from gen.support.errors import CorpusError
 from raceway.comparing import compare
 from raceway.comparing import windows as windows_module
-from raceway.comparing.measures import NAMES
 from raceway.comparing.windows import common_ground, measured_windows
 from tests.pulses import write_pulses
 
@@ -70,26 +69,6 @@ def test_classes_are_those_of_the_synthetic_and_of_any_real_set(found):
     assert "fast" not in found.counts["ball"]["kurtosis"]
 
 
-def test_quantiles_ascend_and_those_of_the_pool_lie_between_those_of_the_sets(found):
-    for table in found.quantiles.values():
-        for sets in table.values():
-            assert all(values == sorted(values) for values in sets.values())
-            real = [values for name, values in sets.items() if name not in ("synthetic", "real")]
-            if real:
-                assert min(v[1] for v in real) <= sets["real"][1] <= max(v[1] for v in real)
-
-
-def test_the_plain_result_names_every_measure_with_its_unit(found):
-    plain = found.plain()
-    assert set(plain["units"]) == set(NAMES)
-    assert (plain["window_s"], plain["sample_rate_hz"], plain["top_hz"]) == (0.4, 12_000.0, 5000.0)
-
-
-def test_a_set_whose_folder_has_no_name_of_its_own_is_named_by_its_path(dark, tmp_path):
-    real = write_pulses(tmp_path / "real", classes=("outer",))
-    assert set(compare(dark, [real]).quantiles["outer"]["kurtosis"]) == {"synthetic", "real", str(real)}
-
-
 def test_at_most_so_many_windows_are_taken_evenly_from_all_specimens(tmp_path):
     specimen = np.repeat(np.arange(4), 12)
     folder = write_pulses(tmp_path / "set", classes=("outer",), records=48, specimen=specimen, rig=specimen // 2)
@@ -134,8 +113,3 @@ def test_records_without_a_signal_or_a_shaft_rate_are_left_out(tmp_path, dark):
     rates[0] = 0.0
     folder = write_pulses(tmp_path / "set", classes=("outer",), records=14, shaft_rate=rates, silent=(3, 5))
     assert compare(dark, [folder]).counts["outer"]["kurtosis"]["set"] == 11
-
-
-def test_a_comparison_without_a_real_corpus_is_a_mistake_of_the_caller(dark):
-    with pytest.raises(ValueError, match="at least one"):
-        compare(dark, [])

@@ -1,7 +1,6 @@
 """The page of a comparison: complete, self-contained and escaped."""
 
 import base64
-import json
 import re
 
 import pytest
@@ -57,9 +56,3 @@ def test_names_of_folders_are_text_on_the_page_and_absent_from_pictures(page):
     assert "&lt;b&gt;{{ 7 * 7 }}&#39;" in page
     pictures = [base64.b64decode(address.partition("base64,")[2]) for address in Links(page).addresses]
     assert not any(b"7 * 7" in picture for picture in pictures)
-
-
-@pytest.mark.usefixtures("page")
-def test_the_numbers_of_the_page_are_written_beside_it(found, folder):
-    stored = json.loads((folder / "comparison.json").read_text())
-    assert stored == {"generator": "Raceway"} | json.loads(json.dumps(found.plain()))
