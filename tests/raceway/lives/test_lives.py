@@ -31,12 +31,6 @@ def test_a_picture_has_the_course_of_one_life(lives):
     assert figure.axes[3].get_ylabel() == "dB re 1 (m/s²)²/Hz"
 
 
-def test_lives_are_drawn_beside_those_of_another_corpus(lives):
-    with open_corpus(lives) as corpus:
-        failed = len({*corpus.bearing.values[corpus.event.values == 1]})
-    assert len(draw_life(lives, like=lives).axes[3].lines) == 2 * failed + 1
-
-
 def test_a_bearing_that_is_not_there_is_named(lives, tiny_corpus):
     with pytest.raises(CorpusError, match="has no bearing 6205 #99; it has 6205 #0, "):
         draw_life(lives, "6205 #99")

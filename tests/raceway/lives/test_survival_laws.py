@@ -50,12 +50,3 @@ def test_half_of_the_weibull_bearings_outlive_their_median(slope, age):
     left = weibull_median_left(slope, SCALE, np.array([age]))[0]
     survived = np.exp((age / SCALE) ** slope - ((age + left) / SCALE) ** slope)
     assert survived == pytest.approx(0.5)
-
-
-@pytest.mark.parametrize("late", [0.0, 300.0])
-def test_both_curves_agree_on_many_bearings(late):
-    entry, end, failed = drawn(np.random.default_rng(3), 5000, late)
-    ages = np.array([0.0, 300.0, 800.0])
-    np.testing.assert_allclose(
-        kaplan_meier(entry, end, failed).median_left(ages), weibull_median_left(SLOPE, SCALE, ages), rtol=0.1
-    )
