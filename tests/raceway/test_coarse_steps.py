@@ -29,17 +29,3 @@ def test_every_command_that_shows_a_corpus_tells_of_coarse_steps(run, told, fast
     checked = run("validate", tmp_path / "c")
     assert (checked.exit_code, checked.stdout) == (0, f"{tmp_path / 'c'}: sound.\n")
     assert sentence[0] in checked.stderr
-
-
-@pytest.mark.parametrize("asked", ["", ", oversampling: 64"])
-def test_the_chosen_step_or_a_finer_one_ends_the_warning(run, fast, tmp_path, asked):
-    fine = tmp_path / "fine.yaml"
-    fine.write_text(fast.read_text().replace(", oversampling: 4", asked))
-    made = run("generate", fine, "-o", tmp_path / "c", "--workers", 1)
-    assert made.exit_code == 0
-    assert "whose step was checked" not in made.stderr
-
-
-def test_usual_corpora_have_no_coarse_steps(run, tiny_corpus):
-    for command in ("info", "validate"):
-        assert "whose step was checked" not in run(command, tiny_corpus).output

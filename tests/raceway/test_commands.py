@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-from importlib.metadata import version
 
 import netCDF4
 import numpy as np
@@ -11,14 +10,12 @@ import pytest
 from click.testing import CliRunner
 
 from features.baselines import ESTIMATORS
-from features.baselines.names import DEFAULT_ESTIMATOR
+from features.table.files import read_table
 from features.table.indicators import feature_names
 from features.table.table_files import read_table
 from gen.corpus import FAULTS, SIGNAL, open_corpus
 from gen.support.limits import VARIABLE
 from raceway.cli import GROUPS, cli
-from raceway.console.summary import _shown_faults
-from raceway.sharing import FORMS
 from tests.command_tree import commands
 from tests.labels import write_labels
 
@@ -87,16 +84,6 @@ def test_info_loads_neither_a_simulator_nor_xarray(tiny_corpus):
     assert loaded([f"info {tiny_corpus}"], SIMULATOR | {"scipy", "xarray"}) == set()
 
 
-def test_the_package_runs_as_the_command():
-    run = subprocess.run([sys.executable, "-m", "raceway", "--version"], capture_output=True, text=True, check=True)
-    assert run.stdout == f"raceway {version('raceway')}\n"
-
-
-def test_train_and_copy_tell_their_default_and_their_forms(run):
-    assert f"default: {DEFAULT_ESTIMATOR}" in " ".join(run("train", "--help").stdout.split())
-    assert all(f"\n    {form} " in run("copy", "--help").stdout for form in FORMS)
-
-
 def test_recipes_are_listed_with_their_purpose(run, told):
     listed = told("recipes")["recipes"]
     assert {"quickstart", "domain_randomised", "ophel2025"} <= {recipe["name"] for recipe in listed}
@@ -139,11 +126,6 @@ def test_a_plan_counts_what_generate_makes_and_writes_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_plan_tells_of_a_kernel_that_will_be_compiled(run, tiny_recipe, monkeypatch):
-    monkeypatch.setattr("gen.generation.plan.is_compiled", lambda: False)
-    assert "kernel     will be compiled for this machine, in 10 to 20 s\n" in run("plan", tiny_recipe).stdout
-
-
 def test_generate_counts_its_records_and_a_second_call_keeps_them(told, tiny_recipe, tmp_path):
     made = told("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 20, "--seed", 9)
     assert (made["records"], made["parts"], made["kept"], made["failures"]) == (20, 2, 0, [])
@@ -169,12 +151,6 @@ def test_a_single_file_is_generated_kept_shown_and_used_like_a_folder(run, told,
     assert read_table(tmp_path / "file.nc").equals(read_table(tmp_path / "folder.nc"))
     assert run("plot", file, "--record", 5, "-o", tmp_path / "record.png").exit_code == 0
     assert (tmp_path / "record.png").stat().st_size > 5000
-
-
-def test_generate_counts_in_words_and_prints_the_next_step_after_its_result(run, tiny_recipe, tmp_path):
-    corpus = tmp_path / "my corpus"
-    shown = run("generate", tiny_recipe, "-o", corpus, "--records", 1, "--workers", 1).stdout
-    assert shown == f"{corpus}: 1 record in 1 part.\nNext: raceway info '{corpus}'\n"
 
 
 def test_a_limit_can_be_raised_for_one_command(run, tmp_path, monkeypatch):
@@ -265,11 +241,6 @@ def test_the_list_of_features_has_a_row_for_each_column(told, run):
     assert "energy_7000-9000_Hz" in run("features", "--list", "--band", 300, 9000).stdout
 
 
-def test_features_need_a_corpus_and_a_file_unless_they_are_listed(run, tiny_corpus):
-    for line in (("features",), ("features", tiny_corpus)):
-        assert run(*line).stderr.startswith("raceway features: Missing argument 'DIR' or option '-o'")
-
-
 def test_train_scores_on_the_test_split_and_trains_on_the_other_records(told, run, tiny_corpus, tmp_path):
     path = tmp_path / "model.skops"
     made = told("train", tiny_corpus, "-o", path, "--estimator", "logistic_regression")
@@ -346,9 +317,3 @@ def test_a_file_that_hides_a_package_of_raceway_is_named(tmp_path):
 def test_every_command_is_listed_in_one_group():
     listed = [command for commands in GROUPS.values() for command in commands]
     assert sorted(str(one.name) for one in listed) == sorted(cli.commands)
-
-
-def test_info_counts_the_faults_that_are_seen_not_seen_and_not_judged():
-    counts = {"records": 1536, "detectable": 300, "unjudged": 1200, "redrawn_specimens": 7, "redrawn_levels": 2}
-    told = "seen in 300 records, not seen in 36, not judged in 1,200; 7 specimens and 2 levels drawn again"
-    assert _shown_faults(counts) == told

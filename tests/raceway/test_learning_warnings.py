@@ -72,11 +72,3 @@ def test_benchmark_warns_of_widths_that_a_fold_or_the_other_corpus_adds(run, fol
     monkeypatch.setattr("raceway.reports.report_page.write_report", lambda *_: tmp_path / "report.html")
     corpus = folder(table((2e-3,) + (1e-3,) * 15))
     assert SENTENCE in run("benchmark", corpus, "-o", tmp_path / "out", "--folds", 3).stderr
-
-
-def test_an_interval_over_one_specimen_of_a_class_is_not_known(run, told, folder, model):
-    one = table().assign(specimen=("record", np.zeros(48, int)), rig=("record", np.zeros(48, int)))
-    corpus = folder(one)
-    lines = run("evaluate", corpus, "--model", model).stdout.splitlines()
-    assert any(line.split() == ["95", "%", "interval", "not", "known"] for line in lines)
-    assert told("evaluate", corpus, "--model", model)["interval"] is None

@@ -127,14 +127,6 @@ def test_import_passes_on_the_length_of_a_record(run, given, tmp_path, name):
     assert options["window"] == 0.5
 
 
-def test_import_passes_on_the_subset(run, given, tmp_path):
-    options = given("raceway.importing.import_cwru")
-    run("import", "cwru", tmp_path, "-o", tmp_path / "new", "--subset", "wang")
-    assert options["subset"] == "wang"
-    run("import", "cwru", tmp_path, "-o", tmp_path / "new")
-    assert options["subset"] == "all"
-
-
 def test_generate_passes_on_scheduler_workers_seed_and_size(run, given, tiny_recipe, tmp_path):
     options = given("gen.generate")
     run("generate", tiny_recipe, "-o", tmp_path / "new", "--workers", 3, "--scheduler", "tcp://a:1", "--seed", 5)
@@ -168,15 +160,6 @@ def test_a_plan_counts_the_records_that_cannot_be_simulated(run, told, tiny_reci
     shown = run("plan", loose).stdout
     assert f"without {planned['left_out']} that cannot be simulated" in shown
     assert f"The first record that is left out: {planned['first_left_out']}" in shown
-
-
-def test_info_gives_the_operating_conditions_and_the_files(told, tiny_corpus):
-    found = told("info", tiny_corpus)
-    assert found["samples"] == found["duration"] * found["sample_rate"] == 1200
-    assert 4500 / 60 <= found["shaft_rate"][0] < found["shaft_rate"][1] <= 6000 / 60
-    assert found["load"] == [300, 300]
-    assert (found["failures"], found["warnings"], found["skipped"]) == ([], [], [])
-    assert found["bytes"] == sum(path.stat().st_size for path in tiny_corpus.rglob("*") if path.is_file())
 
 
 def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_path, monkeypatch):

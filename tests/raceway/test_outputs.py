@@ -12,11 +12,9 @@ import pytest
 import xarray as xr
 
 from features.baselines import Model
-from features.table.corpus_features import feature_table
-from features.table.table_files import write_table
 from gen import generate, write_corpus
-from gen.corpus import corpus_files, read_manifest, result_folder
-from gen.corpus.disk import _HOST
+from gen.corpus import corpus_files, result_folder
+from gen.corpus.files import _HOST
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
 from raceway import copy
@@ -172,20 +170,6 @@ def test_a_file_of_another_kind_is_not_replaced(run, places, line, tmp_path):
     assert contents(tmp_path) == before
 
 
-def test_the_python_writers_keep_the_same_rule(places, tmp_path):
-    corpus = places["corpus"]
-    table, before = feature_table(corpus), contents(tmp_path)
-    (part, *_) = read_manifest(corpus).parts
-    for path in (corpus / "parts" / part.name, corpus / "table.nc"):
-        with pytest.raises(CorpusError, match="is in the corpus"):
-            write_table(table, path)
-        with pytest.raises(CorpusError, match="is in the corpus"):
-            Model("majority").fit(table).save(path)
-    with pytest.raises(CorpusError, match="exists and is no model"):
-        Model("majority").fit(table).save(places["recipe"])
-    assert contents(tmp_path) == before
-
-
 @pytest.mark.parametrize("place", ["corpus/parts/x.nc", "corpus/x", "index.nc"])
 def test_no_corpus_has_a_place_in_another_nor_the_name_of_an_index(places, tmp_path, place):
     before = contents(tmp_path)
@@ -221,14 +205,6 @@ def test_a_result_is_written_to_the_target_of_a_link_and_what_a_killed_command_l
     (tmp_path / "far" / name).write_text("mine")
     assert run(*line.format(**places).split(), "-o", link).exit_code == 2
     assert target.read_text() == "mine"
-
-
-def test_a_circle_of_links_is_replaced_or_refused_in_one_sentence(run, places, tmp_path):
-    link, other = tmp_path / "a.nc", tmp_path / "b.nc"
-    link.symlink_to(other)
-    other.symlink_to(link)
-    result = run("features", places["corpus"], "-o", link)
-    assert result.exit_code in (0, 2), result.output
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -48,10 +48,3 @@ def test_without_a_record_an_example_of_each_class_is_drawn(run, tiny_corpus, tm
 def test_a_view_of_a_corpus_needs_the_number_of_a_record(run, tiny_corpus, tmp_path):
     result = run("plot", tiny_corpus, "--view", "psd", "-o", tmp_path / "x.png")
     assert (result.exit_code, "with --record" in result.stderr) == (2, True)
-
-
-def test_a_command_draws_although_the_backend_of_a_notebook_is_missing(start, recording, tmp_path):
-    line = ("plot", recording, *MACHINE, "--unit", "g", "-o", tmp_path / "x.png")
-    process = start(*line, MPLBACKEND="module://of_a_notebook.backend_inline")
-    assert (process.wait(), process.stderr.read()) == (0, "")
-    assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")

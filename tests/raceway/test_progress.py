@@ -42,24 +42,6 @@ def test_speed_and_time_left_are_those_between_the_bursts(clock):
     assert said == "2 records/s, 25 s left"
 
 
-def test_the_last_line_tells_the_time_taken(clock, lines):
-    report = progress_bar.show_progress("generating", "records")
-    clock[0] = 4.2
-    report(30, 30)
-    assert lines == ["generating: 30 of 30 records, in 4 s"]
-
-
-def test_a_call_that_counts_something_else_is_not_said_to_count_records(clock, lines):
-    report = progress_bar.show_progress("features")
-    for clock[0], done in ((1.0, 1), (11.0, 3), (12.0, 4)):
-        report(done, 4)
-    assert lines == ["features: 3 of 4, 0.2/s, 5 s left", "features: 4 of 4, in 12 s"]
-
-
-def test_work_that_is_done_at_once_has_no_speed_that_is_not_known_yet():
-    assert progress_bar._pace("records")(112, 112) == ""
-
-
 def test_a_notebook_renews_one_line(clock, lines, monkeypatch):
     shown = []
     line = SimpleNamespace(update=lambda data, **_: shown.append(data["text/plain"]))

@@ -52,9 +52,3 @@ def test_info_and_card_count_the_records_of_each_class_with_a_clipped_sample(run
     words = ", ".join(f"{name} {number}" for name, number in counts.items())
     assert f"clipped at least once: {words} " in " ".join(run("info", tmp_path / "c").stdout.split())
     assert f"Records with a clipped sample: {words}." in data_card(tmp_path / "c")
-
-
-def test_a_corpus_without_a_clipped_sample_says_so(run, told, tiny_corpus):
-    assert told("info", tiny_corpus)["clipped"] == {}
-    assert "clipped none" in " ".join(run("info", tiny_corpus).stdout.split())
-    assert "Records with a clipped sample: none." in data_card(tiny_corpus)
