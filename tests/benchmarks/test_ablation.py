@@ -2,7 +2,7 @@
 
 from ruamel.yaml import YAML
 
-from benchmarks.ablation import Mechanism, changed, plain, read_mechanisms, scores_of, table, variants
+from benchmarks.ablation import changed, plain, read_mechanisms, scores_of, table, variants
 from features import feature_table
 from gen.recipe import find_recipe, read_recipe
 from tests.pulses import write_pulses
@@ -20,22 +20,6 @@ def test_changes_set_keys_remove_keys_and_reach_all_faults_of_a_kind():
     ]
     assert GIVEN["a"] == {"b": 1, "c": 2}
     assert GIVEN["faults"] == [{"kind": "inner", "width": 1}, {"kind": "ball", "width": 1}]
-
-
-def test_a_mechanism_is_tried_alone_and_in_the_whole():
-    found = variants(
-        [Mechanism("x", {"a.x": 0}, True), Mechanism("y", {"a.y": 0}, True), Mechanism("z", {"a.z": 1}, False)]
-    )
-    assert found == {
-        "none of these": {"a.x": 0, "a.y": 0},
-        "only x": {"a.y": 0},
-        "only y": {"a.x": 0},
-        "only z": {"a.x": 0, "a.y": 0, "a.z": 1},
-        "the recipe": {},
-        "without x": {"a.x": 0},
-        "without y": {"a.y": 0},
-        "with z": {"a.z": 1},
-    }
 
 
 def test_every_variant_is_a_recipe_that_differs_from_the_one_that_ships():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from benchmarks.speed import recordings
-from benchmarks.verdicts import ERRORS, RIGHT, SEEDS, WITHOUT_FAULT, answer, conditions, rows, without_fault
-from features.baselines.predictions import DAMAGED, UNSURE
+from benchmarks.verdicts import ERRORS, RIGHT, SEEDS, WITHOUT_FAULT, conditions, without_fault
+from features.baselines.predictions import UNSURE
 from raceway.diagnosis.evidence import find_evidence
 from raceway.diagnosis.search import find_pairs, mean_spectra
 from raceway.diagnosis.spectrum import band_spectra
@@ -23,16 +23,6 @@ def test_every_recording_is_diagnosed_at_right_wrong_and_unknown_speeds_and_bear
     assert counts[RIGHT] == counts["speed not given"] == counts["bearing not given"] == 1
     assert counts["wrong bearing"] == 4
     assert counts["speed wrong by at most 8 %"] + counts["speed wrong by more than 8 %"] == 20
-
-
-def test_a_row_has_the_shares_of_all_answers():
-    answers = Counter(answer(verdict, "inner") for verdict in ("inner", DAMAGED, UNSURE, "outer", "healthy"))
-    assert list(rows("A", {RIGHT: answers})) == [f"| A | {RIGHT} | 5 | 20.0 | 20.0 | 20.0 | 20.0 | 20.0 |"]
-    assert answer("healthy", "healthy") == "right"
-
-
-def test_damaged_is_an_alarm_on_a_healthy_machine():
-    assert answer(DAMAGED, "healthy") == "wrong"
 
 
 @pytest.mark.parametrize("kind", WITHOUT_FAULT)
