@@ -210,16 +210,6 @@ def test_a_closed_output_ends_the_command_without_a_traceback(start):
     assert process.wait(PATIENCE_S) == 141
 
 
-def test_a_process_ends_with_the_code_of_its_command(start, tmp_path):
-    process = start("info", tmp_path / "nowhere")
-    output, errors = process.communicate(timeout=PATIENCE_S)
-    assert (process.returncode, output) == (2, "")
-    assert (
-        errors
-        == f"{tmp_path}/nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file.\n"
-    )
-
-
 def test_a_command_that_refuses_and_one_that_is_done_leave_no_process(start, tiny_recipe, tiny_corpus, tmp_path):
     for line, code in ((("-o", tiny_corpus, "--records", "24"), 2), (("-o", tmp_path / "c"), 0)):
         process = start("generate", tiny_recipe, "--workers", "2", *line)
