@@ -42,7 +42,7 @@ def test_a_load_a_quarter_higher_halves_the_median_life():
     assert median(1.26 * 0.2, 2) == pytest.approx(median(0.2, 3) / 2, rel=0.05)
 
 
-@settings(deadline=None, max_examples=8)
+@settings(max_examples=8)
 @given(st.floats(0, 2.5), st.floats(0.1, 4), st.floats(1, 10), st.floats(0.5, 5))
 def test_growth_without_noise_is_the_solution_of_its_equation(exponent, first, acceleration, last):
     law, first, last = Growth(2e-9, exponent, 2e-3, acceleration), first * 1e-3, (first + last) * 1e-3

@@ -86,12 +86,6 @@ def test_without_a_background_the_bearing_stands_over_the_rounding_of_the_conver
     assert found.snr[0] == pytest.approx(20 * np.log10(np.std(exact) / np.std(error)), abs=1.5)
 
 
-def test_a_background_below_the_rounding_of_the_converter_does_not_raise_the_ratio(recipe_with):
-    without, with_little, with_more = (measured_tone(recipe_with, 100.0, rms).snr[0] for rms in (0.0, 1e-6, 1.0))
-    assert without == with_little
-    assert with_more == pytest.approx(20 * np.log10(100 / np.sqrt(2)), abs=0.3)
-
-
 @pytest.mark.parametrize(
     ("amplitude", "background", "converter"),
     [(0.4 * COUNT, 0.0, {}), (0.0, 0.3, {}), (0.0, 0.0, {}), (100.0, 0.0, FLOAT), (0.0, 0.3, FLOAT), (0.0, 0.0, FLOAT)],

@@ -114,11 +114,6 @@ def test_a_train_of_impacts_is_seen_down_to_some_level_and_not_below():
     assert seen == sorted(seen, reverse=True)
 
 
-def test_impacts_at_another_order_are_not_the_line_of_the_class():
-    assert not judged(ringing(5.4 * 0.83), noise(1))
-    assert judged(ringing(5.4 * 0.83), noise(1), orders=(5.4 * 0.83,))
-
-
 def test_a_fault_is_seen_by_its_second_or_third_harmonic_alone():
     for harmonic in (2, 3):
         assert judged(ringing(harmonic * ORDER), noise(1))

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import welch
 
-from gen.scenarios import draw_scenarios, further_ratios
+from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
 from tests.measuring import (
     FLOAT,
@@ -14,7 +14,6 @@ from tests.measuring import (
     background_of,
     direct,
     hiss,
-    lines,
     measure,
     physical,
     quiet,
@@ -36,15 +35,6 @@ def at_ratio(scenario, ratio):
     """The same record at another signal-to-noise ratio [dB]."""
     level = scenario.recipe.level.model_copy(update={"faulty_db": ratio, "healthy_db": ratio})
     return scenario.edited(level=level)
-
-
-def test_every_try_of_a_level_is_a_draw_of_its_own_and_moves_nothing_else(levelled):
-    recipe, scenarios = levelled
-    faulty = next(place for place, scenario in enumerate(scenarios) if scenario.fault != "healthy")
-    ratios = [scenarios[faulty].recipe.level.si()["faulty"], *further_ratios(recipe, scenarios[faulty], 7)]
-    assert len(set(ratios)) == 8
-    assert -10 <= min(ratios) < max(ratios) <= 25
-    assert further_ratios(recipe, scenarios[faulty], 3) == ratios[1:4]
 
 
 @pytest.mark.parametrize(("rise", "tries"), [(1.1, 2), (1e-9, 0)])
@@ -192,15 +182,6 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
     # a knock and an impulse of one size have one energy; the square of the size of a knock is 1 + 0.2^2 on average
     energy = powers["knocks"] / (1.04 * counts["knocks"])
     assert powers["impulses"] / energy == pytest.approx(40 * 5, abs=4 * np.sqrt(3 * 200))
-
-
-def test_a_gear_and_impulses_are_both_in_a_record_whose_transform_is_longer(recipe_with):
-    """A response of 6,600 samples, whose Fourier transform has 6,750."""
-    changes = FLOAT | {"recording.duration_s": 0.5, "operation.shaft_rpm": 1800}
-    gear, impulses = {"teeth": 20, "mate_teeth": 40} | lines([0]), {"rate_hz": 40, "level_db": 60}
-    sources = {"gear_mesh": gear}, {"impulses": impulses}, {"gear_mesh": gear, "impulses": impulses}
-    powers = [rms(background_of(recipe_with(changes | quiet(**some)))[0]) ** 2 for some in sources]
-    assert powers[2] == pytest.approx(powers[0] + powers[1], rel=0.05)
 
 
 MODULATION = {"modulation": {"probability": 1, "first": 0.6, "second": 0.2}}

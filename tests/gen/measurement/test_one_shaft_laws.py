@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from gen.mechanisms.path import Modes, transmissibility
-from gen.physics.orbit import along
 from gen.simulation.motion import draw_motion
 from gen.simulation.shaft import angles_of
 from gen.simulation.timeline import timeline
@@ -127,16 +126,6 @@ def test_the_first_harmonic_is_in_phase_with_the_unbalance(recipe_with):
     horizontal, vertical = (at_order(one, scenario, 1) for one in signals[0])
     forward = (horizontal + 1j * vertical) / 2  # the part that turns with the shaft
     assert np.angle(forward) == pytest.approx(0.0, abs=0.02)
-
-
-@pytest.mark.parametrize("flatness", [0.0, 0.5, 1.0])
-def test_an_orbit_is_an_ellipse_with_the_drawn_flatness(flatness):
-    directions = np.array([0.0, np.pi / 2])
-    x, y = along(directions, np.array([0.3]), np.array([1.1]), np.array([flatness]))[:, 0]
-    angle = np.linspace(0, 2 * np.pi, 2000)
-    orbit = (x * np.exp(1j * angle)).real + 1j * (y * np.exp(1j * angle)).real
-    assert np.abs(orbit).max() == pytest.approx(1 + flatness, rel=1e-5)
-    assert np.abs(orbit).min() == pytest.approx(1 - flatness, abs=1e-3)
 
 
 def test_lines_have_their_level_on_average_over_the_channels_and_a_phase_of_their_own_in_each(recipe_with):

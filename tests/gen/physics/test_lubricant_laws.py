@@ -92,11 +92,3 @@ def test_the_lubricated_tangent_is_that_of_contact_and_film_in_series(bearing, l
     both = tangent(lubricated_factor(factor, exponent, load, stiffness))
     assert both == pytest.approx(1 / (1 / tangent(factor) + 1 / stiffness), rel=1e-10)
     assert both < min(tangent(factor), stiffness)
-
-
-@pytest.mark.parametrize(("rate", "load"), [(0.0, 100.0), (30.0, 0.0), (-1.0, 100.0)])
-def test_a_film_without_speed_or_load_is_refused_with_a_sentence(rate, load):
-    with pytest.raises(
-        ValueError, match=r"no film forms at shaft_rate = .* Hz and ball_load = .* N; both must be above 0"
-    ):
-        film(CATALOGUE["6205"], Lubricant(), 60, rate, load)

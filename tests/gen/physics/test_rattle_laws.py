@@ -38,7 +38,9 @@ def test_a_sensor_that_is_held_hard_enough_keeps_every_bit(shaken, holding):
 def test_the_motion_is_that_of_a_mass_on_a_spring_that_cannot_pull():
     """The equation of motion of the sensor itself, integrated by another method: a mass that rests on a preloaded spring and damper."""
     omega, zeta, holding, fs = 2 * np.pi * 800.0, 0.1, 20.0, 48_000.0
-    time = np.arange(2400) / fs
+    time = (
+        np.arange(1200) / fs
+    )  # three periods of the machine; later impacts grow apart, as those of a bouncing ball do
 
     def base(t):
         return 60 * np.sin(2 * np.pi * 120 * t)
@@ -55,8 +57,5 @@ def test_the_motion_is_that_of_a_mass_on_a_spring_that_cannot_pull():
     held = -(omega**2) * linear - 2 * zeta * omega * its_rate
     sensor = np.maximum(-(omega**2) * (linear + d) - 2 * zeta * omega * (its_rate + rate), -holding)
     found, impacts = rattling(held, 800.0, zeta, holding, fs)
-    first = slice(
-        0, 1200
-    )  # the first three periods of the machine; later impacts grow apart, as those of a bouncing ball do
     assert impacts >= 3
-    assert np.sqrt(np.mean((found - sensor)[first] ** 2)) < 0.05 * np.std(sensor)
+    assert np.sqrt(np.mean((found - sensor) ** 2)) < 0.05 * np.std(sensor)

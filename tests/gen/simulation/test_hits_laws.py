@@ -7,8 +7,7 @@ import pytest
 
 from gen.scenarios import draw_scenarios
 from gen.simulation.hits import felt_places, load_zone, loaded_hits
-from gen.simulation.inputs import kernel_inputs, without_fault
-from gen.simulation.motion import draw_motion
+from gen.simulation.inputs import without_fault
 from tests.recipes import EVERYTHING
 from tests.responses import input_of, label, means_of
 
@@ -64,14 +63,6 @@ def test_a_spall_of_a_ball_is_hit_twice_in_each_turn_of_the_ball(recipe_with):
     scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
     (rate, orders), (_, half) = means_of(scenario), load_zone(given)
     assert label(scenario, "loaded_hits") == pytest.approx(2 * orders.bsf * rate * 2.0 * half / math.pi, abs=1)
-
-
-def test_the_input_of_a_record_does_not_depend_on_the_others(recipe_with):
-    recipe = recipe_with(EVERYTHING)
-    scenarios = draw_scenarios(recipe)
-    for scenario, together in zip(scenarios, kernel_inputs([*map(draw_motion, scenarios)]), strict=True):
-        for field, other in zip(input_of(scenario), together, strict=True):
-            np.testing.assert_equal(field, other)
 
 
 def test_a_record_without_its_fault_has_the_input_of_a_sound_record(recipe_with):

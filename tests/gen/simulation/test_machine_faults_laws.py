@@ -17,7 +17,7 @@ from tests.lanes import march_lanes
 from tests.reference import knock_scatter
 from tests.strategies import RIG, angles, record
 
-law = settings(max_examples=15)
+law = settings(max_examples=8)
 KNOT = 1 / 12_000
 STANDING, CONSTANT = Turning(0.0), np.ones((1, 2))
 PLACES = 2 * np.pi * np.arange(9)[None] / 9  # of the balls of a cage that has not turned

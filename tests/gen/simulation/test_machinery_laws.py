@@ -14,7 +14,6 @@ from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_fac
 from gen.physics.kernel.batch import input_shape
 from gen.scenarios import draw_scenarios
 from gen.simulation.motion import cosine_sum
-from gen.simulation.surroundings import heaviest_ball_load
 from tests.reference import turned
 from tests.responses import input_of, means_of, runs_of
 
@@ -146,16 +145,6 @@ def test_a_profile_starts_with_the_record_and_not_with_its_settling(record_of):
     assert record.schedule[-1] == pytest.approx([1.3, 0.3])
     assert (np.diff(record.schedule[:, 0]) >= 0).all()
     assert record.schedule[start + round(0.05 * FS), 0] == pytest.approx(0.85, abs=0.01)
-
-
-def test_a_wandering_load_has_its_rms_and_never_pulls_the_other_way(record_of):
-    gentle, wild = (
-        record_of({"operation.load_wander_percent": wander, "recording.duration_s": 60}).schedule[:, 1]
-        for wander in (5, 50)
-    )
-    assert gentle.mean() == pytest.approx(1, abs=2e-3)
-    assert gentle.std() == pytest.approx(0.05, rel=0.05)  # 8 cosines over a hundred of their slowest turns
-    assert wild.min() == 0
 
 
 @given(st.integers(2, 3000), st.integers(0, 12), st.floats(-1, 60), st.floats(1e-5, 1e-3), st.integers(0, 2**32 - 1))

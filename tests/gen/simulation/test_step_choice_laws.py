@@ -98,7 +98,7 @@ def test_a_ball_rolls_over_the_narrowest_spall_in_some_steps(recipe_with, width)
 rungs = st.lists(st.floats(0.02, 1), min_size=1, max_size=4, unique=True).map(sorted)
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(rungs, st.booleans(), st.floats(600, 40_000), st.integers(0, 2**31))
 def test_the_records_of_a_group_have_one_step_together_and_alone(recipe_with, shares, before_damage, rpm, seed):
     """So they differ in their fault alone; a replay simulates one of them without the others."""

@@ -53,13 +53,13 @@ def test_the_condition_belongs_to_the_machine_and_not_to_the_class_of_its_bearin
         {"kind": "unbalance", "weight": 3, "count": 1},
         {"kind": "rub", "count": 5, "level_db": "uniform(-30, 0)", "strongest": 2},
     ]
-    recipe = recipe_with({"corpus.rigs": 400, "machine_conditions": {"probability": 0.5, "entries": entries}})
+    recipe = recipe_with({"corpus.rigs": 150, "machine_conditions": {"probability": 0.5, "entries": entries}})
     scenarios = draw_scenarios(recipe)
     of_rig = {scenario.origin.rig: scenario.recipe.machine_conditions for scenario in scenarios}
     assert all(scenario.recipe.machine_conditions == of_rig[scenario.origin.rig] for scenario in scenarios)
     kinds = Counter({scenario.origin.rig: kind_of(scenario) for scenario in scenarios}.values())
     for kind, share in (("sound", 0.5), ("unbalance", 0.375), ("rub", 0.125)):
-        assert kinds[kind] == pytest.approx(share * 400, abs=4 * math.sqrt(400 * share * (1 - share)))
+        assert kinds[kind] == pytest.approx(share * 150, abs=4 * math.sqrt(150 * share * (1 - share)))
     rubbing = [found.entries[0] for found in of_rig.values() if found is not None and found.entries[0].kind == "rub"]
     assert {np.argmax(one.level_db) for one in rubbing} == {1}
 

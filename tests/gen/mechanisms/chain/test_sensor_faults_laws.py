@@ -202,14 +202,6 @@ def test_a_label_is_set_by_its_own_fault_and_by_no_other(dirty, fault):
     assert {name for name, value in labels.items() if value} == {label.name for label in fault.labels}
 
 
-@pytest.mark.parametrize("names", [("mains_hum", "drift"), ("drift", "emi_bursts"), ("emi_bursts", "mains_hum")])
-def test_the_random_times_of_a_fault_do_not_depend_on_the_other_faults(dirty, names):
-    """Faults ahead of the amplifier add up, so each can be found as a difference."""
-    silence = np.zeros((2, 1200))
-    one, other, both = (disturbed(silence, only(dirty[0], *some))[0] for some in (names[:1], names[1:], names))
-    np.testing.assert_allclose(one + other, both, atol=1e-12)
-
-
 def test_a_disturbed_record_keeps_shape_and_type_and_does_not_depend_on_other_records(dirty):
     signal = hiss()
     before = signal.copy()

@@ -4,13 +4,12 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.inputs import Turning
 from gen.physics.kernel.compiling import LANES
-from gen.physics.kernel_input import Spall, Turning
+from gen.physics.kernel_input import Turning
 from tests.lanes import march_lanes
 from tests.strategies import RIG, record, wandering_records
 
-law = settings(max_examples=20)
+law = settings(max_examples=10)
 KNOT = 1 / 12_000
 STANDING = Turning(0.0)
 UNDAMPED = RIG._replace(

@@ -1,4 +1,4 @@
-"""Laws of the arrays of the kernel: every named row is written before the first step, and every one is read."""
+"""Laws of the arrays of the kernel: every named row is written before the first step."""
 
 from dataclasses import replace
 
@@ -9,6 +9,7 @@ from gen.physics.hertz import LINE_EXPONENT
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.layout import PICKUPS, Param
+from gen.physics.kernel_input import Spall, Turning, Waviness, at_rest
 from tests.lanes import march_batch
 from tests.strategies import RIG, ball_waves, race_waves, record
 

@@ -2,15 +2,12 @@
 
 import math
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.extent import TABLE_POINTS
-from gen.physics.kernel.drop import GEOMETRIC, PROFILES, RECTANGULAR, TABLE, drop
-from gen.physics.kernel.spalls import tabulated
+from gen.physics.kernel.drop import GEOMETRIC, PROFILES, TABLE, drop
 from gen.simulation.damage import cached_drop
 from tests.strategies import depths
 
@@ -40,30 +37,6 @@ def test_a_ball_drops_no_deeper_than_the_spall_and_alike_on_both_sides(profile, 
     found = fall(profile, share * half, half, race, depth)
     assert 0.0 <= found <= depth * (1 + 1e-12)
     assert fall(profile, -share * half, half, race, depth) == found
-
-
-@every_profile
-@given(st.floats(-1.2, 1.2), halves, races, depths)
-def test_drops_have_no_jump_but_those_of_the_rectangular_profile(profile, share, half, race, depth):
-    if profile == RECTANGULAR:
-        edge = fall(profile, half * (1 - 1e-9), half, race, depth), fall(profile, half * (1 + 1e-9), half, race, depth)
-        assert edge == (depth, 0.0)
-        return
-    step = 1e-7
-    here = fall(profile, share * half, half, race, depth)
-    there = fall(profile, (share + step) * half, half, race, depth)
-    steepest = max(10 * depth, abs(race) * half)
-    assert abs(there - here) < step * steepest
-
-
-@given(st.floats(-1.2, 1.2), halves, st.integers(0, 2**32 - 1))
-def test_a_tabulated_drop_runs_straight_between_its_points_and_is_none_off_the_spall(share, half, seed):
-    tables = np.random.default_rng(seed).uniform(0, 1e-4, (2, TABLE_POINTS))
-    found = [tabulated.py_func(tables, row, share * half, half) for row in (0, 1)]
-    points = np.linspace(-half, half, TABLE_POINTS)
-    inside = abs(share * half) < half
-    expected = [np.interp(share * half, points, table) if inside else 0.0 for table in tables]
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * 1e-4 * TABLE_POINTS)
 
 
 @every_profile

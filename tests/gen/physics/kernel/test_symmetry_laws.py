@@ -14,7 +14,7 @@ from gen.physics.kernel_input import Waviness, at_rest
 from tests.lanes import march_lanes
 from tests.strategies import angles, troubled_records
 
-law = settings(max_examples=20)
+law = settings(max_examples=10)
 KNOT = 1 / 12_000
 N_KNOTS = 600  # 50 ms
 
