@@ -8,8 +8,7 @@ from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import LEAST_SAFETY, static_rating
 from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios
-from gen.support.errors import RecipeError, SimulationError
-from tests.responses import input_of
+from gen.support.errors import RecipeError
 
 LIMIT = CATALOGUE["6205"].static_rating / LEAST_SAFETY
 SEVERAL = {"kind": "catalogue", "designations": ["6205", "6309"]}
@@ -56,17 +55,6 @@ def test_a_recipe_whose_every_load_crushes_every_bearing_is_refused_when_it_is_r
 )
 def test_a_recipe_some_of_whose_draws_may_be_borne_is_read(recipe_with, changes):
     recipe_with(changes)
-
-
-@pytest.mark.parametrize(("load", "borne"), [(LIMIT / 2 + 1, True), (LIMIT - 1, True), (LIMIT + 1, False)])
-def test_a_record_is_borne_up_to_twice_the_static_rating(recipe_with, load, borne):
-    recipe = recipe_with({"operation.load_n": f"choice({load}, 100, weights=(1, 0))"})
-    scenario = draw_scenarios(recipe, 0, 1)[0]
-    if borne:
-        assert input_of(scenario).machine.load_y == pytest.approx(-load)
-        return
-    with pytest.raises(SimulationError, match="is more than 2 times the static rating"):
-        input_of(scenario)
 
 
 def test_a_single_record_beyond_the_limit_is_left_out_and_named(write_recipe, tmp_path):

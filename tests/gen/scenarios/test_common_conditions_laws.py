@@ -52,17 +52,6 @@ def test_records_scatter_about_the_value_of_their_rig_or_specimen(recipe_with, l
     assert deviations.mean() == pytest.approx(0, abs=1e-3)
 
 
-def test_a_common_value_is_a_share_of_the_quantity_of_each_record(recipe_with):
-    axial = uniform(0.1, 0.6, per="rig") * "load_n"
-    scenarios = draw_scenarios(recipe_with({"specimen.contact_angle_deg": 10, "operation.axial_load_n": axial}))
-    shares = {}
-    for scenario in scenarios:
-        conditions = scenario.conditions
-        shares.setdefault(scenario.origin.rig, []).append(conditions["axial_load"] / conditions["load"])
-    for found in shares.values():
-        assert found == pytest.approx([found[0]] * len(found))
-
-
 def test_grids_of_a_rig_enumerate_all_combinations_with_those_of_its_machine(recipe_with):
     changes = {
         "corpus.rigs": 12,

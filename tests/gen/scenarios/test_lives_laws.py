@@ -9,8 +9,6 @@ from gen.life.fatigue import life_share, rating_life
 from gen.scenarios import draw_scenarios
 from tests.recipes import LIVES
 
-OF_RIG = ("recording", "bearing", "machine", "contact", "path", "background", "sensor_faults")
-
 
 def lives_of(recipe):
     """Scenarios of each bearing, by its number."""
@@ -65,15 +63,6 @@ def test_a_spall_stays_itself_while_it_grows(lives):
             assert (one.fault, one.spalls) == ("healthy", [])
 
 
-def test_rig_and_specimen_stay_and_noise_is_fresh(lives):
-    for of in lives.values():
-        first = of[0].recipe
-        for one in of:
-            assert all(getattr(one.recipe, section) == getattr(first, section) for section in OF_RIG)
-            assert one.bearing == of[0].bearing
-        assert len({one.stream("noise").random() for one in of}) == len(of)
-
-
 def test_wear_opens_the_clearance_in_proportion_to_the_turns(lives):
     for of in lives.values():
         turns = of[0].origin.life.rul_revolutions - states(of, "rul_revolutions")
@@ -87,13 +76,6 @@ def test_load_and_speed_vary_slowly_about_their_values(lives):
     spread = np.sqrt(np.mean([np.var(of, ddof=1) for of in loads]))
     assert 0.05 < spread < 0.12
     assert np.mean([np.std(np.diff(of)) for of in loads]) < 0.8 * spread * np.sqrt(2)
-
-
-def test_no_bearing_is_parted_by_a_split(recipe_with):
-    for by in ("specimen", "rig"):
-        recipe = recipe_with(LIVES | {"corpus": LIVES["corpus"] | {"split": {"by": by, "test": 0.25}}})
-        for of in lives_of(recipe).values():
-            assert len({one.origin.split for one in of}) == 1
 
 
 def test_late_entry_leaves_out_those_that_failed_before(recipe_with):

@@ -118,14 +118,6 @@ def test_no_specimen_or_rig_is_on_both_sides_of_a_split(recipe_with, by):
     assert shares["validation"] / len(sides) == pytest.approx(0.25, abs=0.02)
 
 
-@pytest.mark.parametrize(("share", "expected"), [(0.05, 0), (0.15, 1), (0.2, 2), (0.3, 2), (0.45, 4)])
-def test_a_single_rig_sets_aside_the_whole_number_of_specimens_nearest_to_the_share(recipe_with, share, expected):
-    split = {"by": "specimen", "test": share}
-    corpus = {"rigs": 1, "specimens_per_rig": 8, "records_per_specimen": 1, "split": split}
-    splits = [scenario.origin.split for scenario in draw_scenarios(recipe_with({"corpus": corpus}))]
-    assert splits.count("test") == expected == round(8 * share)
-
-
 def test_the_first_rigs_of_a_corpus_set_aside_the_share_of_their_specimens_whatever_their_number(recipe_with):
     share, n_rigs, per_rig = 0.1, 50, 4
     corpus = {

@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 from gen import uniform
 from gen.physics.bearing import ball_spacing
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.rating import static_rating
 from gen.recipe import ranges
 from gen.scenarios import draw_scenarios
-from gen.simulation.machine import machine_of
+from gen.simulation.surroundings import machine_of
 from tests.drawn_values import anywhere, with_key_of
 
 SAMPLINGS = ("random", "sobol", "halton")
@@ -122,17 +121,6 @@ def test_a_spall_can_be_a_share_of_the_arc_between_two_balls(recipe_with, site):
     shares = [spall.width / ball_spacing(one.bearing, site) for one, spall in spalls]
     assert 0.1 <= min(shares) < 0.15 < 0.25 < max(shares) <= 0.3
     assert [spall.depth for _, spall in spalls] == pytest.approx([0.01 * spall.width for _, spall in spalls])
-
-
-BY_SIZE = {"bearing": {"kind": "catalogue", "designations": ["6203", "6311"]}}
-
-
-def test_a_load_can_be_a_share_of_the_static_rating_of_the_bearing(recipe_with):
-    recipe = recipe_with(BY_SIZE | {"corpus.rigs": 8, "operation.load_n": share("static_rating_n", 0.1, 0.1)})
-    scenarios = draw_scenarios(recipe)
-    assert len({scenario.drawing.designation for scenario in scenarios}) == 2
-    for scenario in scenarios:
-        assert scenario.conditions["load"] == pytest.approx(0.1 * static_rating(scenario.drawing))
 
 
 @pytest.mark.parametrize("of_drawing", [0, 25])

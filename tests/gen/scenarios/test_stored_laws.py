@@ -75,55 +75,25 @@ def sections_in(value):
         yield from sections_in(item)
 
 
-NO_SCENARIOS = {
-    "empty": "",
-    "an empty object": "{}",
-    "a list": "[]",
-    "null": "null",
-    "a number": "1",
-    "a string": '"seed"',
-    "zero byte": "\0",
-    "a lone surrogate": "\ud800",
-    "a megabyte of open lists": "[" * 1_000_000,
-    "a megabyte of closed lists": "[" * 500_000 + "]" * 500_000,
-    "a megabyte of objects": '{"path":' * 140_000,
-}
-
-
-@pytest.mark.parametrize("text", NO_SCENARIOS.values(), ids=NO_SCENARIOS)
-def test_a_text_that_is_no_scenario_is_refused_with_one_sentence(text):
-    assert_refused(text)
-
-
 CHANGES = {
+    "empty": (lambda _: "", "is not the JSON text of a recipe"),
+    "a lone surrogate": (lambda _: "\ud800", "is not the JSON text of a recipe"),
     "cut short": (lambda text: text[:-1], "is not the JSON text of a recipe: Expecting"),
     "something after it": (lambda text: text + "{}", "is not the JSON text of a recipe: Extra data"),
     "no origin": (lambda text: text.replace('"origin"', '"orogin"'), "orogin: no such key; did you mean origin?"),
-    "no operation": (lambda text: text.replace('"operation": {', '"operating": {', 1), "operating: no such key; did you mean operation?"),
-    "a rate of zero": (lambda text: text.replace('"sample_rate_hz": ', '"sample_rate_hz": 0, "x": '), "recording.sample_rate_hz: 0 is not"),
     "a negative number of a rig": (lambda text: text.replace('"rig": 0', '"rig": -1'), "origin.rig: -1 is not allowed here; it must be"),
-    "a seed of text": (lambda text: text.replace('"seed": ', '"seed": "1", "x": '), "seed: '1' is not allowed here"),
-    "a fraction for a seed": (lambda text: text.replace('"seed": ', '"seed": 0.5, "x": '), "seed: 0.5 is not allowed here"),
-    "text for a number": (lambda text: text.replace('"slope": 0.0', '"slope": "steep"'), "background.slope: 'steep' is neither"),
     "a distribution for a number": (
         lambda text: text.replace('"slope": 0.0', '"slope": "uniform(0, 1)"'), "background.slope: uniform(0, 1) is no number"
     ),
     "a number too few": (lambda text: re.sub(r'"width_mm": .[^]]*.', '"width_mm": []', text, count=1), "width_mm: is a list of 0 numbers"),
     "a fault that does not fit": (lambda text: re.sub(r'"width_mm": .[^]]*.', '"width_mm": [60]', text, count=1), "of 60 mm does not fit"),
-    "an unknown fault": (lambda text: text.replace('"faults": [{"kind": "', '"faults": [{"kind": "roof of the ', 1), "faults[0]."),
-    "an unknown profile": (lambda text: text.replace('"width_mm"', '"profile": "square", "width_mm"', 1), "profile: 'square' is not"),
-    "an unknown body": (lambda text: text.replace('"body": {"', '"body": {"un', 1), "recording.channels[0].body"),
-    "a list for an object": (lambda text: text.replace(MACHINE_KEY, '"machine": [], "x": {'), "machine: "),
-    "a key that no scenario has": (lambda text: text.replace('"seed"', '"x": 1, "seed"'), "x: no such key"),
     "an integer of 5000 digits": (lambda text: text.replace('"seed"', f'"x": {"1" * 5000}, "seed"'), "value has 5000 digits"),
     "a deep key that no scenario has": (
         lambda text: text.replace('"seed"', f'"x": {"[" * 100_000 + "]" * 100_000}, "seed"'),
         "maximum recursion depth exceeded",
     ),
     "no number": (lambda text: text.replace('"bow_n": 20.0', '"bow_n": NaN'), "machine.bow_n"),
-    "an infinite number": (lambda text: text.replace('"bow_n": 20.0', '"bow_n": 1e999'), "machine.bow_n"),
     "a key of a megabyte": (lambda text: text.replace(MACHINE_KEY, MACHINE_KEY + f'"{"x" * 1_000_000}": "1", '), "machine."),
-    "a key of several lines": (lambda text: text.replace(MACHINE_KEY, MACHINE_KEY + r'"x\ny": "1", '), "machine."),
 }  # fmt: skip
 
 
