@@ -69,11 +69,6 @@ def test_every_part_is_a_corpus_of_its_own(nine):
                 assert all(alone[name].variable.identical(here[name].variable) for name in whole.variables)
 
 
-def test_an_index_alone_is_refused_with_the_name_of_its_folder(nine):
-    with pytest.raises(CorpusError, match=r"index\.nc: is the index of a corpus and holds no signals; give its folder"):
-        open_corpus(nine / "c" / "index.nc")
-
-
 @pytest.mark.parametrize("form", FORMS)
 def test_a_corpus_reads_alike_from_anywhere_and_after_it_was_moved(nine, tmp_path, monkeypatch, form):
     path, last = nine / form, physical(dataset(sum(SIZES[:-1]), SIZES[-1]))[-1]

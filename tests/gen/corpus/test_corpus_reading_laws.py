@@ -5,6 +5,7 @@ import resource
 import shutil
 import threading
 import time
+from functools import lru_cache
 from pathlib import Path
 
 import h5py
@@ -16,6 +17,7 @@ from gen.corpus import (
     CODECS,
     SIGNAL,
     RecordBlock,
+    lazy,
     open_corpus,
     open_part,
     part_name,
@@ -25,12 +27,19 @@ from gen.corpus import (
     record_blocks,
     validate_corpus,
 )
-from gen.corpus.lazy import MOST_OPEN
 from gen.support.errors import CorpusError
 from tests.corpora import physical, write_corpus
 
-MANY = (1,) * (MOST_OPEN + 6)
-"""Records of parts; more of them than are open at a time here."""
+MOST_OPEN, MANY = 8, (3,) * 24
+"""Files that are open at a time here, and records of parts; more of them than a process may open."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_open():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lazy, "_open_file", lru_cache(MOST_OPEN)(lazy._File))
+        yield
+        lazy.close_files()
 
 
 def open_handles():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.corpus import (
@@ -39,7 +39,6 @@ def columns_of(rows):
 
 
 @given(rows=ROWS)
-@settings(deadline=None)
 def test_a_specimen_is_numbered_in_its_rig_and_a_recording_in_its_specimen(rows):
     keys = [row[1:4] for row in rows]
     expected = (len(rows), len(set(keys)), len({key[:2] for key in keys}), len({key[0] for key in keys}))
@@ -47,7 +46,6 @@ def test_a_specimen_is_numbered_in_its_rig_and_a_recording_in_its_specimen(rows)
 
 
 @given(rows=ROWS)
-@settings(deadline=None)
 def test_the_records_of_all_classes_are_those_of_the_corpus(rows):
     columns = columns_of(rows)
     classes = by_class(columns, NAMES)
@@ -56,7 +54,6 @@ def test_the_records_of_all_classes_are_those_of_the_corpus(rows):
 
 
 @given(rows=ROWS)
-@settings(deadline=None)
 def test_a_unit_is_in_several_splits_if_two_of_its_records_are(rows):
     def several(key):
         return any(key(one) == key(other) and one[4] != other[4] for one in rows for other in rows)

@@ -90,14 +90,6 @@ def test_labels_are_codes_whole_numbers_numbers_in_single_precision_or_texts(cor
         assert bool(items.names) == (label == "split")
 
 
-def test_items_come_with_what_an_analyst_on_site_knows(corpus):
-    folder, records = corpus[:2]
-    items = gen.torch_dataset(folder, where="shaft_rate > 5", channels=["b"])
-    assert {"sample_rate", "shaft_rate", "bpfo"} <= set(items.operating)
-    assert not {"fault", "width", "rig"} & set(items.operating)
-    np.testing.assert_array_equal(items.operating["shaft_rate"], records["shaft_rate"].values[items.records])
-
-
 def test_the_transform_is_called_with_the_signal_of_each_record(corpus):
     items = gen.torch_dataset(corpus[0], transform=rms)
     plain = gen.torch_dataset(corpus[0])
@@ -110,8 +102,6 @@ def test_the_transform_is_called_with_the_signal_of_each_record(corpus):
     ("asked", "sentence"),
     [
         ({"label": "falt"}, "label: there is no variable falt; the nearest is fault."),
-        ({"channels": ["c"]}, "channels: there is no channel 'c'; allowed are a, b."),
-        ({"split": "tset"}, "split: there is no split 'tset'; allowed are train, validation, test."),
         ({"where": "fault == 'cage' and shaft_rate < 0"}, "none of 14 records is chosen"),
     ],
 )

@@ -7,10 +7,10 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.corpus import MISSING_COUNT, SIGNAL, open_corpus, open_part, part_name, validate_corpus, write_part
+from gen.corpus import MISSING_COUNT, SIGNAL, open_corpus, open_part, part_name, write_part
 from gen.corpus.schema import signal_attributes
 from gen.support.errors import CorpusError
-from tests.corpora import SIZES, dataset, write_parts
+from tests.corpora import SIZES, dataset
 
 EVERY_COUNT = np.arange(-(2**15), 2**15).astype(np.int16)
 LARGEST = 32767
@@ -56,16 +56,6 @@ def test_every_reader_decodes_to_the_same_single_precision_numbers(nine):
         assert file[SIGNAL].units == "m s-2"
         assert found.dtype == np.float32
         np.testing.assert_array_equal(found, signal)
-
-
-def test_a_corpus_with_packing_in_double_precision_opens_and_validates(tmp_path):
-    part = dataset(0, 4)
-    part[SIGNAL].attrs |= {"scale_factor": 1 / 65.534, "add_offset": 0.0}
-    write_parts(tmp_path / "c", [part])
-    assert validate_corpus(tmp_path / "c") == []
-    with open_corpus(tmp_path / "c") as opened:
-        assert opened[SIGNAL].dtype == opened[SIGNAL].values.dtype == np.float64
-        np.testing.assert_array_equal(opened[SIGNAL], part[SIGNAL].values * (1 / 65.534))
 
 
 @pytest.mark.parametrize(

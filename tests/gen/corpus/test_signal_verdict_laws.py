@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.corpus.schema import MISSING_COUNT
-from gen.corpus.unusable import CLIPPED_SHARE, VERDICTS, SignalCounts, complaint, count_verdicts, judge, sum_counts
+from gen.corpus.unusable import CLIPPED_SHARE, VERDICTS, SignalCounts, complaint, count_verdicts, judge
 
 N = 1000
 counts = st.builds(SignalCounts, *[st.integers(0, 50)] * 4)
@@ -89,13 +89,6 @@ def test_a_record_is_judged_alike_alone_and_among_others(order):
     alone = [judge(signal[[place]])[0] for place in range(6)]
     assert judge(signal).tolist() == alone
     assert count_verdicts(judge(signal)) == SignalCounts(clipped=1, dead=1, constant=2)
-
-
-@given(st.lists(counts, max_size=5))
-def test_counts_of_parts_add_up(parts):
-    assert sum(sum_counts(parts)) == sum(map(sum, parts))
-    assert sum_counts(parts)._fields == VERDICTS[1:]
-    assert all(type(n) is int for n in sum_counts(parts))
 
 
 @pytest.mark.parametrize(("useless", "complains"), [(0, False), (1, False), (2, True), (100, True)])
