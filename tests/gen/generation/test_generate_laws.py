@@ -6,7 +6,7 @@ from distributed import LocalCluster
 
 from gen.corpus import SIGNAL, open_corpus, read_manifest, recipe_text, validate_corpus
 from gen.generation.corpus import generate
-from raceway.sharing.card.page import data_card
+from raceway.sharing.card.card_page import data_card
 from tests.same_corpora import assert_the_same_corpus
 
 

@@ -1,11 +1,13 @@
 """Laws of growth: a corpus with more records than it had is the one made at once, and no record depends on their number."""
 
+import shutil
+
 import pytest
 
-from gen.corpus import open_corpus, validate_corpus
+from gen.corpus import RECIPE_NAME, open_corpus, part_name, read_manifest, validate_corpus
+from gen.corpus.manifest import facts_of_parts, write_manifest
 from gen.generation.corpus import generate
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios
 from gen.support.errors import CorpusError, RecipeError
 from raceway import copy
 from tests.same_corpora import assert_the_same_corpus
@@ -50,13 +52,6 @@ def test_a_corpus_stays_whole_until_the_larger_one_is(write_recipe, tmp_path):
     assert_the_same_corpus(tmp_path / "c", generate(recipe, tmp_path / "at_once", records=16))
 
 
-@pytest.mark.parametrize("name", CHANGES)
-def test_no_drawn_value_depends_on_the_number_of_records(write_recipe, tmp_path, name):
-    path = write_recipe(tmp_path / "r.yaml", CHANGES[name])
-    few, many = (draw_scenarios(read_recipe(path, records=count)) for count in (12, 60))
-    assert few == many[:12]
-
-
 def test_parts_of_one_corpus_made_apart_are_completed_or_joined(write_recipe, tmp_path):
     recipe = write_recipe(tmp_path / "r.yaml")
     at_once = generate(recipe, tmp_path / "at_once")
@@ -79,3 +74,14 @@ def test_parts_that_a_corpus_does_not_have_are_refused(write_recipe, tmp_path, p
         generate(write_recipe(tmp_path / "r.yaml"), tmp_path / "c", parts=parts)
     with pytest.raises(CorpusError, match="is one file, which has all parts; give a folder"):
         generate(write_recipe(tmp_path / "r.yaml"), tmp_path / "c.nc", parts=range(1))
+
+
+def test_parts_beyond_the_hundred_thousandth_are_in_the_order_of_their_records(copied):
+    names = [part_name(number) for number in (99_999, 100_000)]
+    for name in names:
+        shutil.copy(copied / "parts" / part_name(0), copied / "parts" / name)
+    for number in range(3):
+        (copied / "parts" / part_name(number)).unlink()
+    write_manifest(copied, facts_of_parts([], {"title": "unfinished"}, complete=False))
+    assert (copied / RECIPE_NAME).is_file()
+    assert [row.name for row in read_manifest(copied).parts] == names

@@ -1,7 +1,6 @@
 """Laws of replay: every record is made again bit for bit from its stored scenario, and a corpus without one gets a sentence."""
 
 import re
-import shutil
 
 import numpy as np
 import pytest
@@ -180,17 +179,6 @@ def test_what_one_record_cannot_have_is_one_sentence(one_record, change, sentenc
     with pytest.raises(RecipeError, match=f"^{re.escape(sentence)}") as raised:
         one_record[1].with_(**change)
     assert "\n" not in str(raised.value)
-
-
-def test_a_recipe_of_a_record_may_have_no_items(one_record):
-    none = {"modes": {"count": 0, "frequency_hz": 100, "damping_percent": 2, "gain_db": 0, "sign": 1}}
-    assert one_record[1].with_(path=none).recipe.path.modes.frequency_hz == ()
-
-
-def test_a_corpus_without_its_recipe_still_replays(tiny_corpus, tmp_path):
-    copied = shutil.copytree(tiny_corpus, tmp_path / "corpus")
-    (copied / "recipe.yaml").unlink()
-    assert replay(copied, 7).identical
 
 
 def test_a_stored_text_that_is_no_scenario_is_refused_with_corpus_and_record(nine):

@@ -120,9 +120,3 @@ def test_whole_lives_in_memory_are_written_with_their_recipe_and_others_without(
     young = gen.write_corpus(records.isel(record=records.age.values < 400 * 3600), tmp_path / "young")
     assert not (young / "recipe.yaml").exists()
     assert replay(young, 12).identical
-
-
-def test_a_single_file_of_lives_is_kept_by_a_second_call(recipe_with, tmp_path):
-    few = recipe_with(SHORT | {"records": 80})
-    first, second = (generate(few, tmp_path / "c.nc").records for _ in range(2))
-    assert first == second < 80

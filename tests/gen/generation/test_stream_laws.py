@@ -10,7 +10,7 @@ import pytest
 import gen
 from gen.generation.stream import endless, records_from
 from gen.recipe import Recipe
-from gen.support.errors import ClusterError, RecipeError, SimulationError
+from gen.support.errors import ClusterError, RecipeError
 from gen.support.executor import run
 from tests.conftest import small_with
 
@@ -33,13 +33,6 @@ def test_the_stream_has_the_records_of_a_corpus_and_goes_on(recipe, tmp_path):
     for name in ("acceleration", "fault", "rig", "identity", "width", "snr"):
         made = np.concatenate([batch[name].values for batch in batches])[:40]
         np.testing.assert_array_equal(made, corpus[name].values)
-
-
-def test_a_record_of_the_stream_is_made_again_from_itself(recipe):
-    with gen.stream(recipe, batch=4, start=30) as fresh:
-        batch = next(fresh)
-    again = gen.simulate(gen.read_scenarios(batch.isel(record=[1, 2])))
-    np.testing.assert_array_equal(again["acceleration"].values, batch["acceleration"].values[1:3])
 
 
 def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
@@ -98,12 +91,6 @@ def test_shards_share_all_records_out_and_have_none_in_common(recipe):
     shares = [next(records_from(endless(recipe), 0, shard=shard, shards=3))["recording"].values for shard in range(3)]
     assert [share[0] for share in shares] == [0, 8, 16]
     assert sorted(np.concatenate(shares)) == list(range(24))
-
-
-def test_a_part_without_a_record_ends_the_stream():
-    impossible = Recipe(small_with({"operation.shaft_rpm": 100_000, "recording.oversampling": 1}))
-    with pytest.raises(SimulationError), gen.stream(impossible) as fresh:
-        next(fresh)
 
 
 FINITE = {

@@ -5,10 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from gen.corpus import FAULTS
 from gen.generation.labels import part_dataset
 from gen.generation.undetected import FAULT_TRIES, made_from, made_of, make_records
-from gen.measurement.measure import Measured, counts_per_unit
+from gen.measurement.measure import Measured
 from gen.recipe.sensing import FloatConverter
 from gen.scenarios import draw_scenarios, further_ratios
 from gen.simulation import simulate as simulation
@@ -79,14 +78,6 @@ def test_a_fault_that_is_drawn_again_keeps_the_conditions_of_its_entry(recipe_wi
         assert [one.spalls for one in again] != [one.spalls for one in first]
 
 
-def test_all_records_of_a_specimen_have_the_same_fault(redrawing):
-    _, made = redrawing
-    found = {}
-    for scenario in scenarios_of(made):
-        own = scenario.recipe.specimen, scenario.recipe.faults, scenario.origin.fault_try
-        assert found.setdefault(scenario.origin.specimen, own) == own
-
-
 @pytest.mark.parametrize("cut", [range(3, 9), range(24, 32)])
 def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing, cut):
     recipe, whole = redrawing
@@ -101,16 +92,6 @@ def test_the_last_record_of_a_specimen_made_alone_has_the_fault_that_all_its_rec
     for specimen in redrawn:
         number = (specimen + 1) * per_specimen - 1
         assert_same(make_records(recipe, range(number, number + 1)), whole[number : number + 1])
-
-
-def test_the_ratio_of_a_fault_is_the_drawn_one(redrawing):
-    _, made = redrawing
-    for record in made:
-        if record.scenario.fault != "healthy":
-            found, drawn = record.fault_snr, record.scenario.recipe.level.faulty_db
-            assert found == pytest.approx(drawn, abs=0.05) or found < drawn
-            power = 10 ** (found / 10)
-            assert record.fault_share == pytest.approx(power / (1 + power), rel=1e-6)
 
 
 @pytest.mark.parametrize(("waviness", "kinds"), [(0, ["inner"]), (20, ["inner", "outer"])])
@@ -191,14 +172,6 @@ def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(
     assert dataset["n_spalls"].values.tolist() == [0, 0]
     assert (dataset["width"] == 0).all()
     assert dataset["fault_snr"].values.tolist() == [-np.inf, -np.inf]
-
-
-def test_a_fault_that_was_not_judged_is_not_called_healthy(recipe_with):
-    recipe = recipe_with({"truth.twins": False, "truth.undetected": "healthy"})
-    made = make_records(recipe, range(8))
-    faults = [FAULTS.index(scenario.fault) for scenario in scenarios_of(made)]
-    assert any(faults)
-    assert part_dataset(recipe, made)["fault"].values.tolist() == faults
 
 
 def test_a_fault_that_no_draw_makes_visible_is_left_out_with_a_sentence(recipe_with):
@@ -304,19 +277,3 @@ def test_a_group_is_not_cut_by_a_part(ladders):
         assert_same(make_records(recipe, range(number, number + 2)), whole[number : number + 2])
         (again,) = made_from([whole[number].scenario])
         np.testing.assert_array_equal(again.signal, whole[number].signal)
-
-
-def test_with_a_physical_level_a_larger_spall_is_a_larger_signal(recipe_with):
-    """The background of a machine and the gain of its sensor are the same at every severity, and both are stored."""
-    level = {"kind": "physical", "gain": "uniform(0.5, 2)", "background_m_s2": 0.2}
-    rungs, width = [0.25, 0.5, 0.75, 1], {"kind": "outer", "width_mm": 0.4}
-    recipe = recipe_with({"level": level, "corpus.rungs": rungs, "corpus.specimens_per_rig": 1, "faults": [width]})
-    made = make_records(recipe, range(16))
-    dataset = part_dataset(recipe, made)
-    assert dataset["gain"].values.tolist() == [scenario.recipe.level.gain for scenario in scenarios_of(made)]
-    assert dataset["background_rms"].values == pytest.approx(0.2)
-    signal = np.stack([record.signal for record in made]) / counts_per_unit(recipe)
-    rms = np.sqrt(np.mean(signal**2, axis=(1, 2))) / dataset["gain"].values
-    for group in groups_of(made):
-        assert np.all(np.diff(rms[group]) > 0)
-        assert np.all(np.diff([made[place].fault_snr for place in group]) > 3)

@@ -27,31 +27,10 @@ def loud(write_recipe, tmp_path_factory):
     return recipe, generate(recipe, folder / "corpus")
 
 
-def test_a_usable_corpus_counts_nothing(tiny_corpus):
-    assert read_manifest(tiny_corpus).signals == SignalCounts()
-    assert part_counts(tiny_corpus) == [SignalCounts()] * 4
-    assert "Records that cannot be used: none." in data_card(tiny_corpus)
-
-
 def test_each_part_has_its_own_count(loud):
     _, made = loud
     assert part_counts(made.path) == [SignalCounts(), SignalCounts(clipped=8), SignalCounts()]
     assert made.signals == SignalCounts(clipped=8)
-
-
-def test_counts_survive_an_interruption(loud, tmp_path):
-    recipe, made = loud
-
-    def interrupted(_done, _total):
-        if len(part_counts(tmp_path / "c")) == 2:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        generate(recipe, tmp_path / "c", progress=interrupted)
-    assert describe(tmp_path / "c")["signals"] == SignalCounts(clipped=8)._asdict()
-    again = generate(recipe, tmp_path / "c")
-    assert (again.kept, again.signals) == (2, made.signals)
-    assert (tmp_path / "c" / "manifest.json").read_bytes() == (made.path / "manifest.json").read_bytes()
 
 
 def test_recordings_that_cannot_be_used_are_counted_when_they_are_imported(tmp_path):

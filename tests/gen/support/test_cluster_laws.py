@@ -23,7 +23,7 @@ def threaded():
 
 def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, tmp_path):
     recipe = tmp_path / "many.yaml"
-    recipe.write_text(tiny_recipe.read_text().replace("records_per_part: 12", "records_per_part: 3"))
+    recipe.write_text(tiny_recipe.read_text().replace("records_per_part: 12", "records_per_part: 6"))
     alone = generate(recipe, tmp_path / "alone")
     made = generate(recipe, tmp_path / "threads", scheduler=threaded.scheduler_address)
     assert read_manifest(made.path).parts == read_manifest(alone.path).parts
@@ -32,12 +32,6 @@ def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, t
 
 def negated(item):
     return -item
-
-
-def test_every_item_is_worked_on_once(threaded):
-    with Client(threaded, set_as_default=False) as client:
-        assert list(run(negated, range(-50, 0), client)) == list(range(50, 0, -1))
-        assert list(run(negated, [], client)) == []
 
 
 def test_few_tasks_are_submitted_ahead_of_their_results(threaded):

@@ -52,13 +52,9 @@ def flip(content, place):
 
 DAMAGE = {
     "cut in half": lambda content: content[: len(content) // 2],
-    "cut in the hash": lambda content: content[:10],
     "empty": lambda _: b"",
-    "text": lambda _: b"no kernel\n" * 50,
     "as numba writes it": lambda content: content[32:],
-    "one bit at the start": lambda content: flip(content, 0),
     "one bit in the middle": lambda content: flip(content, len(content) // 2),
-    "one bit at the end": lambda content: flip(content, len(content) - 1),
 }
 
 
@@ -72,14 +68,3 @@ def test_a_damaged_file_is_compiled_again_once(twice, tmp_path, damage):
         with event.install_recorder("numba:compile") as recorder:
             assert function(1.5) == 3.0
         assert sum(one.is_start for _, one in recorder.buffer) == compiled
-
-
-def test_a_kernel_of_other_sources_or_another_variant_is_compiled_again(twice, tmp_path):
-    function = twice()
-    function(1.5)
-    assert is_on_disk(twice(), (float64,))
-    assert not is_on_disk(twice("other"), (float64,))
-    function(1)
-    first, second = sorted((tmp_path / "cache").rglob("*.nbc"))
-    first.write_bytes(second.read_bytes())
-    assert (twice()(1.5), twice()(1)) == (3.0, 2)
