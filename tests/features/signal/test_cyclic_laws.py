@@ -67,16 +67,6 @@ def test_impacts_that_slip_stand_out_of_many_resonances_as_of_white_noise():
     np.testing.assert_allclose(lines[1], lines[0], rtol=0.2)  # 15 % lower, and 25 % without whitening
 
 
-@pytest.mark.parametrize("rate", [87.0, 87.3127, 151.9])
-def test_modulated_noise_has_its_depth_as_coherence_within_one_per_cent(rate):
-    rng, n, depth = np.random.default_rng(1), 1_000_000, 0.8
-    x = rng.standard_normal((1, n)) * (1 + depth * np.cos(2 * np.pi * rate * np.arange(n) / FS))
-    found = spectral_coherence(x, FS, 200.0)
-    spectrum = enhanced_envelope_spectrum(found)[0]
-    near = abs(found.cyclic - rate) < 0.2
-    np.testing.assert_allclose(np.sqrt(spectrum[near].max()), depth / (1 + depth**2 / 2), rtol=0.01)
-
-
 def test_the_enhanced_envelope_spectrum_has_lines_at_the_planted_rate_and_its_harmonics_alone():
     rng, rate = np.random.default_rng(2), 73.4
     found = spectral_coherence(np.stack([bursts(rng, 200_000, rate) for _ in range(3)]), FS, 350.0)

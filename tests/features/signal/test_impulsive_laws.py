@@ -6,8 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from features.signal import comb_bands, kurtogram, spectral_kurtosis
-from features.signal.impulsive import band_kurtosis, equal_bands
-from features.signal.spectra import fourier_coefficients
 
 FS = 20_000.0
 
@@ -54,12 +52,6 @@ def test_the_bands_of_each_level_cover_the_spectrum_once():
         np.testing.assert_allclose(edges[[0, -1], [0, 1]], [0, FS / 2])
     with pytest.raises(ValueError, match="longer records"):
         kurtogram(np.ones((1, 100)), FS)
-
-
-def test_the_kurtosis_of_a_tone_is_minus_one():
-    x = np.sin(2 * np.pi * 1000.0 * np.arange(10_000) / 10_000.0)[None]
-    around = fourier_coefficients(x, 10_000.0, 5000.0)[:, 900:1101]
-    np.testing.assert_allclose(band_kurtosis(around, equal_bands(201, 1)), -1.0, atol=0.05)
 
 
 def assert_false_alarms_as_promised(samples):

@@ -1,12 +1,13 @@
-"""Laws of the spectra: energy is conserved, modulations have their lines, and records do not depend on each other."""
+"""Laws of spectra, of the shape of an envelope, and of roll-off, centroid and tonality."""
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import uniform_filter1d
 from scipy.signal import lfilter, welch
 
+from features.signal.colour import centroid, roll_off, tonality
 from features.signal.demodulation import (
     amplitude_spectrum,
     analytic_band,
@@ -15,6 +16,7 @@ from features.signal.demodulation import (
     running_median,
     weight_by_hann,
 )
+from features.signal.shape import envelope_shape
 from features.signal.spectra import (
     band_energies,
     cepstrum,
@@ -87,16 +89,6 @@ def test_a_modulation_at_a_frequency_of_the_grid_is_read_as_its_depth(depth, pla
     assert squared[place] == pytest.approx(2 * depth, rel=1e-3)
 
 
-@given(DEPTHS, st.floats(40.0, 250.0), FS, LENGTHS)
-def test_between_frequencies_of_the_grid_a_modulation_is_read_with_the_loss_of_a_hann_window(
-    depth, frequency, fs, seconds
-):
-    lines, _, resolution = modulated(depth, frequency, fs, round(seconds * fs))
-    beside = (np.argmax(lines) - frequency / resolution) / 4  # in frequencies of the record
-    assert abs(beside) <= 0.126
-    assert lines.max() == pytest.approx(depth * np.sinc(beside) / (1 - beside**2), rel=1e-3)
-
-
 @given(st.floats(0.1, 10.0), st.floats(600.0, 1400.0))
 def test_the_modulus_of_an_analytic_band_is_the_amplitude_of_a_tone_in_it(amplitude, tone):
     x = amplitude * np.sin(2 * np.pi * tone * np.arange(12_000) / 12_000)
@@ -138,11 +130,6 @@ def test_an_interpolated_spectrum_is_that_of_the_padded_signal(seed, n, precisio
     np.testing.assert_allclose(fine_amplitudes(weighted, bins), padded[:, :bins], rtol=0, atol=near)
 
 
-@pytest.mark.parametrize("whiten", [whiten_cepstrally, lambda c: whiten_by_psd(c, 25)])
-def test_a_signal_of_zeros_is_whitened_to_zeros(whiten):
-    assert not whiten(np.zeros((2, 100), complex)).any()
-
-
 @given(st.floats(-5, 5), st.floats(-1, 1), st.floats(8.0, 300.0))
 def test_the_running_median_follows_a_straight_line(height, slope, width):
     line = height + slope * np.arange(1000.0)
@@ -163,3 +150,54 @@ def test_the_prediction_filter_of_an_autoregressive_process_is_its_own():
     x = lfilter([1.0], own, np.random.default_rng(1).standard_normal((2, 100_000)))
     filters = prediction_filters(sine_windowed(x, 131_072), 131_072, 4)
     np.testing.assert_allclose(filters, np.tile(own, (2, 1)), atol=0.02)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(400, 5000), st.floats(9.0, 60.0))
+def test_the_shape_of_an_envelope_follows_its_definitions(seed, n, shaft_rate):
+    rate = 2000.0
+    power = np.random.default_rng(seed).exponential(size=(2, n)) * (1 + 0.5 * np.sin(np.arange(n) * 20 / rate))
+    weighted = weight_by_hann(np.sqrt(power))
+    spectrum = fine_amplitudes(weighted, 2 * n + 1)
+    slow = np.arange(2 * n + 1) * rate / (4 * n) < 0.8 * shaft_rate
+    span = round(0.5 * rate / shaft_rate)
+    starts = range(0, n - span + 1, span // 4)
+    means = np.stack([power[:, start : start + span].mean(axis=1) for start in starts])
+    expected = (
+        np.log(np.mean(power**2, axis=1) / np.mean(power, axis=1) ** 2),
+        means.std(axis=0) / power.mean(axis=1),
+        np.sum(spectrum[:, slow] ** 2, axis=1) / np.sum(spectrum**2, axis=1),
+    )
+    low = spectrum[:, : np.count_nonzero(slow) + 1]
+    found = envelope_shape(power, weighted, low, rate, np.full(2, shaft_rate))
+    np.testing.assert_allclose(found[:, :2], np.stack(expected[:2], axis=1), rtol=1e-6)
+    np.testing.assert_allclose(found[:, 2], expected[2], rtol=0.01)
+
+
+law = settings(max_examples=10)
+FREQUENCIES = np.arange(1001) * 4.0
+
+
+@law
+@given(st.floats(0.05, 0.95), st.floats(1e-6, 1e6))
+def test_a_flat_density_rolls_off_at_the_share_of_its_width_whatever_its_gain(share, gain):
+    flat = np.full((1, 1001), gain)
+    assert roll_off(flat, FREQUENCIES, share)[0] == pytest.approx(share * 4004 - 2, abs=4)
+    assert centroid(flat, FREQUENCIES)[0] == pytest.approx(2000)
+
+
+@pytest.mark.parametrize("measure", [centroid, tonality, lambda density, f: roll_off(density, f, 0.85)])
+def test_a_record_has_the_same_value_in_every_batch(measure):
+    density = np.random.default_rng(0).random((37, 1001))
+    alone = [measure(row[None], FREQUENCIES)[0] for row in density]
+    np.testing.assert_array_equal(measure(density, FREQUENCIES), alone)
+
+
+@law
+@given(st.integers(0, 2**32 - 1), st.floats(0.2, 5.0))
+def test_tonality_is_the_share_of_tones_in_the_energy(seed, amplitude):
+    fs, n = 8000.0, 8000
+    noise = np.random.default_rng(seed).standard_normal(n)
+    tone = amplitude * np.sin(2 * np.pi * 1230.0 * np.arange(n) / fs)
+    frequencies, density = psd((noise + tone)[None], fs, 1.0)
+    share = amplitude**2 / 2 / (amplitude**2 / 2 + 1)
+    assert tonality(density, frequencies)[0] == pytest.approx(share, abs=0.06)

@@ -80,20 +80,6 @@ def test_two_families_that_fit_two_speeds_equally_are_not_clear(family, place, s
     assert found.evidence == EVIDENCE[0]
 
 
-@given(errors, st.integers(0, 8))
-def test_one_line_alone_is_no_clear_comb(place, line):
-    levels = np.full((LINES, CANDIDATES), FLOOR)
-    levels[line, CANDIDATES // 2 + place] = 5.0
-    assert not find_speed(levels, 10, 25.0).clear
-
-
-def test_without_lines_the_rate_is_the_label_and_uncertain():
-    found = find_speed(levels_with(), 10, 25.0)
-    assert found.rate == 25.0
-    assert found.uncertainty > 2 * SLIP * 25.0
-    assert not found.clear
-
-
 def test_without_a_window_nothing_is_known():
     found = find_speed(np.zeros((1, 1)), 0, 25.0)
     assert np.isnan(found.rate)

@@ -1,6 +1,5 @@
 """The feature table: computed from signal and operating variables, with all other variables copied."""
 
-import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -8,7 +7,7 @@ from distributed import Client
 
 from features import feature_table
 from features.table.band import Band, band_attributes, band_of
-from features.table.corpora import band_warnings
+from features.table.corpus_features import band_warnings
 from features.table.definitions import GROUPS
 from features.table.indicators import Orders, feature_names, indicators
 from features.table.table_files import read_table, write_table
@@ -180,15 +179,6 @@ def test_an_altered_table_is_refused_or_reads_the_same(tmp_path, table):
     assert refused > 6
 
 
-@pytest.mark.parametrize("change", [{"title": "another"}, {"records_with_missing_features": 1}], ids=["title", "count"])
-def test_a_table_with_other_attributes_is_refused(tmp_path, table, change):
-    write_table(table, tmp_path / "table.nc")
-    with netCDF4.Dataset(tmp_path / "table.nc", "r+") as file:
-        file.setncatts(change)
-    with pytest.raises(CorpusError, match=r"table\.nc: altered, its content does not match its digest"):
-        read_table(tmp_path / "table.nc")
-
-
 def test_a_table_is_unchanged_in_the_columns_of_parquet(tmp_path, table):
     parquet = pytest.importorskip("pyarrow.parquet")
     path = tmp_path / "table.parquet"
@@ -220,28 +210,12 @@ def test_columns_of_several_channels_are_named_by_channel(tmp_path, corpus):
         np.testing.assert_array_equal(again[f"{name}_time_rms"].to_numpy(), held)
 
 
-def test_a_file_without_a_feature_table_is_refused_by_name(tmp_path, corpus):
-    (tmp_path / "text.nc").write_text("no netCDF")
-    with pytest.raises(CorpusError, match=r"text\.nc: not a readable netCDF file"):
-        read_table(tmp_path / "text.nc")
-    with pytest.raises(CorpusError, match=r"missing\.nc: not a readable netCDF file"):
-        read_table(tmp_path / "missing.nc")
-    with pytest.raises(CorpusError, match=r"index\.nc: contains no features"):
-        read_table(corpus / "index.nc")
-
-
 def test_several_channels_have_the_features_of_each(corpus):
     both = feature_table(corpus, ("time",), channel=["sensor", "housing"])
     assert (both["features"].dims[0], list(both["channel"].values)) == ("channel", ["sensor", "housing"])
     for name in ("sensor", "housing"):
         alone = feature_table(corpus, ("time",), channel=name)["features"]
         np.testing.assert_array_equal(both["features"].sel(channel=name), alone)
-
-
-def test_a_record_lacks_features_if_one_of_its_channels_does(tmp_path):
-    spoiled = make_corpus(tmp_path / "corpus", spoiled=1)  # in two records of its first channel
-    for channels in (["housing", "sensor"], ["sensor", "housing"]):
-        assert feature_table(spoiled, ("time",), channel=channels).attrs["records_with_missing_features"] == 2
 
 
 def test_a_channel_can_be_given_by_its_name(corpus):

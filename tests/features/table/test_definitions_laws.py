@@ -59,7 +59,7 @@ def test_extreme_signals_have_features_in_their_ranges(rate, dtype):
     assert_in_range(np.stack([*EXTREME.values()]).astype(dtype), rate)
 
 
-@settings(max_examples=20)
+@settings(max_examples=10)
 @given(
     st.integers(0, 2**32 - 1),
     st.floats(5.0, 200.0),

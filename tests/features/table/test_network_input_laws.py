@@ -59,12 +59,6 @@ def test_a_record_that_shows_no_line_has_no_level(x, changed):
     assert not envelope_orders(x, known() | changed).any()
 
 
-def test_bands_beyond_half_the_sample_rate_have_no_level():
-    levels = envelope_orders(modulated(3.58, fs=4000.0), known(fs=4000.0))[0]
-    assert levels[:, :3].any(axis=(0, 2)).all()
-    assert not levels[:, 4:].any()
-
-
 def test_waveforms_give_the_levels_of_their_signals(tmp_path):
     orders = {name: np.full(48, value) for name, value in ORDERS._asdict().items()}
     signal = write_corpus(tmp_path / "corpus", **orders)

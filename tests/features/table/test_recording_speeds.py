@@ -138,11 +138,6 @@ def test_a_warning_names_the_recording_both_speeds_and_the_lines(checked, correc
     assert speed_warnings(corrected)[0].endswith("%); its features use the estimated speed.")
 
 
-def test_another_treatment_of_speeds_is_refused(corpus):
-    with pytest.raises(ValueError, match="'fix' is no treatment of shaft speeds; choose from off, check, correct"):
-        feature_table(corpus, GROUPS, speed="fix")  # pyright: ignore[reportArgumentType]
-
-
 def test_the_sum_over_many_parts_does_not_depend_on_their_order():
     """A recording in two parts would not tell, because a sum of two numbers has no order."""
     rng, lines = np.random.default_rng(0), np.zeros(9)

@@ -1,4 +1,8 @@
-"""Records in memory are a corpus for tables, models, waveforms and pages; other objects are refused in one sentence."""
+"""Records in memory are a corpus for tables, models, waveforms and pages; a corpus is read on systems without POSIX."""
+
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -8,7 +12,9 @@ import gen
 from features import Model, audit_splits, feature_table, open_waveforms, rank_features
 from features.baselines import benchmark, cross_validate, learning_curve
 from features.table.band import DEFAULT_BAND
+from gen import open_corpus
 from gen.support.errors import CorpusError
+from raceway import copy
 from raceway.reports.explore import write_explorer
 from raceway.reports.subject import shown_record
 
@@ -86,3 +92,29 @@ def test_records_beyond_the_last_one_are_not_drawn():
     for first, stop in ((1000, 1064), (-1, 3), (5, 5), (448, None)):
         with pytest.raises(gen.RecipeError, match=r"^quickstart: has no records .* it has 448, numbered from 0\.$"):
             gen.draw_scenarios(recipe, first, stop)
+
+
+READ = """
+import os, sys
+for name in ("fork", "forkpty", "register_at_fork", "sched_getaffinity", "process_cpu_count", "getuid", "geteuid", "killpg"):
+    if hasattr(os, name):
+        delattr(os, name)
+for name in ("fcntl", "resource", "pwd", "grp", "termios"):
+    sys.modules[name] = None
+import numpy as np
+from features import feature_table
+from gen import open_corpus
+for path in sys.argv[1:]:
+    print(float(np.abs(open_corpus(path)["acceleration"].values).max()), np.nansum(feature_table(path)["features"].values))
+"""
+
+
+def test_a_corpus_is_read_without_what_only_posix_systems_have(tiny_corpus, tmp_path):
+    copy([tiny_corpus], tmp_path / "c.nc")
+    command = [sys.executable, "-c", READ, tiny_corpus, tmp_path / "c.nc"]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    run = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert run.returncode == 0, run.stderr
+    largest = float(np.abs(open_corpus(tiny_corpus)["acceleration"].values).max())
+    line = f"{largest} {np.nansum(feature_table(tiny_corpus)['features'].values)}\n"
+    assert run.stdout == 2 * line

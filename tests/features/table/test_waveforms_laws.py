@@ -109,13 +109,6 @@ def test_samples_that_are_not_finite_are_zero(corpus):
     assert np.isfinite(holed[:]).all()
 
 
-def test_waveforms_know_what_an_analyst_on_site_knows(corpus):
-    X = open_waveforms(corpus[0]).take([30, 2])
-    assert {"sample_rate", "shaft_rate", "bpfo", "load"} <= set(X.operating)
-    assert not {"fault", "width", "rig", "specimen", "recording"} & set(X.operating)
-    np.testing.assert_array_equal(X.operating["shaft_rate"], X.labels["shaft_rate"][:2])
-
-
 def test_given_shaft_rates_replace_the_labelled_ones(corpus):
     labelled = open_waveforms(corpus[0], per_turn=64, turns=3)
     rates = 1.05 * labelled.operating["shaft_rate"]
@@ -124,18 +117,6 @@ def test_given_shaft_rates_replace_the_labelled_ones(corpus):
     slower = open_waveforms(corpus[0], per_turn=64, turns=3, shaft_rate=rates / 1.05)
     np.testing.assert_allclose(slower[:5], labelled[:5], atol=1e-5)
     assert np.abs(X[:5] - labelled[:5]).max() > 0.1
-
-
-@pytest.mark.parametrize(
-    ("options", "sentence"),
-    [
-        ({"channel": 1}, "no channel 1; give one of housing"),
-        ({"per_turn": 64, "turns": 0}, "0 turns of 64 samples are no signal; give turns and per_turn above 0"),
-    ],
-)
-def test_waveforms_that_do_not_exist_are_refused(corpus, options, sentence):
-    with pytest.raises(CorpusError, match=sentence):
-        open_waveforms(corpus[0], **options)
 
 
 def test_a_record_without_a_shaft_rate_cannot_be_resampled(tmp_path):
