@@ -14,7 +14,6 @@ from features.fault_classes import CLASSES, COMBS, EVIDENCE, FaultClass, Nominal
 from features.signal.lines import FAMILIES
 from features.table.indicators import Orders, feature_names
 from gen.corpus import FAULTS
-from gen.corpus.fault_classes import UNKNOWN
 from raceway.reports import pictures
 from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.pictures import DrawnRecord, draw_record, fault_lines
@@ -23,11 +22,6 @@ from tests.paths import ROOT
 ORDERS = Orders(*map(np.float64, (0.4, 3.6, 5.4, 2.35)))
 TABLE = ROOT / "features" / "fault_classes.py"
 RULE = ROOT / "features" / "baselines" / "estimators.py"  # three classes interact there: ball, cage and compound
-
-
-def test_classes_are_drawn_in_different_colours():
-    assert FAULT_COLOURS.keys() == {*CLASSES, UNKNOWN}
-    assert len(set(FAULT_COLOURS.values())) == len(FAULT_COLOURS)
 
 
 def test_the_features_that_tell_the_classes_are_computed_and_tell_one_class_each():

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.special import softmax
 
-from features.baselines.calibration import COVERAGE, UNCALIBRATED, answering, calibrate, combine, fit_calibration
-from features.baselines.predictions import UNSURE, predictions
+from features.baselines.calibration import COVERAGE, answering, calibrate, combine, fit_calibration
+from features.baselines.predictions import predictions
 from gen.corpus import FAULTS
 
 FOUR = FAULTS[:4]
@@ -39,13 +39,6 @@ def test_a_temperature_keeps_the_order_of_the_classes(probabilities, temperature
     np.testing.assert_allclose(found.sum(axis=1), 1.0)
     ordered = np.take_along_axis(found, probabilities.argsort(axis=1), axis=1)
     assert (np.diff(ordered, axis=1) >= -1e-12).all()
-
-
-@given(drawn_rows(1.0), st.floats(0.5, 2.0), st.floats(0.5, 2.0))
-def test_temperatures_multiply(probabilities, first, second):
-    np.testing.assert_allclose(
-        calibrate(calibrate(probabilities, first), second), calibrate(probabilities, first * second), rtol=1e-9
-    )
 
 
 @given(rows, st.integers(1, 9))
@@ -83,11 +76,3 @@ def test_the_stated_share_of_the_records_is_answered(seed, records):
 def test_the_threshold_is_the_highest_one_that_answers_enough():
     probabilities = np.array([[0.9, 0.1], [0.2, 0.8], [0.7, 0.3], [0.4, 0.6]])
     assert [answering(probabilities, share) for share in (0.25, 0.5, 0.51, 1.0)] == [0.9, 0.8, 0.7, 0.6]
-
-
-def test_the_answer_below_the_threshold_is_unsure():
-    probabilities = np.array([[0.6, 0.2, 0.1, 0.1], [0.1, 0.8, 0.05, 0.05]])
-    half = UNCALIBRATED.model_copy(update={"threshold": 0.7})
-    found = predictions(probabilities, FOUR, np.array([0, 1]), half)
-    assert found.predicted == ("healthy", "inner")
-    assert found.answers == (UNSURE, "inner")

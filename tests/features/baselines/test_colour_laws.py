@@ -48,27 +48,7 @@ def test_healthy_is_answered_near_the_reference_alone():
     assert predictions(fault, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(4 * SCATTER)).answers == ("outer",)
 
 
-def test_windows_of_one_recording_are_averaged_in_their_colour():
-    changes = coloured(2 * SCATTER, records=2).changes * [[[1.0], [-1.0]]]
-    found = predictions(
-        np.repeat(SURE, 2, axis=0),
-        CLASSES,
-        np.array([0, 0]),
-        UNCALIBRATED,
-        colour=Colour(changes, np.full((1, 2), SCATTER)),
-    )
-    assert found.answers == (UNSURE, UNSURE)
-    assert found.by_recording is not None
-    assert found.by_recording.answers == ("healthy",)
-
-
 def test_one_channel_in_a_strange_colour_is_enough():
     colour = coloured(0.0, channels=2)
     colour.changes[1] = coloured(2 * SCATTER).changes[0]
     assert predictions(np.stack([SURE, SURE]), CLASSES, np.array([0]), UNCALIBRATED, colour=colour).answers == (UNSURE,)
-
-
-def test_a_record_without_energies_has_no_colour():
-    colour = coloured(2 * SCATTER)
-    colour.changes[:] = np.nan
-    assert predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour=colour).answers == ("healthy",)

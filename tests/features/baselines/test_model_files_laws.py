@@ -1,4 +1,4 @@
-"""Laws of model files: a loaded model predicts the same, and other files are refused in one sentence."""
+"""Laws of model files: a loaded model predicts the same, and other files are refused in one sentence; durations."""
 
 import json
 import re
@@ -9,11 +9,11 @@ import pytest
 import skops.io
 from hypothesis import given
 from hypothesis import strategies as st
-from sklearn.base import BaseEstimator
 
 from features.baselines import ESTIMATORS, Model, estimators, predict
 from features.baselines.model_file import TRUSTED, read_model_file
 from features.baselines.models import FORMAT
+from features.table.durations import SAME_DURATION, durations_of, suited
 from gen.support.errors import CorpusError
 from tests.model_files import Archive, make_table, write_models
 
@@ -85,15 +85,6 @@ def test_the_trusted_types_are_those_of_models(files):
     assert set(TRUSTED) <= held
 
 
-class Foreign(BaseEstimator):
-    """An estimator of another project."""
-
-
-def test_a_model_with_a_foreign_type_is_refused_by_name(tmp_path):
-    (tmp_path / "m").write_bytes(skops.io.dumps({"raceway_model": 4, "estimator": Foreign()}))
-    assert "test_model_files_laws.Foreign, which no model of raceway contains" in refusal(tmp_path / "m")
-
-
 def test_a_type_that_is_renamed_in_the_file_is_refused_by_name(files, tmp_path):
     archive = Archive(files["svm"])
     archive.field("estimator").update({"__module__": "os", "__class__": "system"})
@@ -142,3 +133,18 @@ def test_the_model_for_shorter_records_is_in_the_same_file(tmp_path):
 def test_a_model_file_holds_no_pickle(files):
     members = Archive(files["ensemble"]).members
     assert all(name.endswith(".npy") for name in members)
+
+
+@given(st.lists(st.floats(0.01, 100), max_size=4))
+def test_shorter_records_are_for_the_model_of_these(durations):
+    short = Model(durations=(0.5, 0.5))
+    model = Model(durations=(2.0, 2.0), shorter=short)
+    below = bool(durations) and min(durations) < 2 / SAME_DURATION
+    assert suited(model, durations) is (short if below else model)
+    assert suited(short, durations) is short
+
+
+def test_a_table_tells_its_shortest_and_longest_duration_or_none():
+    table = make_table()
+    told = table.assign(duration=("record", [0.5, 2.0, 1.0] * 8))
+    assert (durations_of(table), durations_of(told), durations_of(told.isel(record=[]))) == ((), (0.5, 2.0), ())

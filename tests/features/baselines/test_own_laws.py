@@ -13,7 +13,6 @@ from sklearn.svm import SVC
 from features import feature_table, open_waveforms
 from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker, read_results
 from features.baselines.estimators import class_probabilities, make_estimator
-from features.baselines.own import OwnClassifier
 from features.baselines.results_file import write_results
 from gen.support.errors import CorpusError
 from tests.features.baselines.test_baselines_laws import make_table
@@ -67,19 +66,6 @@ def test_a_given_classifier_is_copied_before_each_fit():
     assert not hasattr(other, "coef_")
 
 
-@pytest.mark.parametrize(
-    "maker",
-    [
-        lambda seed: LogisticRegression(random_state=seed),
-        lambda s: LogisticRegression(random_state=s),
-        lambda first=1.0, random_state=None: LogisticRegression(C=first, random_state=random_state),
-        LogisticRegression,
-    ],
-)
-def test_a_function_or_class_is_given_the_seed_if_it_takes_one(maker):
-    assert OwnClassifier(maker, 17).made.random_state == 17
-
-
 def test_an_own_classifier_is_benchmarked_beside_the_untrained_baselines_and_on_another_corpus():
     results = benchmark(make_table(24, 3), make_table(8, 4, seed=1), estimators={"mine": Nearest}, folds=3, curve=True)
     assert (results.leading, list(results.baselines)) == ("mine", ["majority", "envelope_rule", "mine"])
@@ -130,14 +116,6 @@ def test_a_row_is_added_to_results_with_the_same_corpora_and_settings(tmp_path, 
         assert list(other.baselines) == ["majority", "envelope_rule", "bayes"]
 
 
-def test_an_own_model_is_evaluated_and_not_saved(tmp_path):
-    model = Model(Nearest).fit(make_table())
-    assert model.score(make_table(seed=1)).balanced_accuracy > 0.95
-    with pytest.raises(CorpusError, match="Nearest is no baseline; a model file holds only one of majority"):
-        model.save(tmp_path / "model.skops")
-    assert not list(tmp_path.iterdir())
-
-
 class Broken(Nearest):
     def __init__(self, how):
         self.how = how
@@ -168,10 +146,7 @@ class Predicting:
 @pytest.mark.parametrize(
     ("made", "sentence"),
     [
-        (
-            Broken("fit"),
-            r"^Broken: fit failed \(ZeroDivisionError: by zero; it got a table of features; features.open_waveforms gives sig",
-        ),
+        (Broken("fit"), r"^Broken: fit failed \(ZeroDivisionError: by zero; it got a table of features"),
         (Broken("codes"), "Broken: its classes_ are 0, 1, 2, 3; leave y as it is, the names of the classes"),
         (Broken("nan"), r"predict_proba gives numbers that are not finite; give finite numbers of shape \(16, 4\)"),
         (Broken("shape"), r"predict_proba gives an array of shape \(16, 3\); give finite numbers of shape \(16, 4\)"),
@@ -226,23 +201,10 @@ def test_a_module_is_imported_from_the_current_folder_or_from_an_installed_packa
             None,
             "own_none:make: cannot be imported \\(ModuleNotFoundError: No module named 'own_none'\\)",
         ),
-        ("sklearn.none:make", None, "sklearn.none:make: cannot be imported \\(ModuleNotFoundError: No module"),
-        (
-            "own_two:make",
-            "import own_missing",
-            r"own_two:make: cannot be imported \(ModuleNotFoundError: No module named 'own_missing'\)",
-        ),
-        ("own_two:make", "1 / 0", r"own_two:make: cannot be imported \(ZeroDivisionError: division by zero\)"),
-        ("own_two:make", "def (", r"own_two:make: cannot be imported \(SyntaxError: "),
         ("own_two:make", "raise SystemExit(3)", r"own_two:make: cannot be imported \(SystemExit: 3\)"),
         ("own_two:make", "def other(): pass", "module 'own_two' has no attribute 'make'"),
         ("own_two:make", "make = 3", "own_two:make: is no classifier; it needs fit and predict"),
-        ("own_two:make", "def make(): return 3", "own_two:make: int has no fit and no predict"),
-        (
-            "own_two:make",
-            "def make(): return 1 / 0",
-            r"own_two:make: cannot be made \(ZeroDivisionError: division by zero\)",
-        ),
+        ("own_two:make", "def make(): return 1 / 0", r"own_two:make: cannot be made \(ZeroDivisionError: division"),
     ],
 )
 def test_an_address_that_gives_no_classifier_is_refused_in_one_sentence(module, address, text, sentence):

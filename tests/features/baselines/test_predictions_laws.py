@@ -5,12 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from sklearn.exceptions import NotFittedError
 
 from features.baselines import UNSURE, Model, predict
 from features.baselines.calibration import HEALTHY_SHARE, IMPULSIVENESS, UNCALIBRATED
 from features.baselines.cross_calibration import calibration_splits, fit_and_calibrate
-from features.baselines.predictions import predictions
 from features.baselines.records import features_of, labelled_records
 from tests.model_files import make_table
 
@@ -107,17 +105,6 @@ def test_calibration_improves_the_log_loss_of_records_outside_the_training():
     assert model.score(other).ece < plain.ece
 
 
-def test_a_model_predicts_classes_and_probabilities_once_it_is_fitted():
-    model, table = Model("logistic_regression"), windowed(seed=1)
-    with pytest.raises(NotFittedError, match="the model is not fitted; call fit first"):
-        model.predict(table)
-    with pytest.raises(NotFittedError, match="the model is not fitted; call fit first"):
-        model.save("model.skops")
-    found = predict(table, model.fit(windowed()))
-    assert model.predict(table).tolist() == list(found.predicted)
-    np.testing.assert_array_equal(model.predict_proba(table), found.probabilities)
-
-
 def test_a_recording_is_predicted_from_the_mean_features_of_its_records():
     model, table = Model("logistic_regression").fit(windowed()), windowed(seed=1)
     found = predict(table, model)
@@ -140,15 +127,6 @@ def test_the_same_channel_twice_tells_no_more_than_once():
     one, other = model.score(table), model.score(channels(table, table))
     assert (other.confusion, other.records) == (one.confusion, one.records)
     assert model.score(channels(windowed(), windowed())).seen == 96
-
-
-def test_a_fault_that_one_channel_does_not_show_is_known_from_the_others():
-    unseen, seen = np.array([0.9, 0.04, 0.06]), np.array([0.03, 0.02, 0.95])
-    found = predictions(
-        np.stack([unseen, seen, seen])[:, None], ("healthy", "inner", "outer"), np.array([0]), UNCALIBRATED
-    )
-    assert found.predicted == ("outer",)
-    assert found.probabilities[0, 2] > 0.7
 
 
 def with_impulsiveness(table: xr.Dataset, values: np.ndarray) -> xr.Dataset:

@@ -177,11 +177,6 @@ def test_the_first_healthy_recording_of_each_rig_is_the_reference_in_the_tested_
     assert "8 tested records that belong to it are left out" in scores.reference
 
 
-def test_a_rig_without_a_healthy_record_is_not_tested_on_its_own_corpus(table):
-    less = table.isel(record=(table["rig"].values != 3) | (table["fault"].values != 0))
-    assert 3 not in choose_reference(less, less, LINES)[0]["rig"].values
-
-
 def test_a_tested_record_that_is_also_in_the_reference_is_left_out(table, model):
     mixed = table.isel(record=np.random.default_rng(2).permutation(64)[:40])
     tested, _, _ = choose_reference(table, mixed, LINES)

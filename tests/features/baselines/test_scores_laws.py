@@ -1,4 +1,4 @@
-"""Laws of the figures of merit: counts, invariances, and intervals that only independent specimens narrow."""
+"""Laws of scores and detection: counts, invariances, and intervals that only independent specimens narrow."""
 
 from dataclasses import replace
 
@@ -8,9 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from sklearn.metrics import log_loss
+from scipy.stats import binom, binomtest
+from sklearn.metrics import log_loss, roc_auc_score
 
 from features.baselines.calibration import UNCALIBRATED
+from features.baselines.detection import FALSE_ALARMS, detection, roc
 from features.baselines.predictions import predictions
 from features.baselines.records import Records
 from features.baselines.scores import (
@@ -160,15 +162,41 @@ def test_the_calibration_error_of_overconfident_answers_is_that_computed_by_hand
     assert expected_calibration_error(bins) == pytest.approx((2 * 0.05 + 4 * 0.45) / 6)
 
 
-def test_coverage_and_accuracy_are_of_the_answered_records():
-    fault = np.array([0, 1, 1, 0])
-    probabilities = np.array([[0.9, 0.1], [0.2, 0.8], [0.55, 0.45], [0.4, 0.6]])
-    records = made_records(fault, np.arange(4), np.arange(4))
-    calibration = UNCALIBRATED.model_copy(update={"threshold": 0.58})
-    found = score(records, predictions(probabilities, FAULTS[:2], records.recording, calibration))
-    assert (found.coverage, found.answered_accuracy) == (0.75, pytest.approx(2 / 3))
-    assert (found.accuracy, found.false_alarms) == (0.5, 0.5)
-    none = score(
-        records, replace(predictions(probabilities, FAULTS[:2], records.recording, calibration), threshold=0.95)
-    )
-    assert (none.coverage, none.answered_accuracy) == (0.0, None)
+@pytest.mark.parametrize("chance", [0.1, 0.5, 0.95])
+def test_the_interval_holds_at_least_as_often_as_stated(chance):
+    """Exact for independent specimens: all numbers of hits, weighted with their probability."""
+    n = 12
+    held = 0.0
+    for hits in range(n + 1):
+        (found,) = detection(np.arange(n) < hits, np.full(n, 1e-3), np.arange(n))
+        held += binom.pmf(hits, n, chance) * (found.low <= chance <= found.high)
+        expected = binomtest(hits, n).proportion_ci(0.95, "exact")
+        assert (found.low, found.high) == pytest.approx((expected.low, expected.high))
+    assert held >= 0.95
+
+
+def test_repeated_records_of_a_specimen_tell_no_more_than_one():
+    trials = np.arange(100) % 3 > 0, np.full(100, 1e-3), np.arange(100)
+    (one,), (many,) = (detection(*(np.repeat(x, n) for x in trials)) for n in (1, 7))
+    assert (many.records, many.specimens) == (700, 100)
+    assert (many.low, many.high) == pytest.approx((one.low, one.high))
+
+
+def test_records_without_a_width_are_left_out():
+    width = np.array([np.nan, 0.0, 1e-3])
+    assert [one.records for one in detection(np.array([0, 0, 1]), width, np.arange(3))] == [1]
+    assert detection(np.array([0, 0]), width[:2], np.arange(2)) == ()
+
+
+@given(st.lists(st.tuples(st.booleans(), st.integers(0, 5)), min_size=2, max_size=40))
+def test_the_area_is_that_of_scikit_learn_and_the_curve_rises_to_one(records):
+    faulty, level = np.array(records).T
+    faulty = faulty.astype(bool)
+    found = roc(faulty, level / 5, np.arange(len(level)), seed=0)
+    if len(np.unique(faulty)) < 2:
+        assert found is None
+        return
+    assert found.area == pytest.approx(roc_auc_score(faulty, level))
+    for share, alarms in zip(found.detected, FALSE_ALARMS, strict=True):
+        thresholds = [t for t in (*np.unique(level), 9) if np.mean(level[~faulty] >= t) <= alarms]
+        assert share == pytest.approx(np.mean(level[faulty] >= min(thresholds)))
