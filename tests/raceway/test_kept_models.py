@@ -118,16 +118,6 @@ def test_benchmark_scores_trained_models_as_evaluate_does(tiny_corpus, tiny_tabl
     assert (lost.exit_code, "nowhere.skops: no such file" in lost.stderr) == (2, True)
 
 
-def test_the_cache_follows_the_conventions_of_the_system(tmp_path, monkeypatch):
-    monkeypatch.delenv("RACEWAY_CACHE", raising=False)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
-    assert kept_models.cache_folder() == tmp_path / "xdg" / "raceway"
-    monkeypatch.delenv("XDG_CACHE_HOME")
-    monkeypatch.setenv("HOME", str(tmp_path))
-    monkeypatch.setattr("sys.platform", "linux")
-    assert kept_models.cache_folder() == tmp_path / ".cache" / "raceway"
-
-
 @pytest.mark.usefixtures("trainings")
 def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(tiny_corpus, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("", encoding="utf-8")

@@ -110,29 +110,6 @@ def test_commands_that_compute_features_pass_on_workers_and_scheduler(
     assert options["scheduler"] is None
 
 
-def test_features_pass_on_one_channel_or_several(run, given, tiny_corpus):
-    options = given("features.feature_table")
-    for text, channel in (("x", "x"), ("x,y", ("x", "y"))):
-        run("features", tiny_corpus, "-o", "new.nc", "--channel", text)
-        assert options["channel"] == channel
-
-
-@pytest.mark.parametrize("name", ["cwru", "mfpt", "generic"])
-def test_import_passes_on_the_length_of_a_record(run, given, tmp_path, name):
-    options = given(f"raceway.importing.import_{name}")
-    line = ("import", name, tmp_path, "-o", tmp_path / "new")
-    assert run(*line, "--window", 0.25).exit_code == 2
-    assert options["window"] == 0.25
-    run(*line)
-    assert options["window"] == 0.5
-
-
-def test_generate_passes_on_scheduler_workers_seed_and_size(run, given, tiny_recipe, tmp_path):
-    options = given("gen.generate")
-    run("generate", tiny_recipe, "-o", tmp_path / "new", "--workers", 3, "--scheduler", "tcp://a:1", "--seed", 5)
-    assert (options["workers"], options["scheduler"], options["seed"], options["records"]) == (3, "tcp://a:1", 5, None)
-
-
 @pytest.mark.parametrize(
     ("records", "per_part", "cores", "workers"),
     [(2000, 500, 2, 2), (400, 50, 8, 1), (1000, 500, 8, 2), (2000, 2000, 8, 1), (4000, 500, 6, 6)],
@@ -160,14 +137,3 @@ def test_a_plan_counts_the_records_that_cannot_be_simulated(run, told, tiny_reci
     shown = run("plan", loose).stdout
     assert f"without {planned['left_out']} that cannot be simulated" in shown
     assert f"The first record that is left out: {planned['first_left_out']}" in shown
-
-
-def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_path, monkeypatch):
-    made = told("features", tiny_corpus, "-o", tmp_path / "features.nc")
-    assert made["records_with_missing_features"] == 0
-    one = {"records_with_missing_features": 1}
-    monkeypatch.setattr("features.table.table_files.write_table", lambda table, _: table.attrs.update(one))
-    made = told("features", tiny_corpus, "-o", tmp_path / "features.nc")
-    assert made["records_with_missing_features"] == 1
-    shown = run("features", tiny_corpus, "-o", tmp_path / "features.nc").stdout
-    assert "features of 48 records; some are missing in 1 record." in shown

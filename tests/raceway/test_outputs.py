@@ -14,7 +14,7 @@ import xarray as xr
 from features.baselines import Model
 from gen import generate, write_corpus
 from gen.corpus import corpus_files, result_folder
-from gen.corpus.files import _HOST
+from gen.corpus.disk import _HOST
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
 from raceway import copy

@@ -78,13 +78,6 @@ def test_at_most_so_many_windows_are_taken_evenly_from_all_specimens(tmp_path):
     assert set(taken.start.tolist()) <= {0, 1200, 2400, 3600}
 
 
-def test_values_do_not_depend_on_the_size_of_a_block(dark, monkeypatch):
-    common = common_ground([dark], 5000.0, None)
-    whole = measured_windows(dark, "dark", common, 500)
-    monkeypatch.setattr(windows_module, "BLOCK", 5)
-    np.testing.assert_allclose(measured_windows(dark, "dark", common, 500).values, whole.values, rtol=1e-6)
-
-
 def test_no_more_than_a_block_of_signals_is_read_at_once(dark, monkeypatch):
     sizes = []
     whole = windows_module.read_windows

@@ -1,12 +1,16 @@
-"""Laws of the measures: gain, sample rate, and the property that each is named after."""
+"""Laws of the measures, of the weighted AUC and of weighted quantiles."""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.signal import resample_poly
+from sklearn.metrics import roc_auc_score
 
 from features.fault_classes import CLASSES
 from features.table.indicators import Orders
 from gen.corpus import FAULTS
+from raceway.comparing.contrast import auc, quantiles
 from raceway.comparing.measures import MEASURES, NAMES, compute_measures, limit_band
 from tests.paths import ROOT
 from tests.pulses import LINES, ORDERS, pulse_train
@@ -58,16 +62,6 @@ def test_shorter_pulses_are_more_impulsive():
         assert short[name] > 1.2 * long[name]
 
 
-def test_pulses_of_one_sign_are_skewed_and_their_sign_does_not_matter():
-    pulses = np.zeros(round(FS * DURATION))
-    pulses[:: round(FS / (3.6 * SHAFT))] = 1.0
-    one_sided = np.convolve(pulses, np.hanning(9))[: pulses.size]
-    up, down = (measures_of(sign * one_sided, "outer") for sign in (1, -1))
-    assert up["skewness"] > 1
-    assert up["skewness"] == pytest.approx(down["skewness"], rel=1e-3)
-    assert measures_of(signal_of("outer"), "outer")["skewness"] < 0.3
-
-
 @pytest.mark.parametrize("fault", ["inner", "outer"])
 def test_pulses_that_wander_have_a_wider_line(fault):
     widths = [
@@ -78,13 +72,6 @@ def test_pulses_that_wander_have_a_wider_line(fault):
     ]
     assert widths[0] < 0.05
     assert widths[0] < 0.7 * widths[1] < 0.5 * widths[2]
-
-
-def test_the_width_of_a_line_that_does_not_stand_out_is_unknown():
-    noise = np.random.default_rng(0).standard_normal(round(FS * DURATION))
-    found = measures_of(noise, "outer")
-    assert found["line_level"] < 14
-    assert np.isnan([found["line_width"], found["shaft_sidebands"]]).all()
 
 
 def modulated(fault, order, depth):
@@ -110,3 +97,40 @@ def test_the_page_lists_every_measure_with_its_unit_meaning_and_classes():
     for measure in MEASURES:
         classes = f" ({', '.join(measure.classes)})" if measure.classes else ""
         assert f"| `{measure.name}` | {measure.unit} | {measure.meaning}{classes} |" in page
+
+
+samples = st.lists(st.integers(-5, 5), min_size=1, max_size=30).map(lambda values: np.array(values, dtype=float))
+
+
+def plain(below, above):
+    return auc(below, above, np.ones(len(below)), np.ones(len(above)))
+
+
+@given(samples, samples)
+def test_the_auc_is_the_probability_of_a_higher_value_with_ties_counted_half(below, above):
+    pairs = (above[:, None] > below) + 0.5 * (above[:, None] == below)
+    assert plain(below, above) == pytest.approx(pairs.mean())
+    labels = np.repeat([0, 1], [len(below), len(above)])
+    assert plain(below, above) == pytest.approx(roc_auc_score(labels, np.concatenate([below, above])))
+
+
+@given(samples, samples)
+def test_the_auc_turns_over_with_the_sides_and_does_not_change_with_a_rising_function(below, above):
+    assert plain(below, above) + plain(above, below) == pytest.approx(1)
+    assert plain(np.exp(below), np.exp(above)) == pytest.approx(plain(below, above))
+
+
+@given(samples, samples, st.integers(2, 4))
+def test_a_weight_counts_as_that_many_equal_values(below, above, weight):
+    weights = np.ones(len(below))
+    weights[0] = weight
+    repeated = np.concatenate([below, np.repeat(below[:1], weight - 1)])
+    assert auc(below, above, weights, np.ones(len(above))) == pytest.approx(plain(repeated, above))
+    assert quantiles(below, weights, (0.3, 0.5)) == quantiles(repeated, np.ones(len(repeated)), (0.3, 0.5))
+
+
+@given(samples, st.floats(0.01, 0.99))
+def test_a_quantile_is_a_value_that_the_share_does_not_exceed(values, share):
+    (found,) = quantiles(values, np.ones(len(values)), (share,))
+    assert np.mean(values <= found) >= share - 1e-9
+    assert np.mean(values < found) < share

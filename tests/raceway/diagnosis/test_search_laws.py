@@ -75,13 +75,6 @@ def test_noise_and_shafts_alone_leave_the_label_and_nothing_to_explain(shaft):
         assert strange_comb(spectra, pairs[0], []) is None
 
 
-def test_one_axis_with_lines_tells_the_speed_of_all():
-    given = Given({"nine": NINE}, (18.0, 42.0))
-    axes = [recording(0, 5), recording(ORDER["bpfi"], 6), recording(ORDER["bpfi"], 7)]
-    pairs, _ = find_pairs(mean_spectra(axes, FS, given), given)
-    assert pairs[0].rate == pytest.approx(RATE, rel=0.01)
-
-
 def spectra_with(*orders, height=3.0):
     """Levels of noise with lines at orders of the shaft."""
     level = np.full(6000, -0.11)

@@ -90,12 +90,6 @@ def test_lines_of_any_part_are_never_answered_damaged(fault):
         assert judge(probabilities(fault), 0.5, lines, impulsive=True) == judge(probabilities(fault), 0.5, lines)
 
 
-def test_an_impulsive_signal_and_a_strange_colour_alone_are_not_damaged():
-    assert judge(probabilities("healthy"), 0.5, [], impulsive=True)[0] == "healthy"
-    assert judge(probabilities("healthy"), 0.5, [], 3.0, impulsive=True)[0] == UNSURE
-    assert judge(FAINT, 0.6, [], impulsive=True)[0] == UNSURE
-
-
 def test_several_faults_need_lines_of_some_part():
     chances = {"healthy": 0.05, "compound": 0.95}
     assert judge(chances, 0.5, OF_INNER) == ("compound", "")

@@ -1,4 +1,4 @@
-"""Laws of estimates of remaining life: the signal helps where it tells the end, and nowhere else."""
+"""Laws of estimates of remaining life: the signal helps where it tells the end alone; survival curves."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,7 @@ import xarray as xr
 
 from gen.support.errors import CorpusError
 from raceway.lives.prognosis import lives_of, score_lives, scores_of
+from raceway.lives.survival import kaplan_meier, weibull
 
 CADENCE = 10.0
 
@@ -96,3 +97,41 @@ def test_a_training_without_a_failure_is_refused():
 def test_bearings_with_other_features_are_refused():
     with pytest.raises(CorpusError, match="have other features than those of the training"):
         score_lives(table(6), table(7).isel(feature=[0, 1]))
+
+
+SLOPE, SCALE = 10 / 9, 1000.0
+MEDIAN = SCALE * np.log(2) ** (1 / SLOPE)
+
+
+def drawn(rng, count, late=0.0):
+    """Entry, end and failure of lives with censoring at random, those that failed before they entered left out."""
+    life, entry = SCALE * rng.weibull(SLOPE, 4 * count), late * rng.random(4 * count)
+    seen = np.flatnonzero(life > entry)[:count]
+    life, entry = life[seen], entry[seen]
+    out = entry + 2000 * rng.random(count)
+    return entry, np.minimum(life, out), life <= out
+
+
+@pytest.mark.parametrize("late", [0.0, 300.0, 1000.0])
+def test_the_true_survival_is_inside_its_band_in_nearly_all_runs(late):
+    inside = 0
+    for seed in range(2000):  # the share of 400 runs is known to 1 %
+        curve = kaplan_meier(*drawn(np.random.default_rng(seed), 60, late))
+        place = np.searchsorted(curve.time, MEDIAN, side="right") - 1
+        low, high = curve.band()
+        inside += low[place] <= 0.5 <= high[place]
+    assert inside / 2000 >= 0.93
+
+
+def test_without_censoring_the_curve_is_the_share_that_lives():
+    life = np.random.default_rng(1).weibull(1.5, 100)
+    curve = kaplan_meier(np.zeros(100), life, np.ones(100, bool))
+    np.testing.assert_allclose(curve.share, 1 - np.arange(1, 101) / 100, atol=1e-12)
+    assert curve.at(np.array([0.0]))[0] == 1
+
+
+@pytest.mark.parametrize("late", [0.0, 300.0])
+def test_the_weibull_fit_finds_the_distribution_of_censored_lives(late):
+    slope, scale = weibull(*drawn(np.random.default_rng(2), 20_000, late))
+    assert slope == pytest.approx(SLOPE, rel=0.03)
+    assert scale == pytest.approx(SCALE, rel=0.03)

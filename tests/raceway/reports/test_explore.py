@@ -110,13 +110,6 @@ def test_equal_corpora_give_equal_pages_and_a_record_takes_two_kilobytes(corpus,
     assert sum(len(part) for part in re.findall(rb'id="block\d+">([^<]*)', one)) < 2000 * RECORDS
 
 
-def test_fewer_records_are_evenly_chosen_and_keep_their_numbers(corpus, tmp_path):
-    made = tmp_path / "x.html"
-    assert write_explorer(corpus, made, records=5) == (5, RECORDS)
-    assert "5 records, evenly chosen from 80." in made.read_text()
-    assert json.loads(parts(made)["quantity0"]) == [0, 20, 40, 59, 79]
-
-
 def test_features_of_other_records_or_of_another_channel_are_refused(corpus, page, tmp_path):
     other = write_pulses(tmp_path / "other", records=2)
     with pytest.raises(CorpusError, match="has other records than the corpus"):

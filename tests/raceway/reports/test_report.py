@@ -20,14 +20,14 @@ from gen.corpus import FAULTS, open_corpus
 from gen.support.errors import CorpusError
 from raceway.reports import examples
 from raceway.reports.curves import draw_detection
-from raceway.reports.page import _findings, quantities, write_report
 from raceway.reports.pictures import (
     draw_record,
     fault_lines,
     thin,
     write_picture,
 )
-from raceway.reports.shown import shown_record
+from raceway.reports.report_page import _findings, quantities, write_report
+from raceway.reports.subject import shown_record
 from tests.browser import CHROMIUM, browser
 from tests.corpora import write_records
 

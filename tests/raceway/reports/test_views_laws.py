@@ -6,7 +6,7 @@ import pytest
 from features.table.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
 from raceway.reports.pictures import picture, squared_envelope
-from raceway.reports.shown import shown_recording
+from raceway.reports.subject import shown_recording
 from raceway.reports.views import MAPS, VIEWS, band_by, draw_view
 from tests.pulses import pulse_train
 

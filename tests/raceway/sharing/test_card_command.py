@@ -11,7 +11,7 @@ from PIL import Image
 
 from gen.corpus import open_corpus, read_manifest, validate_corpus
 from raceway import describe
-from raceway.sharing.card.page import card_folder
+from raceway.sharing.card.card_page import card_folder
 from tests.tone_corpora import write_corpus
 
 ORDERS = {"ftf": 0.4, "bpfo": 9.0, "bpfi": 4.0, "bsf": 2.4}  # so that the lines of the pictures are those of the tones
@@ -101,14 +101,6 @@ def test_a_second_call_changes_no_byte_and_removes_what_a_killed_one_left(told, 
         path.with_name(f".{path.name}.host.1.1.tmp").write_bytes(b"half")
     told("card", copied)
     assert contents(copied) == before
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_later_facts_join_the_others_and_the_scores_stay(told, copied, results):
-    told("card", copied, "--license", "CC-BY-4.0", "--scores", results())
-    found = told("card", copied, "--institution", "Works")
-    assert found["publication"] == {"license": "CC-BY-4.0", "institution": "Works"}
-    assert "| linear |" in (card_folder(copied) / "README.md").read_text()
 
 
 def test_a_wrong_fact_is_one_sentence_and_changes_nothing(run, copied):

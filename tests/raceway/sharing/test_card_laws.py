@@ -1,7 +1,6 @@
 """Laws of the data card: it follows from the folder alone, its programs run, and its commands make the corpus again."""
 
 import re
-import shlex
 import shutil
 
 import numpy as np
@@ -64,17 +63,6 @@ def test_every_variable_is_listed_with_its_range_by_class_or_its_one_value(corpu
     assert "`sample_rate` 4000 Hz" in card
 
 
-def test_values_that_are_not_finite_have_no_part_in_a_range(corpus):
-    with open_corpus(corpus) as opened:
-        load = opened["load"].values.copy()
-        fault = opened["fault"].values
-        load[fault == FAULTS.index("inner")] = np.nan
-        load[np.flatnonzero(fault == FAULTS.index("outer"))[:-1]] = np.inf
-        rows = range_rows(opened.assign(load=opened["load"].copy(data=load)))
-    assert rows["load"]["inner"] == ""
-    assert rows["load"]["outer"] == f"{load[np.flatnonzero(fault == FAULTS.index('outer'))[-1]]:.4g}"
-
-
 def rms_of_first(corpus):
     with open_corpus(corpus) as opened:
         return float(np.sqrt(np.mean(opened["acceleration"].values[0, 0].astype(float) ** 2)))
@@ -105,17 +93,6 @@ def test_licence_and_creators_are_on_the_card_and_in_the_citation(corpus, tmp_pa
 
 def command(corpus, **facts):
     return rebuilding(corpus, Manifest.model_validate({"raceway_format": 3, "records": 0, **facts}))
-
-
-def test_the_command_repeats_seed_and_number_of_records(corpus):
-    generated = {"recipe": "small", "recipe_sha256": "0", "overrides": Overrides(seed=7, records=40)}
-    with open_corpus(corpus) as opened:
-        assert command(opened, **generated) == shlex.split(
-            "raceway generate recipe.yaml --seed 7 --records 40 -o ../again"
-        )
-        assert command(opened, importer="cwru", recordings=3) == shlex.split(
-            "raceway import cwru SRC --window 0.25 -o ../again"
-        )
 
 
 def test_a_corpus_that_no_command_makes_has_its_history_instead(corpus):

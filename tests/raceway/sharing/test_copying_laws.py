@@ -10,7 +10,8 @@ from gen import open_corpus, validate_corpus
 from gen.corpus import SIGNAL, Publication, open_part, read_manifest
 from gen.support.errors import CorpusError
 from raceway import copy, publish
-from tests import corpora
+from raceway.console.ending import BAD_INPUT
+from tests import corpora, tone_corpora
 from tests.same_corpora import files
 
 NAMES = ("copy", "copy.nc")
@@ -147,3 +148,42 @@ def test_nothing_is_overwritten(source, tmp_path, target):
     with pytest.raises(CorpusError, match=r"exists( and is not an empty folder)?; give a new name, or remove it first"):
         copy(source, tmp_path / target)
     assert (tmp_path / "there.nc").read_text() == (tmp_path / "there/note").read_text() == "mine"
+
+
+@pytest.fixture(scope="module")
+def tones(tmp_path_factory):
+    """Folders of two corpora of 12 records."""
+    place = tmp_path_factory.mktemp("tones")
+    folders = [place / "one", place / "other"]
+    for seed, folder in enumerate(folders):
+        tone_corpora.write_corpus(folder, specimens=4, parts=1, seed=seed)
+    return folders
+
+
+def test_a_choice_is_copied_and_described(run, tones, tmp_path):
+    where = "fault in ('inner', 'outer')"
+    result = run("copy", tones[0], "--where", where, "--rename-channel", "housing=a", "-o", tmp_path / "s.nc")
+    assert result.exit_code == 0, result.output
+    assert f"{tmp_path / 's.nc'}: 6 of 12 records, 1 channel (a) in 1 file, " in result.stdout
+    assert f"Next: raceway info {tmp_path / 's.nc'}" in result.stdout
+    assert "copying: 6 of 6 records" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("{one} --split train -o {other}", "exists and is not an empty folder"),
+        ("{one} {one} -o {out}", "has the same samples as record 0"),
+        ("{one} -o {one}/parts/part-00000.nc", "choose a place outside it"),
+        ("{one} --to xls -o {out}", "there is no form 'xls'; allowed are parquet, huggingface"),
+        ("{one} --rename-channel housing -o {out}", "give OLD=NEW, once for each channel"),
+        ("-o {out}", "Missing argument"),
+    ],
+)
+def test_what_cannot_be_done_is_one_sentence_and_leaves_nothing(run, tones, tmp_path, words, sentence):
+    places = {"one": tones[0], "other": tones[1], "out": tmp_path / "out"}
+    result = run("copy", *(word.format(**places) for word in words.split(" ")))
+    assert result.exit_code == BAD_INPUT
+    assert sentence in result.stderr
+    assert result.stderr.count("\n") <= 4
+    assert list(tmp_path.iterdir()) == []
