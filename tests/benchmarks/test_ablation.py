@@ -1,25 +1,12 @@
 """The benchmark of mechanisms: its variants are recipes that differ, and its table holds their scores."""
 
+import pytest
 from ruamel.yaml import YAML
 
 from benchmarks.ablation import changed, plain, read_mechanisms, scores_of, table, variants
 from features import feature_table
 from gen.recipe import find_recipe, read_recipe
 from tests.pulses import write_pulses
-
-GIVEN = {"a": {"b": 1, "c": 2}, "faults": [{"kind": "inner", "width": 1}, {"kind": "ball", "width": 1}]}
-
-
-def test_changes_set_keys_remove_keys_and_reach_all_faults_of_a_kind():
-    made = changed(GIVEN, {"a.b": None, "a.d.e": 5, "faults.inner.edge.scatter": 7, "faults.+": [{"kind": "outer"}]})
-    assert made["a"] == {"c": 2, "d": {"e": 5}}
-    assert made["faults"] == [
-        {"kind": "inner", "width": 1, "edge": {"scatter": 7}},
-        {"kind": "ball", "width": 1},
-        {"kind": "outer"},
-    ]
-    assert GIVEN["a"] == {"b": 1, "c": 2}
-    assert GIVEN["faults"] == [{"kind": "inner", "width": 1}, {"kind": "ball", "width": 1}]
 
 
 def test_every_variant_is_a_recipe_that_differs_from_the_one_that_ships():
@@ -30,6 +17,7 @@ def test_every_variant_is_a_recipe_that_differs_from_the_one_that_ships():
         read_recipe(made)
 
 
+@pytest.mark.usefixtures("few_trees")
 def test_a_recipe_is_scored_on_recordings_and_shown_as_means_over_seeds(tmp_path):
     recipe = YAML(typ="safe").load(find_recipe("quickstart")) | {"records": 28}
     tests = {"pulses": feature_table(write_pulses(tmp_path / "pulses"), groups=("lines", "shape"))}

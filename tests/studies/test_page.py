@@ -33,13 +33,8 @@ def test_the_figures_and_the_statements_are_on_one_page(written):
     [
         (("--preset", "printed"), "'printed' is not one of 'paper', 'paper-hertz', 'paper-refit'"),
         (("--change", "stiffness=1"), "'stiffness' is none of housing_mass, ring_stiffness,"),
-        (("--change", "load"), "load: give a number"),
-        (("--change", "load=nan"), "load=nan: give a number"),
         (("--change", "housing_mass=0"), "housing_mass=0: give a number, above zero for a mass or a rate"),
-        (
-            ("--preset", "paper", "--change", "support_stiffness_x=-1e9"),
-            "paper-changed: the displacements grow without limit; change its constants less.",
-        ),
+        (("--preset", "paper", "--change", "support_stiffness_x=-1e9"), "paper-changed: the displacements grow"),
     ],
 )
 def test_an_experiment_that_cannot_be_run_is_refused_in_one_sentence(tmp_path, capsys, options, sentence):
