@@ -1,11 +1,14 @@
-"""False alarms of the coherence inside resonances, down to a probability of 0.001."""
+"""False alarms of coherence, shaft speed and course of the speed, and a ramp that is told in each of a hundred draws."""
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
-from features.signal import spectral_coherence
+from features.signal import spectral_coherence, track_speed
 from tests.features.signal.test_cyclic_laws import exceedances
+from tests.features.table.test_speed_laws import clear_in_noise
 from tests.resonances import ringing_noise
+from tests.run_ups import FS, run_up
 
 
 @pytest.mark.parametrize("damping", [0.002, 0.005, 0.01, 0.02, 0.05])
@@ -29,3 +32,25 @@ def test_noise_of_twelve_resonances_exceeds_the_threshold_half_to_twice_as_often
     squared = found.squared[..., found.cyclic > 4.0 / seconds]
     for probability in (0.1, 0.01, 0.001):
         assert 0.5 < np.mean(squared > found.threshold(probability)) / probability < 2
+
+
+def test_noise_of_eight_windows_is_clear_in_less_than_one_per_cent():
+    assert clear_in_noise(8) <= 2
+
+
+RANGE = (10.0, 45.0)
+
+
+@pytest.mark.parametrize(("level", "largest"), [(0, 0.01), (-20, 0.1)])
+def test_a_ramp_from_12_to_36_hz_is_told_throughout_in_each_of_a_hundred_draws(level, largest):
+    for seed in range(100):
+        rate, x = run_up("ramp", level, seed=seed)
+        assert 100 * np.median(np.abs(track_speed(x, FS, *RANGE).rate / rate - 1)) < largest
+
+
+@pytest.mark.parametrize("pole", [0.0, 0.97, -0.97], ids=["white", "red", "blue"])
+@pytest.mark.parametrize(("search", "seconds"), [((10.0, 45.0), 20), ((10.0, 45.0), 2), ((25.0, 35.0), 10)])
+def test_noise_has_a_course_in_at_most_one_of_a_hundred_draws(pole, search, seconds):
+    fs = 13 * search[1]
+    x = lfilter([1], [1, -pole], np.random.default_rng(0).standard_normal((100, int(seconds * fs))), axis=1)
+    assert np.isfinite(track_speed(x, fs, *search).rate).any(axis=1).sum() <= 1

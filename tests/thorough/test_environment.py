@@ -8,14 +8,6 @@ import pytest
 from distributed import LocalCluster
 
 
-@pytest.mark.parametrize("name", ["table.nc", "table.parquet"])
-def test_a_full_disk_is_named_with_the_final_path(start, tiny_corpus, tmp_path, name):
-    process = start("features", tiny_corpus, "-o", tmp_path / name, "--workers", 1, LARGEST_FILE="10000")
-    _, errors = process.communicate()
-    expected = f"{tmp_path / name}: could not be written (File too large); free some space or choose another folder."
-    assert (process.returncode, errors.splitlines()[-1]) == (2, expected)
-
-
 @pytest.mark.parametrize("target", ["out", "out.nc", "out.parquet"])
 def test_a_full_disk_ends_a_copy_in_one_sentence_and_leaves_nothing(start, tiny_corpus, tmp_path, target):
     process = start("copy", tiny_corpus, "-o", tmp_path / target, LARGEST_FILE="40000")

@@ -208,18 +208,3 @@ def test_a_closed_output_ends_the_command_without_a_traceback(start):
     process.stdout.close()
     assert process.stderr.read() == ""
     assert process.wait(PATIENCE_S) == 141
-
-
-def test_a_command_that_refuses_and_one_that_is_done_leave_no_process(start, tiny_recipe, tiny_corpus, tmp_path):
-    for line, code in ((("-o", tiny_corpus, "--records", "24"), 2), (("-o", tmp_path / "c"), 0)):
-        process = start("generate", tiny_recipe, "--workers", "2", *line)
-        process.communicate(timeout=PATIENCE_S)
-        assert process.returncode == code
-        assert [other for other in psutil.process_iter() if group_of(other.pid) == process.pid] == []
-
-
-def group_of(number):
-    try:
-        return os.getpgid(number)
-    except ProcessLookupError:
-        return None

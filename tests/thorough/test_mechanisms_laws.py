@@ -1,12 +1,19 @@
-"""Mechanisms that make simulated faults more like real ones have the effects that docs/model.md states."""
+"""Mechanisms that make simulated faults more like real ones have the effects that docs/model.md states; shipped recipes."""
 
 import functools
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.stats import kurtosis
 
+from gen import generate, open_corpus
+from gen.corpus import clipped_records
+from gen.recipe import read_recipe, shipped_recipes
+from gen.scenarios import draw_scenarios
+from gen.simulation.simulate import simulate
+from tests.gen.measurement.test_record_rms_laws import check
 from tests.reference_machine import (
     FS,
     LINES,
@@ -17,6 +24,7 @@ from tests.reference_machine import (
     reference_recipe,
     squared_envelope_spectrum,
 )
+from tests.responses import accelerations_of
 
 BALL = {"kind": "ball", "width_mm": 0.533, "angle_deg": TURNING}
 INNER = {"kind": "inner", "width_mm": 0.533, "angle_deg": TURNING}
@@ -104,3 +112,15 @@ def test_a_jagged_edge_scatters_the_impacts_of_an_outer_fault():
 
     smooth, jagged = scatter({}), scatter({"jagged_edge": {"scatter_percent": 40}})
     assert smooth < 0.15 < 0.2 < jagged < 0.45
+
+
+def test_the_records_for_training_have_the_drawn_rms():
+    scenarios = draw_scenarios(read_recipe("domain_randomised"), 0, 24)
+    check(accelerations_of(simulate(scenarios)), scenarios)
+
+
+@pytest.mark.parametrize("name", sorted(shipped_recipes().keys() - {"dirty_sensors"}))
+def test_no_sample_of_a_shipped_recipe_is_clipped(tmp_path, name):
+    """All but the recipe with faults of the sensors: a peak at the full scale would tell that a bearing is damaged."""
+    with open_corpus(generate(name, tmp_path / "corpus").path) as corpus:
+        assert clipped_records(corpus) == {}

@@ -74,14 +74,6 @@ def test_numpy_computes_the_motion_of_ours(case: Case):
     assert distance(rivals.numpy_march(*seed_of(case.records), 1 / FS, SAMPLES), case.ours) < 1e-9
 
 
-def test_a_record_on_its_own_moves_as_in_a_batch(case: Case):
-    """Right-hand side of ``solve_ivp`` and of NumPy's batch."""
-    seed, state = seed_of(case.records)
-    both = rivals.slope(0.001, state, seed)
-    one = type(seed)(*(float(values[0]) for values in seed))
-    np.testing.assert_allclose(rivals.slope(0.001, state[:, 0], one), both[:, 0], rtol=1e-9, atol=1e-12)
-
-
 @pytest.mark.parametrize("case", ["rectangular"], indirect=True)
 def test_solve_ivp_follows_the_motion_of_ours(case: Case):
     """A fixed step detects the edge of a spall up to one step late; an adaptive step resolves it."""
