@@ -1,6 +1,5 @@
 """A headless Chromium for tests of pages, over the pipe of its debugging protocol."""
 
-import base64
 import json
 import os
 import shutil
@@ -64,11 +63,6 @@ class Page:
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", features=[scheme])
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
-
-    def screenshot(self, path: Path) -> None:
-        """Write a picture of the whole page."""
-        shot = self.call("Page.captureScreenshot", captureBeyondViewport=True)
-        path.write_bytes(base64.b64decode(shot["data"]))
 
     def _call(self, method: str, session: str | None = None, **given: Any) -> Any:
         self._number += 1

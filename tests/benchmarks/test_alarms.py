@@ -7,16 +7,7 @@ import pytest
 import xarray as xr
 
 from benchmarks import alarms
-from benchmarks.alarms import (
-    ALL,
-    ALONE,
-    OUTCOMES,
-    Answered,
-    counted,
-    healthy_recordings,
-    of_machines,
-    outcome,
-)
+from benchmarks.alarms import ALL, ALONE, OUTCOMES, Answered, counted, healthy_recordings, of_machines, outcome
 from features.baselines.predictions import UNSURE
 from gen.corpus.fault_classes import HEALTHY
 

@@ -57,9 +57,7 @@ def test_no_other_module_of_features_names_a_class():
 def looseness(monkeypatch):
     """One more class, in the format and in the table."""
     row = FaultClass(
-        "looseness",
-        (NominalLine("fr", "shaft", 1), NominalLine("2 fr", "shaft", 2)),
-        single_lines=("whitened_fr",),
+        "looseness", (NominalLine("fr", "shaft", 1), NominalLine("2 fr", "shaft", 2)), single_lines=("whitened_fr",)
     )
     table = {**CLASSES, row.name: row}
     monkeypatch.setattr(estimators, "FAULTS", (*FAULTS, row.name))

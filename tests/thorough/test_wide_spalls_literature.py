@@ -75,9 +75,7 @@ def test_a_deeper_spall_changes_nothing_once_the_ball_is_unloaded():
 def test_a_heavier_load_needs_a_wider_spall():
     needed = [
         unloading_drop(
-            bare_inputs([draw_motion(scenario)])[0].machine,
-            scenario.bearing,
-            scenario.machine["load_angle"],
+            bare_inputs([draw_motion(scenario)])[0].machine, scenario.bearing, scenario.machine["load_angle"]
         )
         for scenario in (scenario_of(1.0, load) for load in (100, 300, 1000, 2000))
     ]

@@ -11,16 +11,7 @@ from features.table.corpus_features import band_warnings
 from features.table.definitions import GROUPS
 from features.table.indicators import Orders, feature_names, indicators
 from features.table.table_files import read_table, write_table
-from gen.corpus import (
-    MISSING_COUNT,
-    ROLES,
-    SCHEMA,
-    SIGNAL,
-    Variable,
-    make_dataset,
-    new_corpus,
-    open_corpus,
-)
+from gen.corpus import MISSING_COUNT, ROLES, SCHEMA, SIGNAL, Variable, make_dataset, new_corpus, open_corpus
 from gen.support.errors import CorpusError
 
 FS, SAMPLES, RECORDS, PARTS = 12_000.0, 3000, 5, 3

@@ -206,10 +206,7 @@ OF_SIGNALS = {
 
 
 # facts that are read from the manifest, and names that are read from the index
-HARMLESS = {
-    ("a fact that is a list of numbers", INDEX),
-    ("no channel names", PART),
-}
+HARMLESS = {("a fact that is a list of numbers", INDEX), ("no channel names", PART)}
 
 
 @pytest.mark.parametrize(

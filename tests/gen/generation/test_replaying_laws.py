@@ -6,15 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gen import (
-    generate,
-    open_corpus,
-    read_scenarios,
-    replay,
-    simulate,
-    validate_corpus,
-    write_corpus,
-)
+from gen import generate, open_corpus, read_scenarios, replay, simulate, validate_corpus, write_corpus
 from gen.corpus import FAULTS, SIGNAL, finish_corpus, part_name, write_part
 from gen.corpus.numbering import NUMBERS
 from gen.support.errors import CorpusError, RecipeError

@@ -8,19 +8,7 @@ from scipy.signal import welch
 
 from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
-from tests.measuring import (
-    FLOAT,
-    FS,
-    background_of,
-    direct,
-    hiss,
-    measure,
-    physical,
-    quiet,
-    response,
-    rms,
-    silence,
-)
+from tests.measuring import FLOAT, FS, background_of, direct, hiss, measure, physical, quiet, response, rms, silence
 
 
 @pytest.fixture(scope="module")

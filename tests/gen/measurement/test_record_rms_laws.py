@@ -50,10 +50,7 @@ def check(acceleration, scenarios):
 def lines_of_the_shaft(recipe, scenarios, orders, seed):
     """Bearings that vibrate at multiples of the shaft rate alone, shape (record, channel, time) [m s-2]."""
     rng = np.random.default_rng(seed)
-    turns = np.outer(
-        [scenario.conditions["shaft_rate"] for scenario in scenarios],
-        timeline(recipe).response_times(),
-    )
+    turns = np.outer([scenario.conditions["shaft_rate"] for scenario in scenarios], timeline(recipe).response_times())
     phases = rng.uniform(0, 2 * np.pi, (len(orders), len(scenarios), len(recipe.recording.channels), 1))
     waves = (np.cos(2 * np.pi * n * turns[:, None] + phase) for n, phase in zip(orders, phases, strict=True))
     return sum(waves).astype(np.float32)

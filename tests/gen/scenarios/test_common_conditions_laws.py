@@ -91,9 +91,7 @@ GRIDS = {
 
 
 @pytest.mark.parametrize(
-    "value",
-    [7.0, uniform(5, 9), uniform(5, 9, per="rig", scatter_percent=1)],
-    ids=["number", "uniform", "per rig"],
+    "value", [7.0, uniform(5, 9), uniform(5, 9, per="rig", scatter_percent=1)], ids=["number", "uniform", "per rig"]
 )
 @pytest.mark.parametrize(
     ("key", "sampling"), [("load_n", "random"), ("spin_wander_percent", "sobol"), ("mean_slip_percent", "halton")]

@@ -15,15 +15,7 @@ from features.table.table_files import read_table, write_table
 from gen.corpus import open_corpus
 from gen.corpus.choice import chosen_records
 from gen.support.errors import CorpusError
-from raceway.reports.explore import (
-    BLOCK,
-    FIELDS,
-    LEVELS,
-    SCALES,
-    STEP_DB,
-    reduce_record,
-    write_explorer,
-)
+from raceway.reports.explore import BLOCK, FIELDS, LEVELS, SCALES, STEP_DB, reduce_record, write_explorer
 from raceway.reports.subject import shown_recording
 from tests.browser import CHROMIUM, browser
 from tests.pulses import ORDERS, pulse_train, write_pulses

@@ -20,12 +20,7 @@ from gen.corpus import FAULTS, open_corpus
 from gen.support.errors import CorpusError
 from raceway.reports import examples
 from raceway.reports.curves import draw_detection
-from raceway.reports.pictures import (
-    draw_record,
-    fault_lines,
-    thin,
-    write_picture,
-)
+from raceway.reports.pictures import draw_record, fault_lines, thin, write_picture
 from raceway.reports.report_page import _findings, quantities, write_report
 from raceway.reports.subject import shown_record
 from tests.browser import CHROMIUM, browser
