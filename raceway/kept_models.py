@@ -36,7 +36,7 @@ CACHE_VARIABLE = "RACEWAY_CACHE"
 LONG = 2.0  # s, duration of the records of the reference model
 HASH_LETTERS = 16
 SHIPPED_TABLE = Path(__file__).with_name(f"{REFERENCE}.nc")
-_OWN_SOURCES = ("raceway/kept_models.py", f"raceway/{SHIPPED_TABLE.name}")
+_SOURCES = ("gen/corpus", "gen/support", "features", "raceway/kept_models.py", f"raceway/{SHIPPED_TABLE.name}")
 _LIBRARIES = ("scikit-learn", "skops", "numpy", "scipy", "numba")  # whose versions make other models or files
 
 

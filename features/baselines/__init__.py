@@ -16,11 +16,10 @@ colour_distance   distance of the colour of a record from healthy recordings of 
 predictions       predicted classes of records and of whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
 detection         detection of faults by their width, and against false alarms
-severities        fault widths that a test contains and its training does not
-tracks            splits by specimen, rig, bearing type, speed, severity and fault shape, and their checks
+tracks            splits by specimen, rig, bearing type and speed, and their checks
 fitting           fits of one classifier to several selections of records
 splits            cross-validation on a track, with its two controls
-inspection        permutation importance and learning curves of scikit-learn on our splits
+inspection        permutation importance of features
 cross_calibration calibration on rigs or specimens outside the training
 model_file        the only module that reads and writes archives of skops
 classifying       predictions of a fitted model for feature tables and waveforms
@@ -28,7 +27,6 @@ models            training, evaluation, saving, loading
 score_sources     hash of the sources that make features and scores
 results           scores of every baseline with controls, and on other corpora
 submissions       predictions of a cross-validation in a file, and their scores
-results_file      results as JSON, of which later results take over the rows that are not altered
 ================= ========================================================================================
 """
 

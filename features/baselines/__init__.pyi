@@ -4,9 +4,7 @@ from .results import (
     TrackResults as TrackResults,
     benchmark as benchmark,
 )
-from .results_file import read_results as read_results
 from .calibration import Calibration as Calibration
-from .inspection import CurvePoint as CurvePoint, learning_curve as learning_curve
 from .estimators import ESTIMATORS as ESTIMATORS
 from .names import BASELINES as BASELINES, DEFAULT_ESTIMATOR as DEFAULT_ESTIMATOR, TRACKS as TRACKS
 from .classifying import predict as predict
@@ -15,6 +13,5 @@ from .own import EstimatorError as EstimatorError, load_maker as load_maker
 from .predictions import UNSURE as UNSURE, Predictions as Predictions
 from .records import DEFAULT_GROUPS as DEFAULT_GROUPS, count_unknown as count_unknown
 from .scores import Scores as Scores, interval_text as interval_text, percent_text as percent_text
-from .severities import severity_warning as severity_warning
 from .splits import controls as controls, cross_validate as cross_validate
 from .submissions import check_submission as check_submission, write_submission as write_submission

@@ -38,7 +38,6 @@ from features.baselines.records import (
 from features.baselines.reference_choice import check_durations, choose_reference
 from features.baselines.references import RELATIVE, paired_table, with_energies
 from features.baselines.scores import Scores, score
-from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.table.band import DEFAULT_BAND, Band, band_of
 from features.table.channels import channels_of
 from features.table.corpus_features import feature_table
@@ -52,9 +51,9 @@ from gen.support.executor import Workers, connected
 from gen.support.plugins import missing_distributions, plugin_versions
 from gen.support.progress import Progress, counter
 
-FORMAT = 7
+FORMAT = 8
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
-_TRAINING = ("corpus", "records", "seed", "widths", "digests", "versions")
+_TRAINING = ("corpus", "records", "seed", "digests", "versions")
 _STORED = ("estimator", "name", "classes", "features", "groups", "band", "durations", *_TRAINING, "calibration")
 _PARTS = ("relative", "shorter")
 """Fields in a model file, and those that are models."""
@@ -87,8 +86,6 @@ class Model(Shown):
         Title and number of records of the training corpus.
     durations
         Shortest and longest of these records [s]; empty if they are not known.
-    widths
-        Intervals of fault width [m] that the training covered, by class, as in `features.baselines.severities`.
     digests
         One 64-bit digest per training record, shape (record,), to detect a test on training records.
     versions
@@ -113,7 +110,6 @@ class Model(Shown):
     corpus: str = ""
     records: int = 0
     durations: tuple[float, ...] = ()
-    widths: Covered = field(default_factory=dict)
     digests: NDArray[np.uint64] = field(default_factory=lambda: np.empty(0, np.uint64))
     versions: Mapping[str, str] = field(default_factory=dict)
     calibration: Calibration = UNCALIBRATED
@@ -233,9 +229,7 @@ class Model(Shown):
             records = labelled_records(data, self.features)
             tested = data.isel(record=data["fault"].values != UNKNOWN_CODE)
             seen = seen_records(records.features.to_numpy()[:, : len(self.features)], model.digests)
-        uncovered = uncovered_widths(model.widths, records)
-        told = predict(tested, self, healthy)
-        return score(records, told, seed, seen=seen, uncovered_widths=uncovered, reference=reference)
+        return score(records, predict(tested, self, healthy), seed, seen=seen, reference=reference)
 
     def _tables(self, data: Data, reference: Data | None) -> tuple[Any, xr.Dataset | None]:
         """Feature tables of the data and of its reference, with ``bands`` if there is one; waveforms as they are."""
@@ -320,8 +314,7 @@ def _fit(model: Model, data: xr.Dataset | Waveforms, workers: Workers, done: Cal
     )
     model.classes = fault_names(model.estimator.classes_)
     model.durations = durations_of(data) if isinstance(data, xr.Dataset) else ()
-    # what a later test needs to tell which records it has seen, and which widths are new
-    model.widths = covered_widths(records)
+    # a later test tells which records the model has seen
     model.digests = record_digests(records.features.to_numpy() if model.features else records.features)
     model.versions = {library: version(library) for library in _LIBRARIES}
     model.versions |= plugin_versions("features", model.groups) | plugin_versions("classes", model.classes)

@@ -16,5 +16,5 @@ BASELINES = (
 UNTRAINED = ("majority", "envelope_rule")
 DEFAULT_ESTIMATOR = "ensemble"
 
-Track = Literal["specimen", "rig", "bearing", "speed", "severity", "shape"]
+Track = Literal["specimen", "rig", "bearing", "speed"]
 TRACKS: tuple[Track, ...] = get_args(Track)

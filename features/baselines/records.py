@@ -5,8 +5,7 @@ may restart either number on each rig, or number all of them consecutively.
 """
 
 import hashlib
-from collections.abc import Hashable, Iterable, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Hashable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
@@ -24,18 +23,14 @@ if TYPE_CHECKING:
 
 DEFAULT_GROUPS = ("lines", "shape")  # independent of gain and spectral colour
 
-SHAPES = ("pit", "several", "extended", "worn")
-EXTENDED = 1.5e-3  # m, width from which a single spall is extended
-
 
 class Records(NamedTuple):
     """Labelled rows; ``features`` is a data frame, because estimators identify its columns by name, or waveforms.
 
     ``fault`` is an index into ``gen.corpus.FAULTS``; ``rig``, ``specimen`` and ``recording`` are numbers from 0, unique
-    in the table; ``width`` is that of the widest spall [m], 0 without a spall and NaN if unknown; ``conditions`` holds
-    what tracks split by: ``shaft_rate``, the labelled one [Hz], NaN if unknown, ``bearing``, the number of the type
-    from 0, and ``shape``, an index into `SHAPES`, -1 if healthy or unknown. All are of shape (record,), ``features`` of
-    shape (record, feature) or (record, time).
+    in the table; ``width`` is that of the widest spall [m], 0 without a spall and NaN if unknown; ``shaft_rate`` is the
+    labelled one [Hz], NaN if unknown; ``bearing`` is the number of the type from 0. All are of shape (record,),
+    ``features`` of shape (record, feature) or (record, time).
     """
 
     title: str
@@ -45,13 +40,12 @@ class Records(NamedTuple):
     specimen: IntArray
     recording: IntArray
     width: FloatArray
-    conditions: Mapping[str, NDArray[Any]] = MappingProxyType({})
+    shaft_rate: FloatArray
+    bearing: IntArray
 
     def at(self, rows: IntArray) -> "Records":
         """Some of the rows, in the order given."""
-        columns: dict[str, Any] = {name: getattr(self, name)[rows] for name in self._fields[2:-1]}
-        conditions = {name: values[rows] for name, values in self.conditions.items()}
-        return Records(self.title, self.features.take(rows), **columns, conditions=conditions)
+        return Records(self.title, self.features.take(rows), *(column[rows] for column in self[2:]))
 
 
 def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
@@ -91,20 +85,18 @@ def all_records(table: xr.Dataset, features: Sequence[str]) -> Records:
         known = ", ".join(f"{code} {name}" for code, name in FAULT_NAMES.items())
         message = f"{title}: fault has values other than {known}."
         raise CorpusError(message)
-    rig, specimen = (table[name].values for name in ("rig", "specimen"))
+    rig = table["rig"].values
+    specimen = _numbered(rig, table["specimen"].values)
     return Records(
         title=title,
         features=rows,
         fault=fault,
         rig=_numbered(rig),
-        specimen=_numbered(rig, specimen),
+        specimen=specimen,
         recording=recording_numbers(table),
         width=_column(table, "width"),
-        conditions={
-            "shaft_rate": _column(table, "shaft_rate"),
-            "bearing": _bearing_type(table),
-            "shape": _shape(table),
-        },
+        shaft_rate=_column(table, "shaft_rate"),
+        bearing=_bearing_type(table, specimen),
     )
 
 
@@ -152,22 +144,16 @@ def _column(table: xr.Dataset, name: str) -> FloatArray:
     return np.asarray(table[name].values, dtype=float) if name in table else np.full(table.sizes["record"], np.nan)
 
 
-def _bearing_type(table: xr.Dataset) -> IntArray:
-    """Number of the bearing type, shape (record,): a type has one designation and one number of balls.
+def _bearing_type(table: xr.Dataset, specimen: IntArray) -> IntArray:
+    """Number of the bearing type of the first record of each specimen, shape (record,): one designation and number of balls.
 
     The number of balls is the sum of the nominal orders BPFO and BPFI. Corpora of drawn geometries have one designation
     for all bearings.
     """
     balls = np.rint(_column(table, "bpfo") + _column(table, "bpfi"))
     named = table["bearing"].values.astype(str) if "bearing" in table else np.full(len(balls), "")
-    return _numbered(np.unique(named, return_inverse=True)[1], np.nan_to_num(balls))
-
-
-def _shape(table: xr.Dataset) -> IntArray:
-    """Index into `SHAPES`, shape (record,): of one or of several spalls, or of a worn race; else -1."""
-    spalls, width = _column(table, "n_spalls"), _column(table, "width")
-    cases = [spalls > 1, (spalls == 1) & (width >= EXTENDED), (spalls == 1) & (width > 0), _column(table, "wear") > 0]
-    return np.select(cases, [SHAPES.index(name) for name in ("several", "extended", "pit", "worn")], -1)
+    first = np.unique(specimen, return_index=True)[1][specimen]
+    return _numbered(np.unique(named, return_inverse=True)[1], np.nan_to_num(balls))[first]
 
 
 def record_digests(features: FloatArray | Waveforms) -> NDArray[np.uint64]:

@@ -2,19 +2,18 @@
 
 The score on specimens (or rigs, or other groups of a track) outside the training is reported with three others: the
 score of a random split of records, which leaks; the grouped score with labels permuted among specimens, which must be
-at chance; and the scores on other corpora. Results that are kept in a file can be given more rows later: see `benchmark`.
+at chance; and the scores on other corpora.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
-from hashlib import blake2b
 from importlib.metadata import version
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import xarray as xr
 
-from features.baselines.inspection import CurvePoint, curve_points, permutation_losses
+from features.baselines.inspection import permutation_losses
 from features.baselines.models import Model, record_digests, seen_records
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS, UNTRAINED, Track
 from features.baselines.own import Maker
@@ -26,9 +25,7 @@ from features.baselines.records import (
     labelled_records,
     records_of,
 )
-from features.baselines.score_sources import score_sources
 from features.baselines.scores import Scores, interval_text
-from features.baselines.severities import Widths, uncovered_in_splits
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
 from features.baselines.tracks import Split
 from features.table.definitions import measured_quantity
@@ -46,13 +43,12 @@ BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)
 
 @dataclass(frozen=True)
 class Content:
-    """Title, digest of features and labels, and counts of a benchmarked corpus.
+    """Title and counts of a benchmarked corpus.
 
     ``classes`` counts records, ``unknown`` those left out because their class is not known.
     """
 
     title: str
-    digest: str
     records: int
     recordings: int
     specimens: int
@@ -105,21 +101,16 @@ class Results(Shown):
         Of splits, estimators, permutation and bootstrap.
     groups, features
         Groups and number of the features.
-    versions, sources_sha256
-        Of the libraries, and hash of the sources that make features and scores.
+    versions
+        Of the libraries.
     leading
-        Name of the classifier that the findings and the learning curve are about.
+        Name of the classifier that the findings are about.
     baselines
         Scores by name of the classifier.
-    uncovered_widths
-        Fault widths [m] by class that a fold of the grouped cross-validation tests and does not train. Those of the
-        other corpora are in their scores.
     further
         Results on further tracks, by name of the track.
     left_out
         Reason for each track that the corpus cannot be split on, if all tracks were asked for.
-    curve
-        Learning curve of the leading classifier on the first track, empty unless asked for.
     importance
         Permutation importance of each quantity for the leading classifier on the first track, the highest first: the loss
         of balanced accuracy when the values of its features are exchanged among tested records. Empty for waveforms.
@@ -135,13 +126,10 @@ class Results(Shown):
     groups: tuple[str, ...]
     features: int
     versions: dict[str, str]
-    sources_sha256: str
     leading: str
     baselines: dict[str, Baseline]
-    uncovered_widths: Widths
     further: dict[str, TrackResults] = field(default_factory=dict)
     left_out: dict[str, str] = field(default_factory=dict)
-    curve: tuple[CurvePoint, ...] = ()
     importance: dict[str, float] = field(default_factory=dict)
     models: dict[str, tuple[Scores, ...]] = field(default_factory=dict)
 
@@ -171,8 +159,6 @@ def benchmark(
     tracks: Sequence[Track] | Literal["all"] = ("specimen",),
     estimators: Mapping[str, str | Maker] | None = None,
     waveforms: Sequence[Waveforms] = (),
-    known: Results | None = None,
-    curve: bool = False,
     folds: int = 5,
     groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
@@ -194,11 +180,6 @@ def benchmark(
         always scored too. By default all baselines, or those of `BRIEF` if there are several tracks.
     waveforms
         Waveforms of the corpus and of each of the others, in this order, for the classifiers of the user in place of the features.
-    known
-        Results of an earlier call. If it had the same corpora, settings, libraries and sources, its rows are kept, and its baselines are
-        not scored again.
-    curve
-        Also compute the learning curve of the leading classifier.
     folds
         Number of splits.
     groups
@@ -228,8 +209,38 @@ def benchmark(
     chosen = _chosen(estimators, several=len(cases) > 1)
     leading = DEFAULT_ESTIMATOR if estimators is None else next(iter(estimators))
     first, splits = next(iter(cases)), next(iter(cases.values()))["grouped"][1]
-    # all but the scores, which also tells whether kept scores are of the same benchmark
-    found = Results(
+    own = records_of(waveforms[0], groups) if waveforms else records
+    # a job is one classifier on one track in one case: grouped, leaky, null or other corpora
+    jobs = [
+        (name, track, case)
+        for name in chosen
+        for track in cases
+        for case in _CASES
+        if _is_scored(case, track, first, tests)
+    ]
+    done, scores = counter(progress, len(jobs)), dict[_Job, Any]()
+    # classifiers of the user stay in this process: they may not be sent to others
+    for is_own, given, tables in ((False, records, (table, *tests)), (True, own, waveforms or (table, *tests))):
+        makers = {name: one for name, one in chosen.items() if isinstance(one, str) != is_own}
+        some = [job for job in jobs if job[0] in makers]
+        task = partial(_scores_of, given, tables, cases, makers, groups, seed)
+        for job, made in zip(some, run(task, some, 1 if is_own else max(1, min(workers, len(some)))), strict=True):
+            scores[job] = made
+            done(1)
+
+    def rows(track: str) -> dict[str, Baseline]:
+        return {
+            name: Baseline(
+                scores[name, track, "grouped"],
+                scores[name, first, "leaky"],
+                scores[name, track, "null"],
+                scores.get((name, track, "tests"), ()),
+            )
+            for name in chosen
+        }
+
+    led = isinstance(chosen[leading], str) or not waveforms
+    return Results(
         corpus=_content(records, count_unknown(table)),
         tests=tuple(_content(other, count_unknown(test)) for other, test in zip(others, tests, strict=True)),
         track=first,
@@ -238,62 +249,16 @@ def benchmark(
         groups=tuple(groups),
         features=len(names),
         versions={library: version(library) for library in ("raceway", "scikit-learn", "numpy", "scipy", "numba")},
-        sources_sha256=score_sources(),
         leading=leading,
-        baselines={},
-        uncovered_widths=uncovered_in_splits(records, splits),
-        further={track: _further(records, cases[track]) for track in list(cases)[1:]},
+        baselines=rows(first),
+        further={track: _further(records, cases[track], rows(track)) for track in list(cases)[1:]},
         left_out=left_out,
-    )
-    # a classifier of the user is scored anew: its code may have changed
-    scored = _kept(known, found)
-    new = {name: one for name, one in chosen.items() if not (isinstance(one, str) and name in scored[first])}
-    own = records_of(waveforms[0], groups) if waveforms else records
-    jobs = [
-        _Job(name, track, case)
-        for name in new
-        for track in cases
-        for case in _CASES
-        if _is_scored(case, track, first, tests)
-    ]
-    # a job is one classifier on one track in one case: grouped, leaky, null or other corpora
-    done = counter(progress, len(jobs) + curve)
-    scores = dict[_Job, Any]()
-    # classifiers of the user stay in this process: they may not be sent to others
-    for is_own, given, tables in ((False, records, (table, *tests)), (True, own, waveforms or (table, *tests))):
-        makers = {name: one for name, one in new.items() if isinstance(one, str) != is_own}
-        some = [job for job in jobs if job.name in makers]
-        task = partial(_scores_of, given, tables, cases, makers, groups, seed)
-        for job, made in zip(some, run(task, some, 1 if is_own else max(1, min(workers, len(some)))), strict=True):
-            scores[job] = made
-            done(1)
-    for name in new:
-        leaky, tested = (scores.get(_Job(name, first, case), ()) for case in ("leaky", "tests"))
-        for track in cases:
-            grouped, null = (scores[_Job(name, track, case)] for case in ("grouped", "null"))
-            scored[track][name] = Baseline(grouped, leaky, null, tested if track == first else ())
-    # curve and importance of the leading classifier, on the first track
-    led = records if isinstance(chosen[leading], str) else own
-    points = curve_points(led, chosen[leading], splits, seed) if curve else ()
-    done(int(curve))
-    importance = _importance(records, names, chosen[leading], splits, seed) if led is records else {}
-    return replace(
-        found,
-        baselines=_untrained_first(scored[first]),
-        further={
-            track: replace(one, baselines=_untrained_first(scored[track])) for track, one in found.further.items()
-        },
-        curve=points,
-        importance=importance,
+        importance=_importance(records, names, chosen[leading], splits, seed) if led else {},
     )
 
 
-class _Job(NamedTuple):
-    """One score of a classifier: of a case on a track, or on the other corpora."""
-
-    name: str
-    track: str
-    case: str
+_Job = tuple[str, str, str]
+"""Names of a classifier, a track and a case."""
 
 
 def _is_scored(case: str, track: str, first: str, tests: Sequence[object]) -> bool:
@@ -311,10 +276,10 @@ def _scores_of(
     job: _Job,
 ) -> Scores | tuple[Scores, ...]:
     """Scores of one job; the first of the tables is that of the records, the others are tested on."""
-    estimator = estimators[job.name]
-    if job.case != "tests":
-        labels, splits = cases[job.track][job.case]
-        return score_splits(records, labels, estimator, splits, seed)
+    name, track, case = job
+    estimator = estimators[name]
+    if case != "tests":
+        return score_splits(records, *cases[track][case], estimator, seed)
     model = Model(estimator, groups=groups, seed=seed).fit(tables[0])
     return tuple(model.score(one, seed=seed) for one in tables[1:])
 
@@ -328,26 +293,6 @@ def _importance(
         columns.setdefault(measured_quantity(names[column % len(names)]), []).append(column)
     losses = permutation_losses(records, list(columns.values()), estimator, splits, seed).mean(axis=0)
     return dict(sorted(zip(columns, losses.tolist(), strict=True), key=lambda item: -item[1]))
-
-
-def _kept(known: Results | None, found: Results) -> dict[str, dict[str, Baseline]]:
-    """Rows that earlier results have on every track, by track, if all else of these is the same."""
-    tracks = (found.track, *found.further)
-    if known is None or setup(known) != setup(found):
-        return {track: {} for track in tracks}
-    of_tracks = {found.track: known.baselines} | {track: one.baselines for track, one in known.further.items()}
-    whole = set.intersection(*map(set, of_tracks.values()))
-    return {track: {name: rows[name] for name in rows if name in whole} for track, rows in of_tracks.items()}
-
-
-def setup(results: Results) -> Results:
-    """Results without scores: the corpora, and all that the rows of one file have in common."""
-    further = {track: replace(one, baselines={}) for track, one in results.further.items()}
-    return replace(results, leading="", baselines={}, further=further, curve=(), importance={}, models={})
-
-
-def _untrained_first(baselines: dict[str, Baseline]) -> dict[str, Baseline]:
-    return {name: baselines[name] for name in sorted(baselines, key=lambda name: name not in UNTRAINED)}
 
 
 def _chosen(estimators: Mapping[str, str | Maker] | None, *, several: bool) -> dict[str, str | Maker]:
@@ -374,9 +319,9 @@ def _cases(
     return cases, left_out
 
 
-def _further(records: Records, cases: dict[str, Case]) -> TrackResults:
+def _further(records: Records, cases: dict[str, Case], baselines: dict[str, Baseline]) -> TrackResults:
     _, splits = cases["grouped"]
-    return TrackResults(len(splits), sum(len(test) for _, test in splits), len(records.fault), {})
+    return TrackResults(len(splits), sum(len(test) for _, test in splits), len(records.fault), baselines)
 
 
 def _check_apart(records: Records, test: Records) -> None:
@@ -390,10 +335,8 @@ def _check_apart(records: Records, test: Records) -> None:
 
 
 def _content(records: Records, unknown: int) -> Content:
-    digests = record_digests(records.features.to_numpy())
     return Content(
         title=records.title,
-        digest=blake2b(digests.tobytes() + records.fault.tobytes(), digest_size=16).hexdigest(),
         **unit_counts(records._asdict())._asdict(),
         classes=class_counts(records.fault),
         unknown=unknown,

@@ -9,7 +9,7 @@ from a bootstrap [1]_ over specimens, because the records of one specimen are st
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -82,8 +82,6 @@ class Scores(Shown):
         What the records were compared with, in one sentence; empty without a reference.
     seen
         Number of tested records that the model was trained on, 0 in a fair test.
-    uncovered_widths
-        Fault widths [m] by class that were tested and not trained, as in `features.baselines.severities`.
     """
 
     balanced_accuracy: float
@@ -108,7 +106,6 @@ class Scores(Shown):
     faulty_among_healthy: float | None = None
     reference: str = ""
     seen: int = 0
-    uncovered_widths: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     def _heading(self) -> str:
         return f"Scores of {self.records:,} records: balanced accuracy {self.balanced_accuracy:.3f}"
@@ -145,7 +142,7 @@ def score(records: Records, predictions: Predictions, seed: int = 0, **told: Any
     seed
         Of the bootstrap.
     **told
-        Fields of the scores that do not follow from the predictions: ``folds``, ``reference``, ``seen``, ``uncovered_widths``.
+        Fields of the scores that do not follow from the predictions: ``folds``, ``reference``, ``seen``.
     """
     # a recording has the label of its first record
     _, first = np.unique(predictions.recording, return_index=True)

@@ -5,7 +5,6 @@ well a classifier recognises specimens, and its score can be 1.00 even if the la
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -17,7 +16,6 @@ from features.baselines.own import Maker
 from features.baselines.predictions import Predictions, fault_names, predictions
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
 from features.baselines.scores import Scores, mean_recall, score
-from features.baselines.severities import uncovered_in_splits
 from features.baselines.tracks import Split, check_taught, grouped_splits, track_splits
 from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS
@@ -60,9 +58,7 @@ def cross_validate(
         For an unknown estimator.
     """
     records = records_of(data, DEFAULT_GROUPS)
-    labels, splits = grouped_case(records, track, folds, seed)
-    uncovered = uncovered_in_splits(records, splits)
-    return score_splits(records, labels, estimator, splits, seed, uncovered_widths=uncovered)
+    return score_splits(records, *grouped_case(records, track, folds, seed), estimator, seed)
 
 
 def controls(
@@ -79,7 +75,7 @@ def controls(
     """
     records = records_of(data, DEFAULT_GROUPS)
     cases = control_cases(records, track, folds, seed)
-    return {name: score_splits(records, labels, estimator, splits, seed) for name, (labels, splits) in cases.items()}
+    return {name: score_splits(records, *case, estimator, seed) for name, case in cases.items()}
 
 
 def grouped_case(records: Records, track: Track, folds: int, seed: int) -> Case:
@@ -118,9 +114,9 @@ def permuted_labels(records: Records, seed: int) -> IntArray:
 
 
 def score_splits(
-    records: Records, labels: IntArray, estimator: str | Maker, splits: Sequence[Split], seed: int, **told: Any
+    records: Records, labels: IntArray, splits: Sequence[Split], estimator: str | Maker, seed: int
 ) -> Scores:
-    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once; ``told`` as in `score`."""
+    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once."""
     classes = np.unique(labels)
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []
@@ -135,7 +131,7 @@ def score_splits(
     chosen = records._replace(fault=labels).at(tested)
     _, recording = np.unique(chosen.recording, return_inverse=True)
     together = _pool(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)
-    return score(chosen, together, seed, folds=tuple(folds), **told)
+    return score(chosen, together, seed, folds=tuple(folds))
 
 
 def _pool(

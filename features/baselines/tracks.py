@@ -1,16 +1,11 @@
 """Tracks: for each kind of novelty, splits whose tested records are new in that respect.
 
 All records of a specimen are on one side of every split of every track, because they share geometry, transfer path and
-background. On the tracks *specimen*, *rig* and *bearing* the groups are dealt out to folds of equal size. On the tracks
-*speed*, *severity* and *shape* each fold tests one group: a range of shaft rates, a range of fault widths, or a shape
-of faults.
+background. On the tracks *specimen*, *rig* and *bearing* the groups are dealt out to folds of equal size. On the track
+*speed* each fold tests a range of shaft rates.
 
-A specimen can have records in several groups, such as several speeds. It is then tested in the group of one of its
-records, drawn at random. Its other records are left out of that fold, and train in no other group than theirs.
-
-Healthy records have no severity and no shape. A class with a single group cannot be held out either, because every
-tested class must be trained. On the tracks *severity* and *shape* the specimens of these records are dealt out to the
-groups evenly.
+A specimen can have records at several speeds. It is then tested in the range of one of its records, drawn at random. Its
+other records are left out of that fold, and train in no other range than theirs.
 """
 
 from collections.abc import Sequence
@@ -21,23 +16,14 @@ from sklearn.model_selection import StratifiedGroupKFold
 from features.baselines.names import Track
 from features.baselines.records import FloatArray, IntArray, Records, check_classes
 from gen.corpus import FAULTS
-from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 
 Split = tuple[IntArray, IntArray]
 
-NOVELTY = {
-    "specimen": "specimens",
-    "rig": "rigs",
-    "bearing": "bearing types",
-    "speed": "speed ranges",
-    "severity": "fault widths",
-    "shape": "fault shapes",
-}
+NOVELTY = {"specimen": "specimens", "rig": "rigs", "bearing": "bearing types", "speed": "speed ranges"}
 """Plural of the groups of a track, for people."""
 
 LEFT_OUT = -1
-DEALT = -2
 
 
 def track_splits(records: Records, labels: IntArray, track: Track, folds: int, seed: int) -> list[Split]:
@@ -62,16 +48,10 @@ def track_splits(records: Records, labels: IntArray, track: Track, folds: int, s
         If the records cannot be split so.
     """
     check_track(records, track, folds)
-    if track in ("specimen", "rig"):
-        splits = grouped_splits(labels, getattr(records, track), folds, seed)
-    elif track == "bearing":
-        bearing = _of_first_record(records.conditions["bearing"], records.specimen)
-        splits = grouped_splits(labels, bearing, min(folds, len(np.unique(bearing))), seed)
-    else:
-        splits = _one_group_per_fold(*held_out_groups(records, track, folds, seed))
-    for train, test in splits:
-        check_disjoint(records.specimen, train, test)
-    return splits
+    if track == "speed":
+        return speed_splits(records, folds, seed)
+    group = getattr(records, track)
+    return grouped_splits(labels, group, min(folds, len(np.unique(group))), seed)
 
 
 def check_track(records: Records, track: Track, folds: int) -> None:
@@ -86,11 +66,11 @@ def check_track(records: Records, track: Track, folds: int) -> None:
     present = check_classes(records)
     if folds < 2:
         raise CorpusError(f"{where}: {folds} folds are too few; use 2 or more.")
-    # ranges and shapes are dealt out later, and can fill any number of folds
-    if track not in ("specimen", "rig", "bearing"):
+    if track == "speed":
         return
-    group = records.conditions[track] if track == "bearing" else getattr(records, track)
-    count, name = len(np.unique(group)), "bearing type" if track == "bearing" else track
+    group, name = getattr(records, track), "bearing type" if track == "bearing" else track
+    count = len(np.unique(group))
+    # there are few types of bearings, so their number may set that of the folds
     if count < (2 if track == "bearing" else folds):
         advice = f"use at most {count} folds" if count > 1 else "test on another corpus instead"
         raise CorpusError(f"{where}: {count} {name}(s) cannot fill {folds} folds; {advice}.")
@@ -109,75 +89,35 @@ def check_track(records: Records, track: Track, folds: int) -> None:
 def grouped_splits(fault: IntArray, group: IntArray, folds: int, seed: int) -> list[Split]:
     """Training and test records of each fold, with classes balanced as evenly as the groups allow."""
     splitter = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
-    splits: list[Split] = list(splitter.split(np.zeros((len(fault), 1)), fault, group))
-    for train, test in splits:
-        check_disjoint(group, train, test)
-    return splits
+    return list(splitter.split(np.zeros((len(fault), 1)), fault, group))
 
 
-def held_out_groups(records: Records, track: Track, folds: int, seed: int) -> tuple[IntArray, IntArray]:
-    """Group of each record, and group in which its specimen is tested, both of shape (record,); `LEFT_OUT` is in none.
+def speed_splits(records: Records, folds: int, seed: int) -> list[Split]:
+    """Splits that test a range of shaft rates each, and train other specimens in other ranges.
 
     Raises
     ------
     CorpusError
-        If there is only one group.
+        If there is only one range.
     """
-    group = _speed_ranges(records, folds) if track == "speed" else _fault_groups(records, track, folds)
-    groups = np.unique(group[group >= 0])
-    if len(groups) < 2:
-        what = {
-            "speed": "labelled shaft rate",
-            "severity": "known fault width of a class",
-            "shape": "known fault shape",
-        }
+    known = records.shaft_rate > 0
+    group = np.full(len(known), LEFT_OUT)
+    group[known] = ranges(records.shaft_rate[known], folds)
+    if len(np.unique(group[known])) < 2:
         raise CorpusError(
-            f"{records.title}, track {track}: there is only one {what[track]}, or none; choose another track, or test on another corpus."
+            f"{records.title}, track speed: there is only one labelled shaft rate, or none; choose another track, or test on "
+            "another corpus."
         )
-    # a specimen with records in several groups is tested in that of one of them, drawn at random
-    rng = np.random.default_rng(seed)
-    shuffled = rng.permutation(np.flatnonzero(group >= 0))
+    # a specimen with records in several ranges is tested in that of one of them, drawn at random
+    shuffled = np.random.default_rng(seed).permutation(np.flatnonzero(known))
     specimens, first = np.unique(records.specimen[shuffled], return_index=True)
     home = np.full(records.specimen.max() + 1, LEFT_OUT)
     home[specimens] = group[shuffled[first]]
-    # specimens without a group of their own are dealt out in turn, class by class
-    dealt = group == DEALT
-    for c in np.unique(records.fault[dealt]):
-        free = np.unique(records.specimen[dealt & (records.fault == c) & (home[records.specimen] == LEFT_OUT)])
-        home[rng.permutation(free)] = groups[np.arange(len(free)) % len(groups)]
     tested = home[records.specimen]
-    return np.where(dealt, tested, group), tested
-
-
-def _one_group_per_fold(group: IntArray, tested: IntArray) -> list[Split]:
-    """Splits that test a group each, on the specimens that are tested in it, and train others in other groups."""
-    placed = (group != LEFT_OUT) & (tested != LEFT_OUT)
     return [
-        (np.flatnonzero(placed & (group != g) & (tested != g)), np.flatnonzero((group == g) & (tested == g)))
-        for g in np.unique(tested[placed])
+        (np.flatnonzero(known & (group != g) & (tested != g)), np.flatnonzero((group == g) & (tested == g)))
+        for g in np.unique(tested[known])
     ]
-
-
-def _speed_ranges(records: Records, folds: int) -> IntArray:
-    shaft_rate = records.conditions["shaft_rate"]
-    known = shaft_rate > 0
-    group = np.full(len(known), LEFT_OUT)
-    group[known] = ranges(shaft_rate[known], folds)
-    return group
-
-
-def _fault_groups(records: Records, track: Track, folds: int) -> IntArray:
-    """Range of widths within its class, or shape, of each record; `DEALT` for a class with fewer than two of them."""
-    shape = records.conditions["shape"]
-    group = np.full(len(records.fault), LEFT_OUT)
-    group[records.width == 0] = DEALT
-    group[records.fault == FAULTS.index(HEALTHY)] = DEALT
-    for c in np.unique(records.fault):
-        known = (records.fault == c) & ((records.width > 0) if track == "severity" else (shape >= 0))
-        if known.any():
-            groups = ranges(records.width[known], folds) if track == "severity" else shape[known]
-            group[known] = groups if len(np.unique(groups)) > 1 else DEALT
-    return group
 
 
 def ranges(values: FloatArray, count: int) -> IntArray:
@@ -195,12 +135,6 @@ def ranges(values: FloatArray, count: int) -> IntArray:
     return np.unique(np.searchsorted(edges, values, side="right"), return_inverse=True)[1]
 
 
-def _of_first_record(values: IntArray, specimen: IntArray) -> IntArray:
-    """Value of the first record of each specimen, for all of its records, shape (record,)."""
-    _, first, number = np.unique(specimen, return_index=True, return_inverse=True)
-    return values[first][number]
-
-
 def check_taught(fault: IntArray, splits: Sequence[Split]) -> None:
     """Refuse splits if one of them has a tested class without a training record.
 
@@ -216,17 +150,3 @@ def check_taught(fault: IntArray, splits: Sequence[Split]) -> None:
             name = FAULTS[untaught[0]]
             message = f"cross-validation: a fold has no {name} record to train on; use fewer folds, or another track."
             raise CorpusError(message)
-
-
-def check_disjoint(group: IntArray, train: IntArray, test: IntArray) -> None:
-    """Refuse a split that has a group on both sides.
-
-    Raises
-    ------
-    CorpusError
-        With the number of the first such group.
-    """
-    shared = np.intersect1d(group[train], group[test])
-    if len(shared):
-        message = f"split: group {shared[0]} is in training and in test; keep all its records on one side."
-        raise CorpusError(message)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS
-from raceway.commands.model_commands import warn_of_durations, warn_of_seen, warn_of_severities
+from raceway.commands.model_commands import warn_of_durations, warn_of_seen
 from raceway.console import show
 from raceway.console.corpus_table import notice_of_unknown, table_of
 from raceway.console.options import (
@@ -103,7 +103,6 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
     metavar="N",
     help="Resample these signals to N samples per turn of the shaft.",
 )
-@click.option("--learning-curve", is_flag=True, help="Also score ever smaller numbers of training specimens.")
 @click.option(
     "--folds", type=click.IntRange(min=2), metavar="K", default=5, show_default=True, help="Number of splits."
 )
@@ -125,7 +124,6 @@ def benchmark(
     models: tuple[Path | None, ...],
     waveforms: bool,
     per_turn: int | None,
-    learning_curve: bool,
     folds: int,
     seed: int,
     analysis: Analysis,
@@ -136,11 +134,9 @@ def benchmark(
     """Measure the scores of all baselines on DIR.
 
     Cross-validation keeps all records of a specimen on one side of each split, and all of a rig, bearing
-    type, speed range, fault width or fault shape with --track. Two controls are shown beside each score: a split of random records,
+    type or speed range with --track. Two controls are shown beside each score: a split of random records,
     which leaks, and labels permuted among specimens, which must score at chance. With --test, models trained on all of DIR are also
     scored on DIR2; --speed concerns DIR2 alone, --channel DIR alone (of DIR2 the first channel is taken).
-
-    Rows of earlier calls with the same corpora and settings stay in OUTDIR: a classifier that is scored later becomes a further row.
 
     MODULE:NAME is an estimator as of scikit-learn, or a class or function that makes one; its code is run. MODULE is a file of the
     current folder or an installed module. With --estimator or several tracks, the other baselines are left out.
@@ -148,7 +144,7 @@ def benchmark(
       raceway benchmark corpus -o report
       raceway benchmark corpus --test cwru --test mfpt -o report --track rig
       raceway benchmark corpus --test cwru -o report --model reference
-      raceway benchmark corpus -o report --track all --learning-curve
+      raceway benchmark corpus -o report --track all
       raceway benchmark corpus -o report --estimator mine:make --estimator ensemble
       raceway benchmark corpus --test cwru -o report --waveforms --estimator cnn:Classifier
       raceway benchmark corpus --track rig --folds 3 --estimator mine:make --submit mine.csv
@@ -162,7 +158,6 @@ def benchmark(
     if [output, submit, check].count(None) != 2:
         raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
     from features.baselines import benchmark as run
-    from features.baselines import check_submission, load_maker, read_results, write_submission
     from gen.corpus import result_folder
     from raceway.kept_models import open_model
     from raceway.reports.report_page import write_report
@@ -215,7 +210,6 @@ def benchmark(
         # records that no score counts
         for path, content in zip((corpus, *tests), (results.corpus, *results.tests), strict=True):
             notice_of_unknown(path, content.unknown)
-        warn_of_severities(results, *next(iter(results.baselines.values())).tests)
         page = write_report(corpus, results, output)
     if as_json:
         show.as_json({"report": page, "results": output / "results.json", **show.plain(results)})

@@ -147,9 +147,6 @@ def evaluate(
     table = table_of(corpus, speed, team, analysis)
     healthy = table if reference == corpus else reference and table_of(reference, speed, team, analysis)
     scores = loaded.score(table, reference=healthy)
-    unknown = count_unknown(table)
-    notice_of_unknown(corpus, unknown)
-    warn_of_severities(scores)
     warn_of_seen("the model", scores)
     warn_of_durations("the model", loaded, table)
     if as_json:
@@ -196,15 +193,6 @@ def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
 
 def _span(durations: tuple[float, ...]) -> str:
     return " to ".join(dict.fromkeys(f"{one:.3g}" for one in durations))
-
-
-def warn_of_severities(*tested: "Scores | Results | None") -> None:
-    """Warn of fault widths that were tested and not trained."""
-    from features.baselines import severity_warning
-
-    for scores in tested:
-        if scores is not None and scores.uncovered_widths:
-            notice(f"warning: {severity_warning(scores.uncovered_widths)}")
 
 
 def _show_scores(scores: "Scores") -> None:

@@ -1,4 +1,4 @@
-"""Drawings of curves of scores: detection against width and against false alarms, reliability, and learning."""
+"""Drawings of curves of scores: detection against width and against false alarms, and reliability."""
 
 from collections.abc import Sequence
 
@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from features.baselines import CurvePoint, Scores
+from features.baselines import Scores
 from features.baselines.detection import Roc, WidthBin
 from gen.support.units import from_si
-from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
+from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION
 
 PANEL = (2.6, 2.4)  # inches, of a figure that stands beside others
 DASHED = (0, (4, 3))
@@ -80,21 +80,3 @@ def _panel() -> tuple[Figure, Axes]:
 def _areas(records: Sequence[int]) -> np.ndarray:
     """Areas of markers, proportional to numbers of records but for the least that can be seen."""
     return 4 + 150 * np.array(records) / sum(records)
-
-
-@rc_context(STYLE)
-def draw_curve(points: Sequence[CurvePoint], chance: float, rule: Scores) -> Figure:
-    """Balanced accuracy against the number of training specimens, with chance and the untrained envelope rule."""
-    figure = Figure(figsize=(WIDTH, 3.2), layout="constrained")
-    axes = figure.subplots()
-    size = [point.specimens for point in points]
-    folds = [point.folds for point in points]
-    axes.fill_between(size, [*map(min, folds)], [*map(max, folds)], color=BLUE, alpha=0.2, linewidth=0)
-    axes.plot(size, [point.balanced_accuracy for point in points], "o-", color=BLUE, markersize=5, linewidth=1.4)
-    _draw_level(axes, "chance", chance, FAINT)
-    _draw_level(axes, "envelope rule, untrained", rule.balanced_accuracy, VERMILION)
-    axes.set_xscale("log")
-    axes.set_xticks(size, [str(n) for n in size])
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.set(xlabel="training specimens", ylabel="balanced accuracy", ylim=(0, 1.02))
-    return figure

@@ -5,15 +5,15 @@ includes every picture. Corpora come from unknown sources: their text is escaped
 """
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from features.baselines import Results, Scores, interval_text, percent_text, severity_warning
+from features.baselines import Results, Scores, interval_text, percent_text
 from features.baselines.names import UNTRAINED
-from features.baselines.results_file import write_results
 from features.baselines.tracks import NOVELTY
 from gen.corpus import (
     SPLITS,
@@ -186,8 +186,6 @@ def _findings(results: Results, chance: float) -> list[str]:
     ]
     if results.corpus.unknown:
         sentences.append(f"{results.corpus.unknown} records whose class is not known are left out of all scores.")
-    if results.uncovered_widths:
-        sentences.append(f"Cross-validation: {severity_warning(results.uncovered_widths)}")
     # then what it is worth on other corpora
     for title, test, of_rule in zip(_test_titles(results), baseline.tests, rule.tests, strict=True):
         whole = "" if test.by_recording is None else f", {test.by_recording.balanced_accuracy:.3f} by recording"
@@ -195,8 +193,6 @@ def _findings(results: Results, chance: float) -> list[str]:
             f"On the other corpus {title}, it reaches {_with_interval(test)} by record{whole}; "
             f"the envelope rule reaches {of_rule.balanced_accuracy:.3f}."
         )
-        if test.uncovered_widths:
-            sentences.append(f"Other corpus {title}: {severity_warning(test.uncovered_widths)}")
     return sentences
 
 

@@ -1,4 +1,4 @@
-"""Own classifiers, tracks and the learning curve on the command line."""
+"""Own classifiers and tracks on the command line."""
 
 import json
 
@@ -33,21 +33,18 @@ def mine(tmp_path, monkeypatch):
     return "own_module:make"
 
 
-def test_own_classifiers_tracks_and_a_curve_are_shown_and_written(run, tiny_corpus, tmp_path, mine):
+def test_own_classifiers_and_tracks_are_shown_and_written(run, tiny_corpus, tmp_path, mine):
     line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--estimator", mine)
-    line = (*line, "--estimator", "logistic_regression", "--track", "all", "--learning-curve")
+    line = (*line, "--estimator", "logistic_regression", "--track", "all")
     shown = run(*line).stdout
     found = json.loads((tmp_path / "report" / "results.json").read_text())
     assert (found["leading"], found["track"]) == (mine, "specimen")
     assert list(found["baselines"]) == ["majority", "envelope_rule", mine, "logistic_regression"]
     assert {*found["further"], *found["left_out"]} == set(TRACKS[1:])
     assert {"rig", "speed"} <= set(found["further"])
-    assert [point["specimens"] for point in found["curve"]] == sorted(point["specimens"] for point in found["curve"])
     page = (tmp_path / "report" / "report.html").read_text()
     assert "<h2>Tracks</h2>" in page
-    assert "<h2>Learning curve</h2>" in page
     assert "By speed, 2 folds, " in shown
-    assert f"Learning curve of {mine}, by specimen:" in shown
     for track, reason in found["left_out"].items():
         assert f"No scores by {track}. {reason}" in shown
 
@@ -57,18 +54,6 @@ def test_an_own_classifier_of_waveforms_is_scored_beside_baselines_on_features(t
     found = told(*line, "--estimator", mine.replace("make", "of_signals"))
     assert list(found["baselines"]) == ["majority", "envelope_rule", "own_module:of_signals"]
     assert {scores["grouped"]["records"] for scores in found["baselines"].values()} == {48}
-
-
-def test_rows_of_earlier_calls_stay_in_the_folder(told, tiny_corpus, tmp_path, mine):
-    line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2)
-    first = told(*line, "--estimator", mine)
-    more = told(*line, "--estimator", "logistic_regression")
-    assert list(more["baselines"]) == ["majority", "envelope_rule", mine, "logistic_regression"]
-    assert more["baselines"][mine] == first["baselines"][mine]
-    page = (tmp_path / "report" / "report.html").read_text()
-    assert "logistic regression" in page
-    assert "<h2>Tracks</h2>" not in page
-    assert "<h2>Learning curve</h2>" not in page
 
 
 @pytest.mark.parametrize(

@@ -11,16 +11,10 @@ from gen.support.errors import CorpusError
 from raceway.commands import benchmark_commands, feature_commands, model_commands
 from tests.model_files import make_table
 
-SENTENCE = "warning: tested but not trained: inner 2 mm wide; the scores of these classes include extrapolation."
 
-
-def table(widths_of_inner=(1e-3,), test_split=()):
-    """A feature table with widths for the records of the inner race, in turn, and some records in the test split."""
-    made = make_table(records=48)
-    inner = made.fault.values == 1
-    width = np.zeros(48)
-    width[inner] = np.resize(widths_of_inner, inner.sum())
-    return made.assign(width=("record", width), split=("record", np.isin(np.arange(48), test_split) * 2))
+def table():
+    """A feature table without a test split."""
+    return make_table(records=48).assign(split=("record", np.zeros(48, int)))
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from features.baselines import ESTIMATORS, Model, benchmark, cross_validate
 from features.baselines.estimators import class_probabilities
 from features.baselines.records import features_of, labelled_records
 from features.baselines.splits import control_cases, grouped_case, permuted_labels, score_splits
-from features.baselines.tracks import check_disjoint, check_taught, grouped_splits
+from features.baselines.tracks import check_taught, grouped_splits
 from features.fault_classes import CLASSES, COMBS, EVIDENCE
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
@@ -60,11 +60,6 @@ def make_table(
 
 def records_of(table: xr.Dataset):
     return labelled_records(table, features_of(table, ("lines", "shape")))
-
-
-def test_a_split_that_divides_a_specimen_is_refused():
-    with pytest.raises(CorpusError, match="group 7 is in training and in test"):
-        check_disjoint(np.array([3, 7, 7]), np.array([0, 1]), np.array([2]))
 
 
 def test_equal_numbers_on_different_rigs_are_different_specimens():

@@ -11,7 +11,7 @@ from sklearn.preprocessing import FunctionTransformer
 from sklearn.svm import SVC
 
 from features import feature_table, open_waveforms
-from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker, read_results
+from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.results_file import write_results
 from gen.support.errors import CorpusError
@@ -67,12 +67,11 @@ def test_a_given_classifier_is_copied_before_each_fit():
 
 
 def test_an_own_classifier_is_benchmarked_beside_the_untrained_baselines_and_on_another_corpus():
-    results = benchmark(make_table(24, 3), make_table(8, 4, seed=1), estimators={"mine": Nearest}, folds=3, curve=True)
+    results = benchmark(make_table(24, 3), make_table(8, 4, seed=1), estimators={"mine": Nearest}, folds=3)
     assert (results.leading, list(results.baselines)) == ("mine", ["majority", "envelope_rule", "mine"])
     assert results.baselines["mine"].grouped.balanced_accuracy > 0.95
     assert results.baselines["mine"].tests[0].balanced_accuracy > 0.95
     assert results.baselines["mine"].null.balanced_accuracy < 0.6
-    assert sorted(results.curve[-1].folds) == pytest.approx(sorted(results.baselines["mine"].grouped.folds))
 
 
 def test_a_classifier_of_waveforms_is_scored_beside_the_others_and_on_the_same_corpora(tmp_path):

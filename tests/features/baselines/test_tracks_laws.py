@@ -49,14 +49,8 @@ def group_of(found, track):
     if track in ("specimen", "rig"):
         return getattr(found, track)
     if track == "speed":
-        return ranges(found.conditions["shaft_rate"], 4)
-    if track == "severity":
-        group = np.full(len(found.fault), -1)
-        for code in np.unique(found.fault[found.fault > 0]):
-            of_class = found.fault == code
-            group[of_class] = ranges(found.width[of_class], 4)
-        return group
-    return found.conditions[track]
+        return ranges(found.shaft_rate, 4)
+    return found.bearing
 
 
 @pytest.mark.parametrize("track", TRACKS)
@@ -75,7 +69,7 @@ def test_no_specimen_is_on_both_sides_no_record_is_tested_twice_and_tested_group
         assert len(train)
         assert set(found.fault[train]) == set(found.fault) or track not in ("specimen", "rig")
         assert not set(found.specimen[train]) & set(found.specimen[test])
-        if folds == 4:  # the groups of speed and severity are four ranges here
+        if folds == 4:  # the groups of speed are four ranges here
             asked = set(group[test]) - {-1}
             assert asked
             assert not asked & set(group[train])
@@ -106,20 +100,10 @@ def test_a_class_of_one_shape_is_trained_in_every_fold():
 @given(seed=st.integers(0, 100))
 def test_a_range_of_speeds_in_which_no_specimen_is_tested_makes_no_fold(seed):
     found = records(specimens=8, records=6)
-    speeds = {"shaft_rate": np.tile([10.0, 20, 30, 40, 50, 60], 8)}
-    found = found._replace(conditions={**found.conditions, **speeds})
+    found = found._replace(shaft_rate=np.tile([10.0, 20, 30, 40, 50, 60], 8))
     splits = track_splits(found, found.fault, "speed", 6, seed)
     assert all(len(test) for _, test in splits)
     assert set(found.specimen[np.concatenate([test for _, test in splits])]) == set(found.specimen)
-
-
-def test_records_of_unknown_width_are_neither_trained_nor_tested():
-    table = varied_table()
-    unknown = (table.fault.values > 0) & (table.specimen.values % 5 == 0)
-    found = records_of(table.assign(width=table.width.where(~unknown)), GROUPS)
-    for train, test in track_splits(found, found.fault, "severity", 4, 0):
-        assert not unknown[train].any()
-        assert not unknown[test].any()
 
 
 @pytest.mark.parametrize("track", TRACKS)
@@ -152,12 +136,7 @@ def test_the_null_control_is_at_chance_although_the_labels_are_told_by_the_featu
 )
 def test_a_track_without_groups_is_refused_in_one_sentence(track, changed, sentence):
     table = varied_table()
-    plain = table.assign(
-        {
-            n: ("record", np.where(table.fault > 0, v, 0) if n in ("width", "n_spalls") else np.full(144, v))
-            for n, v in changed.items()
-        }
-    )
+    plain = table.assign({name: ("record", np.full(144, value)) for name, value in changed.items()})
     with pytest.raises(CorpusError, match=sentence):
         cross_validate(plain, "majority", track=track)
 

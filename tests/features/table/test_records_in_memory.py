@@ -10,7 +10,7 @@ import xarray as xr
 
 import gen
 from features import Model, audit_splits, feature_table, open_waveforms, rank_features
-from features.baselines import benchmark, cross_validate, learning_curve
+from features.baselines import benchmark, cross_validate
 from features.table.band import DEFAULT_BAND
 from gen import open_corpus
 from gen.support.errors import CorpusError
@@ -72,7 +72,7 @@ def test_waveforms_pictures_and_pages_take_records_in_memory(records, corpus, tm
 
 def test_what_is_no_corpus_and_no_table_is_refused_in_one_sentence(model):
     calls = [feature_table, open_waveforms, audit_splits, rank_features, model.score, model.predict, Model().fit]
-    calls += [benchmark, lambda x: cross_validate(x, "random_forest"), lambda x: learning_curve(x, "random_forest")]
+    calls += [benchmark, lambda x: cross_validate(x, "random_forest")]
     for wrong in (None, 3, [1, 2], {"a": 1}, xr.Dataset()):
         for call in calls:
             with pytest.raises(CorpusError, match=r"; (give|make) .*\.$|needs it\.$"):
