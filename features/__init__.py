@@ -10,7 +10,6 @@ module        responsibility
 signal        spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
 fault_classes lines, features and words of each fault class
 table         records -> feature table: bands, definitions, indicators, files
-accessor      the functions of `signal` on xarray
 auditing      splits of real recordings that can leak
 baselines     classifiers on a feature table, scored by specimen or rig beside their controls
 ranking       features by what a classifier loses without them

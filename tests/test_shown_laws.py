@@ -4,7 +4,6 @@ import re
 
 import pytest
 
-import features.accessor  # noqa: F401
 import gen
 from features.baselines import Model, Scores
 from gen.support.display import Shown
@@ -41,16 +40,15 @@ def test_scores_tell_what_each_class_was_taken_for():
     assert "inner told as    healthy 1, inner 2, ball 1" in str(SCORES)
 
 
-def test_the_steps_that_a_recipe_a_scenario_and_a_corpus_name_can_be_taken(tiny_corpus, tmp_path, monkeypatch):
+def test_the_steps_that_a_recipe_and_a_scenario_name_can_be_taken(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     recipe = gen.make_recipe(gen.outer(width_mm=1), duration_s=0.1)
     names = {
         "gen": gen,
         "recipe": recipe,
         "scenario": gen.draw_scenarios(recipe)[0],
-        "records": gen.open_corpus(tiny_corpus),
     }
-    for shown in (recipe, names["scenario"], names["records"].raceway):
+    for shown in (recipe, names["scenario"]):
         facts = shown._facts()
         for step in ", ".join(str(facts[key]) for key in ("next", "choose", "look") if key in facts).split("), "):
             code = step if step.endswith(")") else f"{step})"
