@@ -1,6 +1,7 @@
 """Predictions of a fitted model for feature tables and waveforms, alone or compared with healthy records."""
 
-from typing import TYPE_CHECKING, Any, Protocol
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -14,13 +15,15 @@ from features.baselines.references import colour_of, relative_to
 from features.signal.rows import group_means
 from features.table.band import band_of
 from features.table.channels import channels_of
-from features.table.durations import durations_of, suited
+from features.table.durations import durations_of
 from features.table.recording_speeds import recording_numbers
 from features.table.waveforms import Waveforms
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+SAME_DURATION = 1.01  # ratio
 
 
 class Fitted(Protocol):
@@ -40,6 +43,15 @@ class Fitted(Protocol):
     def name(self) -> str:
         """Name of the classifier."""
         ...
+
+
+Model = TypeVar("Model", bound=Fitted)
+
+
+def suited(model: Model, durations: Sequence[float]) -> Model:
+    """The model, or its model for shorter records if the shortest of these durations [s] is below that of its training."""
+    shorter = model.shorter
+    return shorter if shorter and durations and SAME_DURATION * min(durations) < min(model.durations) else model
 
 
 def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset | None = None) -> Predictions:

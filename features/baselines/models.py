@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sklearn.exceptions import NotFittedError
 
 from features.baselines.calibration import UNCALIBRATED, Calibration
-from features.baselines.classifying import predict
+from features.baselines.classifying import predict, suited
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import Estimator, relative_name
 from features.baselines.model_file import read_model_file, write_model_file
@@ -42,7 +42,7 @@ from features.table.band import DEFAULT_BAND, Band, band_of
 from features.table.channels import channels_of
 from features.table.corpus_features import feature_table
 from features.table.definitions import GROUPS
-from features.table.durations import durations_of, suited
+from features.table.durations import durations_of
 from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS, UNKNOWN_CODE, check_result, corpus_name
 from gen.support.display import Shown

@@ -7,7 +7,7 @@ module             responsibility
 ================== =================================================================================
 band               band of frequencies that features are computed from [pure]
 channels           channel of a corpus by name or number
-durations          durations of records, and the model that suits them [pure]
+durations          durations of the records of a table [pure]
 definitions        name, unit, meaning, formula and range of every feature [pure]
 indicators         the feature vector of records, in four groups [pure]
 speed_search       shaft speed of a recording, from its windows [pure]
@@ -15,7 +15,6 @@ recording_speeds   shaft speed of every recording of a corpus, and warnings of w
 corpus_features    corpus -> feature table, part by part
 recording_features feature table of one recording that lies in no corpus
 table_files        feature tables on disk
-transformer        the feature vector as a scikit-learn transformer
 waveforms          signals of a corpus as an array that is read when it is indexed
 network_input      envelope levels at multiples of the fault orders, for networks [pure]
 ================== =================================================================================

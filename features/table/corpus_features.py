@@ -123,9 +123,9 @@ def feature_table(
             recording = recording_numbers(table)
             tasks = list(zip(blocks, np.split(recording, starts[1:-1]), strict=True))
             with closing(_counted(partial(block_sums, channel=number), tasks, place, report)) as sums:
-                estimates = recording_speeds(recording, table["shaft_rate"].values, enumerate(sums))
+                estimates = recording_speeds(recording, table["shaft_rate"].values, sums)
             table = with_speeds(table, recording, estimates, treatment)
-        compute = partial(_features_of_block, groups=tuple(groups), channel=number, band=band)
+        compute = partial(block_features, groups=tuple(groups), channel=number, band=band)
         tasks = list(zip(blocks, np.split(rates_to_use(table), starts[1:-1]), strict=True))
         # blocks come back in order, so that rows are written where they belong
         with closing(_counted(compute, tasks, place, report)) as made:
@@ -150,27 +150,11 @@ def band_warnings(table: xr.Dataset) -> list[str]:
     ]
 
 
-def block_features(
-    block: RecordBlock,
-    groups: Sequence[str] = GROUPS,
-    channel: int = 0,
-    shaft_rate: FloatArray | None = None,
-    band: Band = DEFAULT_BAND,
-) -> FloatArray:
-    """Features of a block of records, shape (record, feature); NaN as in `features.table.indicators`.
-
-    ``shaft_rate`` [Hz], shape (record,), replaces the labelled rates.
-    """
-    x, (fs, labelled, *nominal) = read_channel(block, channel, ("sample_rate", "shaft_rate", *Orders._fields))
-    shaft_rate = labelled if shaft_rate is None else shaft_rate
-    return indicators(x, float(fs[0]), shaft_rate, Orders(*nominal), groups, band)[0]
-
-
-def _features_of_block(
-    task: tuple[RecordBlock, FloatArray], groups: Sequence[str], channel: int, band: Band
-) -> FloatArray:
+def block_features(task: tuple[RecordBlock, FloatArray], groups: Sequence[str], channel: int, band: Band) -> FloatArray:
+    """Features of a block of records at their shaft rates [Hz], shape (record, feature); NaN as in `features.table.indicators`."""
     block, shaft_rate = task
-    return block_features(block, groups, channel, shaft_rate, band)
+    x, (fs, *nominal) = read_channel(block, channel, ("sample_rate", *Orders._fields))
+    return indicators(x, float(fs[0]), shaft_rate, nominal, groups, band)[0]
 
 
 def _counted(

@@ -19,6 +19,7 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.fft import irfft, next_fast_len
 
 from features.signal.demodulation import ZERO_PADDING, analytic_band, spectrum_over_floor
@@ -58,8 +59,8 @@ def feature_names(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> 
 def indicators(
     x: FloatArray,
     fs: float,
-    shaft_rate: FloatArray,
-    orders: Orders,
+    shaft_rate: ArrayLike,
+    orders: Sequence[ArrayLike],
     groups: Sequence[str] = GROUPS,
     band: Band = DEFAULT_BAND,
 ) -> tuple[FloatArray, tuple[str, ...]]:
@@ -76,9 +77,9 @@ def indicators(
     fs
         Sample rate [Hz].
     shaft_rate
-        Shape (record,) [Hz].
+        One for all records, or shape (record,) [Hz].
     orders
-        Nominal fault orders, each of shape (record,).
+        Nominal orders ``ftf, bpfo, bpfi, bsf``: numbers, or each of shape (record,).
     groups
         Some of `GROUPS`; the columns have their order. ``lines`` and ``shape`` share most of their computation.
     band
@@ -95,12 +96,13 @@ def indicators(
     """
     names = feature_names(groups, band)
     values = np.full((len(x), len(names)), np.nan)
-    usable = np.flatnonzero(usable_records(x, shaft_rate, orders))
+    rates, *each = (np.broadcast_to(np.asarray(value, float), len(x)) for value in (shaft_rate, *orders))
+    usable = np.flatnonzero(usable_records(x, rates, Orders(*each)))
     for start in range(0, len(usable), BATCH):
         rows = usable[start : start + BATCH]
         batch = centre(x[rows])
-        nominal = Orders(*(order[rows] for order in orders))
-        values[rows] = _features(batch, fs, shaft_rate[rows], nominal, groups, band)
+        nominal = Orders(*(order[rows] for order in each))
+        values[rows] = _features(batch, fs, rates[rows], nominal, groups, band)
     return values, names
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from features.signal.rows import FloatArray
 from features.table.band import DEFAULT_BAND, Band, band_attributes
 from features.table.definitions import GROUPS, feature_coordinates
-from features.table.durations import DURATION, Trained
+from features.table.durations import DURATION
 from features.table.indicators import Orders, indicators
 
 if TYPE_CHECKING:
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 WINDOW = 0.5  # s, for a model that does not tell the duration of its training records
 
 
-def windows_of(signal: FloatArray, fs: float, model: Trained) -> FloatArray:
-    """Consecutive windows as long as the training records of a model, shape (time,) to (window, time); a shorter signal is one window."""
-    length = min(round(max(model.durations, default=WINDOW) * fs), len(signal))
+def windows_of(signal: FloatArray, fs: float, durations: Sequence[float]) -> FloatArray:
+    """Consecutive windows of the longest of some durations [s], shape (time,) to (window, time); a shorter signal is one window."""
+    length = min(round(max(durations, default=WINDOW) * fs), len(signal))
     count = len(signal) // length
     return signal[: count * length].reshape(count, length)
 
@@ -64,21 +64,13 @@ def recording_table(
     """
     import xarray as xr  # not at the top: windows need none
 
-    count = len(windows)
-    every = np.ones(count)
-    nominal = Orders(*(float(order) * every for order in orders))
-    values, _ = indicators(windows, fs, shaft_rate * every, nominal, groups, band)
+    values, _ = indicators(windows, fs, shaft_rate, orders, groups, band)
     # all windows are of one recording of one bearing
-    same = np.zeros(count, dtype=np.int32)
-    variables = {"rig": same, "specimen": same, "recording": same, "fault": np.full(count, fault, dtype=np.int8)}
-    variables |= {
-        DURATION: windows.shape[1] / fs * every,
-        "sample_rate": fs * every,
-        "shaft_rate": shaft_rate * every,
-        **nominal._asdict(),
-    }
+    same = dict.fromkeys(("rig", "specimen", "recording"), np.int32(0)) | {"fault": np.int8(fault)}
+    same |= {DURATION: windows.shape[1] / fs, "sample_rate": fs, "shaft_rate": shaft_rate, **orders._asdict()}
     return xr.Dataset(
-        {"features": (("record", "feature"), values)} | {name: ("record", held) for name, held in variables.items()},
+        {"features": (("record", "feature"), values)}
+        | {name: ("record", np.full(len(windows), value)) for name, value in same.items()},
         feature_coordinates(groups, band),
         {"title": "recording", **band_attributes(band)},
     )

@@ -6,7 +6,8 @@ A recording may be cut into records of several parts. Its sums are kept until it
 holds the unfinished recordings alone and no signals.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from itertools import chain
 from typing import Any, Literal, NamedTuple, cast
 
 import numpy as np
@@ -70,29 +71,26 @@ def block_sums(task: tuple[RecordBlock, IntArray], channel: int = 0) -> list[Sum
     """
     block, recording = task
     x, (fs, shaft_rate, *nominal) = read_channel(block, channel, ("sample_rate", "shaft_rate", *Orders._fields))
-    levels: dict[int, FloatArray] = {}
-    windows: dict[int, int] = {}
+    # a recording of which no window is usable still counts its records
+    counts = zip(*(values.tolist() for values in np.unique(recording, return_counts=True)), strict=True)
+    sums = {number: Sums(number, records, 0, np.zeros((1, 1))) for number, records in counts}
     # records of one batch share a sample rate
     for rate in np.unique(fs[fs > 0]):
         rows = np.flatnonzero(fs == rate)
         orders = Orders(*(order[rows] for order in nominal))
         for numbers, batch in line_levels(x[rows], float(rate), shaft_rate[rows], orders):
-            for key, level in zip(recording[rows[numbers]].tolist(), batch, strict=True):
+            for number, level in zip(recording[rows[numbers]].tolist(), batch, strict=True):
                 # sums of windows can be added over blocks, medians could not
-                levels[key] = levels[key] + level if key in levels else level.astype(float)
-                windows[key] = windows.get(key, 0) + 1
-    # a recording of which no window is usable still counts its records
-    nothing = np.zeros((1, 1))
-    return [
-        Sums(key, count, windows.get(key, 0), levels.get(key, nothing))
-        for key, count in zip(*(batch.tolist() for batch in np.unique(recording, return_counts=True)), strict=True)
-    ]
+                sums[number] = _added(sums[number], Sums(number, 0, 1, level))
+    return list(sums.values())
 
 
-def recording_speeds(
-    recording: IntArray, shaft_rate: FloatArray, blocks: Iterable[tuple[int, list[Sums]]]
-) -> list[ShaftSpeed]:
-    """Estimate of each recording, by its number, from the sums of all blocks in any order.
+def _added(sums: Sums, more: Sums) -> Sums:
+    return Sums(sums.recording, sums.records + more.records, sums.windows + more.windows, sums.levels + more.levels)
+
+
+def recording_speeds(recording: IntArray, shaft_rate: FloatArray, blocks: Iterable[Sequence[Sums]]) -> list[ShaftSpeed]:
+    """Estimate of each recording, by its number, from the sums of all blocks in their order.
 
     Parameters
     ----------
@@ -101,31 +99,29 @@ def recording_speeds(
     shaft_rate
         As labelled [Hz], shape (record,); a recording with several rates is estimated relative to its first.
     blocks
-        Number and sums of each block.
+        Sums of each block.
     """
-    _, first, missing = np.unique(recording, return_index=True, return_counts=True)
-    label = shaft_rate[first]
-    waiting: dict[int, dict[int, Sums]] = {}
-    estimates: list[ShaftSpeed | None] = [None] * len(first)
-    for block, sums in blocks:
-        for new in sums:
-            waiting.setdefault(new.recording, {})[block] = new
-            # a recording is estimated when its last block has come, and then forgotten
-            missing[new.recording] -= new.records
-            if missing[new.recording] == 0:
-                held = waiting.pop(new.recording)
-                ordered = [held[number] for number in sorted(held) if held[number].windows]
-                windows = sum(one.windows for one in ordered)
-                # summed in the order of the blocks, so that the result does not depend on that of the tasks
-                mean = sum((one.levels for one in ordered), np.zeros((1, 1))) / max(windows, 1)
-                estimates[new.recording] = find_speed(mean, windows, float(label[new.recording]))
-    return [speed for speed in estimates if speed is not None]
+    _, first, records = np.unique(recording, return_index=True, return_counts=True)
+    begun, estimates = dict[int, Sums](), dict[int, ShaftSpeed]()
+    for new in chain.from_iterable(blocks):
+        number = new.recording
+        sums = _added(begun.pop(number), new) if number in begun else new
+        # a recording is estimated when its last record has come, and its sums are then forgotten
+        if sums.records < records[number]:
+            begun[number] = sums
+        else:
+            label = float(shaft_rate[first[number]])
+            estimates[number] = find_speed(sums.levels / max(sums.windows, 1), sums.windows, label)
+    return [estimates[number] for number in sorted(estimates)]
 
 
 def with_speeds(table: xr.Dataset, recording: IntArray, estimates: list[ShaftSpeed], speed: Speed) -> xr.Dataset:
     """Table with the estimated rate, its uncertainty and its evidence as variables of the records."""
     label = table["shaft_rate"].values
-    relative, spread = np.array([_relative(one) for one in estimates]).reshape(-1, 2)[recording].T
+    # without a label there is no estimate
+    told = [(one.rate, one.uncertainty, one.labelled_rate or np.nan) for one in estimates]
+    rate, uncertainty, labelled = np.array(told).reshape(-1, 3)[recording].T
+    relative, spread = rate / labelled, uncertainty / labelled
     codes = np.array([EVIDENCE.index(one.evidence) for one in estimates], np.int8)[recording]
     described = {"units": "Hz", "role": "operating"}
     flags = {"flag_values": np.arange(len(EVIDENCE), dtype=np.int8), "flag_meanings": " ".join(EVIDENCE)}
@@ -146,14 +142,6 @@ def with_speeds(table: xr.Dataset, recording: IntArray, estimates: list[ShaftSpe
             ),
         }
     ).assign_attrs(speed=speed, recordings_with_other_speed=disagreeing)
-
-
-def _relative(estimate: ShaftSpeed) -> tuple[float, float]:
-    return (
-        (estimate.rate / estimate.labelled_rate, estimate.uncertainty / estimate.labelled_rate)
-        if estimate.rate > 0
-        else (np.nan, np.nan)
-    )
 
 
 def rates_to_use(table: xr.Dataset) -> FloatArray:

@@ -1,12 +1,9 @@
-"""Feature tables on disk: netCDF with a digest of its whole content, or Parquet."""
+"""Feature tables on disk: netCDF with a checksum of each variable, or Parquet."""
 
-import hashlib
-import json
 from collections.abc import Callable, Mapping
 from importlib.util import find_spec
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 
 from features.table.channels import channels_of
@@ -15,14 +12,13 @@ from gen.corpus.schema import with_own_codes
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
-DIGEST = "sha256"
-ROW_GROUP = 8192  # records that are copied to columns together
+ROW_GROUP = 8192  # records that a reader decodes together
 
 
 def write_table(table: xr.Dataset, path: Path | str) -> None:
     """Write a feature table as netCDF (``.nc``) or Parquet (``.parquet``), whole or not at all.
 
-    The netCDF file contains the digest of its content. A Parquet file has one column per variable and per feature, whose
+    A Parquet file has one column per variable and per feature, whose
     name begins with the channel if there are several, and the attributes of a variable as metadata of its column.
 
     Raises
@@ -61,7 +57,7 @@ def read_table(path: Path | str) -> xr.Dataset:
     Raises
     ------
     CorpusError
-        If the file is missing, unreadable, altered or not a feature table.
+        If the file is missing, unreadable or not a feature table.
     """
     path = Path(path)
     try:
@@ -78,33 +74,7 @@ def read_table(path: Path | str) -> xr.Dataset:
     if not {"features", "feature", "group"} <= set(table.variables):
         message = f"{path}: contains no features (record, feature); write a feature table with raceway features."
         raise CorpusError(message)
-    # a table that another program changed may no longer be what its attributes say
-    if table.attrs.pop(DIGEST, None) != _digest(table):
-        message = f"{path}: altered, its content does not match its digest; write it again with raceway features."
-        raise CorpusError(message)
     return with_own_codes(table, path)
-
-
-def _digest(table: xr.Dataset) -> str:
-    """SHA-256 of names, dimensions, types, values and attributes of a table."""
-    whole = hashlib.sha256(_attributes_text(table.attrs))
-    for name in sorted(map(str, table.variables)):
-        variable = table[name].variable
-        # texts come back from a file as another type, so their characters count
-        texts = variable.dtype.kind in "OUT"
-        whole.update(repr((name, variable.dims, variable.shape, "text" if texts else variable.dtype.str)).encode())
-        whole.update(_attributes_text(variable.attrs))
-        if texts:
-            whole.update("\0".join(map(str, variable.values.flat)).encode())
-        else:
-            whole.update(np.ascontiguousarray(variable.values).data)
-    return whole.hexdigest()
-
-
-def _attributes_text(attributes: dict) -> bytes:
-    """Attributes as text that does not change when a file is written and read."""
-    plain = {str(key): np.atleast_1d(np.asarray(value)).tolist() for key, value in attributes.items()}
-    return json.dumps(plain, sort_keys=True, default=str).encode()
 
 
 def _write_netcdf(table: xr.Dataset, path: Path) -> None:
@@ -113,11 +83,10 @@ def _write_netcdf(table: xr.Dataset, path: Path) -> None:
         text = variable.dtype.kind in "OUT"
         # fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed
         kind = {"dtype": "S1", "char_dim_name": f"{name}_length"} if text else {"_FillValue": None}
-        encoding[name] = {"zlib": True, **kind}
+        # the checksum is compared by the library whenever the values are read
+        encoding[name] = {"zlib": True, "fletcher32": True, **kind}
     with LIBRARY_LOCK:
-        table.assign_attrs({DIGEST: _digest(table)}).to_netcdf(
-            path, engine="netcdf4", format="NETCDF4", encoding=encoding
-        )
+        table.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding)
 
 
 def _write_parquet(table: xr.Dataset, path: Path) -> None:
@@ -133,17 +102,13 @@ def _write_parquet(table: xr.Dataset, path: Path) -> None:
         for feature in one["features"].transpose("feature", "record"):
             known = {name: feature[name].item() for name in about}
             columns[f"{prefix}{feature['feature'].item()}"] = feature.values, known
-    # types are those of a first value, so that no column is converted as a whole
-    fields = [
-        pa.field(name, pa.array(values[:1]).type, metadata={key: str(value) for key, value in attributes.items()})
-        for name, (values, attributes) in columns.items()
-    ]
-    schema = pa.schema(fields, {key: str(value) for key, value in table.attrs.items()})
-    # in groups of rows, so that memory does not grow with the table
-    with parquet.ParquetWriter(path, schema) as file:
-        for start in range(0, table.sizes["record"], ROW_GROUP):
-            rows = slice(start, start + ROW_GROUP)
-            file.write_table(pa.table([pa.array(values[rows]) for values, _ in columns.values()], schema=schema))
+    arrays = {name: pa.array(values) for name, (values, _) in columns.items()}
+    fields = [pa.field(name, array.type, metadata=_texts(columns[name][1])) for name, array in arrays.items()]
+    parquet.write_table(pa.table(arrays, pa.schema(fields, _texts(table.attrs))), path, row_group_size=ROW_GROUP)
+
+
+def _texts(attributes: Mapping[str, object]) -> dict[str, str]:
+    return {str(name): str(value) for name, value in attributes.items()}
 
 
 WRITERS: Mapping[str, Callable[[xr.Dataset, Path], None]] = {".nc": _write_netcdf, ".parquet": _write_parquet}

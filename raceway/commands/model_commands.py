@@ -179,7 +179,8 @@ def warn_of_seen(model: str, scores: "Scores") -> None:
 
 def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
     """Warn of records that are shorter or longer than those of the training."""
-    from features.table.durations import SAME_DURATION, durations_of, suited
+    from features.baselines.classifying import SAME_DURATION, suited
+    from features.table.durations import durations_of
 
     tested = durations_of(table)
     trained = suited(model, tested).durations

@@ -17,14 +17,13 @@ import numpy as np
 import xarray as xr
 
 from features.baselines.calibration import HEALTHY_SHARE
-from features.baselines.classifying import predict
+from features.baselines.classifying import predict, suited
 from features.baselines.models import Model
 from features.baselines.predictions import DAMAGED, UNSURE, Predictions
 from features.baselines.references import with_energies
 from features.table.band import Band
 from features.table.channels import joined_channels
 from features.table.definitions import GROUPS
-from features.table.durations import suited
 from features.table.indicators import feature_names
 from features.table.recording_features import recording_table, windows_of
 from gen.corpus import FAULTS, UNKNOWN_CODE
@@ -212,7 +211,7 @@ def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Mode
     groups, band = with_energies(model.groups), Band(*model.band)
     tables = {}
     for name in channels:
-        windows = windows_of(recording.signals[name], recording.fs, model)
+        windows = windows_of(recording.signals[name], recording.fs, model.durations)
         tables[name] = recording_table(windows, recording.fs, pair.rate, pair.orders, fault, groups, band)
     return joined_channels(tables).assign_attrs(title=recording.name)
 
