@@ -124,9 +124,7 @@ def _trained(path: Path) -> "Model":
 
 def reference_path() -> Path:
     """File of the reference model of this user, whether it exists or not."""
-    from features.baselines.score_sources import score_sources
-
-    made_from = [score_sources(), hash_sources(*_OWN_SOURCES), *map(version, _LIBRARIES)]
+    made_from = [hash_sources(*_SOURCES), *map(version, _LIBRARIES)]
     digest = hashlib.sha256("\n".join(made_from).encode()).hexdigest()[:HASH_LETTERS]
     versions = f"raceway-{version('raceway')}-scikit-learn-{version('scikit-learn')}"
     return cache_folder() / f"{REFERENCE}-{digest}-{versions}.skops"

@@ -45,7 +45,7 @@ class Records(NamedTuple):
 
     def at(self, rows: IntArray) -> "Records":
         """Some of the rows, in the order given."""
-        return Records(self.title, self.features.take(rows), *(column[rows] for column in self[2:]))
+        return Records(self.title, self.features.take(rows), *(cast("Any", column)[rows] for column in self[2:]))
 
 
 def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:

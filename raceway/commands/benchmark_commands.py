@@ -158,6 +158,7 @@ def benchmark(
     if [output, submit, check].count(None) != 2:
         raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
     from features.baselines import benchmark as run
+    from features.baselines import check_submission, load_maker, write_submission
     from gen.corpus import result_folder
     from raceway.kept_models import open_model
     from raceway.reports.report_page import write_report
@@ -199,9 +200,6 @@ def benchmark(
             "waveforms": _waveforms(corpus, analysis.channel, list(zip(tests, others, strict=True)), per_turn)
             if waveforms
             else [],
-            "curve": learning_curve,
-            # classifiers of an earlier call keep their rows
-            "known": read_results(output / "results.json"),
             "workers": team.options(table.sizes["record"])["workers"],
         }
         with progress("scoring", "scores") as report:
@@ -219,9 +217,7 @@ def benchmark(
 
 
 def _show(results: "Results", tests: list[str]) -> None:
-    """Show the scores on each track and on other corpora, those of trained models, and the learning curve."""
-    from features.baselines import interval_text
-
+    """Show the scores on each track and on other corpora, and those of trained models."""
     show.text(f"Balanced accuracy on {results.corpus.title}, {results.folds} folds by {results.track}:", "")
     _show_baselines(results.baselines, tests)
     if results.models:
@@ -234,13 +230,6 @@ def _show(results: "Results", tests: list[str]) -> None:
         _show_baselines(of_track.baselines, [])
     for track, reason in results.left_out.items():
         show.text("", f"No scores by {track}. {reason}")
-    if results.curve:
-        show.text("", f"Learning curve of {results.leading}, by {results.track}:", "")
-        points = (
-            (p.specimens, p.records, f"{p.balanced_accuracy:.3f}", interval_text((min(p.folds), max(p.folds)), 2))
-            for p in results.curve
-        )
-        show.table(("training specimens", "records", "score", "folds"), points)
 
 
 def _show_baselines(baselines: "Mapping[str, Baseline]", tests: list[str]) -> None:

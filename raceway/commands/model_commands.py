@@ -26,7 +26,7 @@ from raceway.console.progress_bar import notice
 if TYPE_CHECKING:
     import xarray as xr
 
-    from features.baselines import Calibration, Model, Results, Scores
+    from features.baselines import Calibration, Model, Scores
     from features.table.recording_speeds import Speed
 
 
@@ -74,7 +74,6 @@ def train(
     notice_of_unknown(corpus, count_unknown(table))
     model, scores = train_and_score([table], estimator, team)
     model.save(output)
-    warn_of_severities(scores)
     if as_json:
         names = ("records", "classes", "groups")
         facts = {name: getattr(model, name) for name in names} | {"calibration": model.calibration.model_dump()}
@@ -147,6 +146,8 @@ def evaluate(
     table = table_of(corpus, speed, team, analysis)
     healthy = table if reference == corpus else reference and table_of(reference, speed, team, analysis)
     scores = loaded.score(table, reference=healthy)
+    unknown = count_unknown(table)
+    notice_of_unknown(corpus, unknown)
     warn_of_seen("the model", scores)
     warn_of_durations("the model", loaded, table)
     if as_json:

@@ -6,8 +6,8 @@ The evidence is that of `features.signal.speed`: the highest comb of a bearing, 
 computed over speeds from half to 1.7 times those that are given, so that lines that no given pair explains are found too.
 """
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +70,7 @@ class Given(NamedTuple):
         return (1 - reach) * low, (1 + reach) * high
 
 
-def given_of(orders: Mapping[str, Sequence[float]], rpm: Sequence[float] | None) -> Given:
+def given_of(orders: Mapping[str, Iterable[Any]], rpm: Sequence[float] | None) -> Given:
     """Bearings by name with their fault orders, and the lowest and highest speed; all usual speeds if it is not known."""
     low, high = ANY_RATE if rpm is None else (rpm_to_hertz(float(speed)) for speed in rpm)
     return Given({name: Orders(*map(np.asarray, each)) for name, each in orders.items()}, (low, high))

@@ -25,13 +25,14 @@ from gen.corpus import (
     read_manifest,
     split_counts,
     unit_counts,
+    write_numbers,
 )
 from gen.corpus.choice import per_record
 from gen.corpus.fault_classes import HEALTHY
 from gen.corpus.schema import stored_unit
 from gen.support.units import READABLE, shown_unit
 from raceway.reports.class_colours import FAULT_COLOURS
-from raceway.reports.curves import draw_curve, draw_detection, draw_reliability, draw_roc
+from raceway.reports.curves import draw_detection, draw_reliability, draw_roc
 from raceway.reports.examples import examples_of
 from raceway.reports.pictures import draw_record, picture
 from raceway.reports.summaries import draw_content, draw_scores
@@ -67,7 +68,7 @@ def write_report(corpus: Path | str, results: Results, output: Path | str) -> Pa
     with open_corpus(corpus) as opened:
         content = _content(opened)
     make_result_folder(output)
-    write_results(results, output / "results.json")
+    write_numbers(asdict(results), output / "results.json")
     facts = _facts(read_manifest(corpus), results)
     return write_page(output / "report.html", "report.html.jinja", **content, **_scores(results), facts=facts)
 
@@ -112,13 +113,12 @@ def quantities(corpus: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def _scores(results: Results) -> dict[str, Any]:
-    """Variables of the template that describe the baselines, further tracks and the learning curve."""
+    """Variables of the template that describe the baselines, and further tracks."""
     leading, unseen = results.leading, NOVELTY[results.track]
     chance = 1 / len(results.corpus.classes)
     quality = _quality(results)
     led = {results.track: results.baselines[leading]}
     led |= {track: of_track.baselines[leading] for track, of_track in results.further.items()}
-    rule = results.baselines["envelope_rule"].grouped
     leads = [(title, rows[leading]) for title, rows in quality if "by recording" not in title]
     return {
         "results": results,
@@ -135,7 +135,6 @@ def _scores(results: Results) -> dict[str, Any]:
         "test_titles": _test_titles(results),
         "untrained": UNTRAINED,
         "tracks": picture(draw_scores(led, chance, "groups"), "svg") if results.further else None,
-        "curve": picture(draw_curve(results.curve, chance, rule), "svg") if results.curve else None,
         "interval_text": interval_text,
         "novelty": NOVELTY,
     }

@@ -10,8 +10,9 @@ from pathlib import Path
 import xarray as xr
 from matplotlib.figure import Figure
 from PIL import Image
+from pydantic import TypeAdapter, ValidationError
 
-from features.baselines import read_results
+from features.baselines import Results
 from gen.corpus import (
     UNKNOWN,
     class_counts,
@@ -117,9 +118,10 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
     # a file of scores comes from anywhere
     if path.is_file():
         check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
-    results = read_results(path) if path.is_file() else None
-    if results is None:
-        raise CorpusError(f"{path}: is not a file of scores; give results.json of raceway benchmark.")
+    try:
+        results = TypeAdapter(Results).validate_json(path.read_bytes())
+    except (OSError, ValidationError):
+        raise CorpusError(f"{path}: is not a file of scores; give results.json of raceway benchmark.") from None
     # scores belong to the card of the corpus that they were measured on
     here, tested = class_counts(corpus["fault"]), results.corpus
     here.pop(UNKNOWN, None)

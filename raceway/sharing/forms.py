@@ -110,7 +110,7 @@ def copy(
     with choose(paths, **choice, progress=progress) as chosen:
         remove_left_behind_of(target.absolute())
         with _place(form, target, chosen.recipe, codec or "zlib") as place:
-            (writers | FORMS)[form](chosen, place)
+            {**writers, **FORMS}[form](chosen, place)
             # hashes of the records are known when all are written; the target is then still temporary
             chosen.check_repeats()
     files = [target] if target.is_file() else [path for path in target.rglob("*") if path.is_file()]

@@ -47,21 +47,3 @@ def test_parquet_without_pyarrow_is_refused_before_any_feature_is_computed(run, 
     with pytest.raises(CorpusError, match="Parquet needs pyarrow"):
         write_table(table(), tmp_path / "x.parquet")
     assert not (tmp_path / "x.parquet").exists()
-
-
-def test_evaluate_warns_of_widths_that_the_model_was_not_trained_on(run, folder, model):
-    assert SENTENCE in run("evaluate", folder(table((1e-3, 2e-3))), "--model", model).stderr
-    assert "not trained" not in run("evaluate", folder(table()), "--model", model).stderr
-
-
-def test_train_warns_of_widths_that_only_the_test_split_has(run, folder, tmp_path):
-    corpus = folder(table((1e-3,) * 8 + (2e-3,) * 8, test_split=range(24, 48)))
-    result = run("train", corpus, "-o", tmp_path / "m.skops", "--estimator", "logistic_regression")
-    assert SENTENCE in result.stderr
-
-
-def test_benchmark_warns_of_widths_that_a_fold_or_the_other_corpus_adds(run, folder, tmp_path, monkeypatch):
-    monkeypatch.setattr("raceway.reports.report_page.write_report", lambda *_: tmp_path / "report.html")
-    corpus = folder(table((2e-3,) + (1e-3,) * 15))
-    options = ("--folds", 3, "--estimator", "logistic_regression")
-    assert SENTENCE in run("benchmark", corpus, "-o", tmp_path / "out", *options).stderr

@@ -13,7 +13,6 @@ from sklearn.svm import SVC
 from features import feature_table, open_waveforms
 from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker
 from features.baselines.estimators import class_probabilities, make_estimator
-from features.baselines.results_file import write_results
 from gen.support.errors import CorpusError
 from tests.features.baselines.test_baselines_laws import make_table
 from tests.features.table.test_waveforms_laws import psd
@@ -94,25 +93,6 @@ def test_a_classifier_of_waveforms_is_scored_beside_the_others_and_on_the_same_c
         model.score(tables[1])
     with pytest.raises(CorpusError, match="ensemble learns from features; give a feature table or a corpus"):
         Model().fit(kept[0])
-
-
-def test_a_row_is_added_to_results_with_the_same_corpora_and_settings(tmp_path, monkeypatch):
-    tables = make_table(24, 3), make_table(8, 4, seed=1)
-    first = benchmark(*tables, estimators={"mine": Nearest, "logistic_regression": "logistic_regression"}, folds=3)
-    write_results(first, tmp_path / "results.json")
-    known = read_results(tmp_path / "results.json")
-    assert known == first
-    scored, module = [], sys.modules["features.baselines.results"]
-    score = module.score_splits
-    monkeypatch.setattr(module, "score_splits", lambda *a: scored.append(a[2]) or score(*a))
-    asked = {"bayes": GaussianNB(), "logistic_regression": "logistic_regression"}
-    more = benchmark(*tables, estimators=asked, folds=3, known=known)
-    assert (more.leading, len(scored)) == ("bayes", 3)
-    assert list(more.baselines) == ["majority", "envelope_rule", "mine", "logistic_regression", "bayes"]
-    assert {name: more.baselines[name] for name in known.baselines} == known.baselines
-    for changed in ({"folds": 4}, {"seed": 1, "folds": 3}, {"tests": (), "folds": 3}):
-        other = benchmark(tables[0], **{"tests": tables[1], **changed}, estimators={"bayes": GaussianNB()}, known=known)
-        assert list(other.baselines) == ["majority", "envelope_rule", "bayes"]
 
 
 class Broken(Nearest):

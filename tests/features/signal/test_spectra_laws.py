@@ -11,7 +11,6 @@ from features.signal.colour import centroid, roll_off, tonality
 from features.signal.demodulation import (
     amplitude_spectrum,
     analytic_band,
-    envelope_spectrum,
     fine_amplitudes,
     running_median,
     weight_by_hann,

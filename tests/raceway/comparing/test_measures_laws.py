@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from raceway.comparing.contrast import auc, quantiles
 from scipy.signal import resample_poly
 from sklearn.metrics import roc_auc_score
 
 from features.fault_classes import CLASSES
 from features.table.indicators import Orders
 from gen.corpus import FAULTS
-from raceway.comparing.contrast import auc, quantiles
 from raceway.comparing.measures import MEASURES, NAMES, compute_measures, limit_band
 from tests.paths import ROOT
 from tests.pulses import LINES, ORDERS, pulse_train

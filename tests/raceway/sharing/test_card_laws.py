@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gen.corpus import FAULTS, open_corpus, read_manifest, read_publication
-from gen.corpus.manifest import Manifest, Overrides
+from gen.corpus.manifest import Manifest
 from gen.support.errors import CorpusError
 from raceway import publish
 from raceway.sharing.card.additions import CardAdditions, CardPicture, write_additions
