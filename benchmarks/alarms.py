@@ -21,8 +21,8 @@ import xarray as xr
 from benchmarks.speed import real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import UNSURE
-from features.fault_classes import CLASSES
 from features.table.indicators import Orders
+from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
@@ -117,7 +117,7 @@ def outcome(answer: Answered) -> str:
         return "right" if answer.verdict == answer.fault else UNSURE
     if HEALTHY in (answer.fault, answer.verdict):
         return "alarm" if answer.fault == HEALTHY else "called healthy"
-    return "wrong fault" if answer.verdict in CLASSES else answer.verdict
+    return "wrong fault" if answer.verdict in FAULTS else answer.verdict
 
 
 def scores(answers: Iterable[Answered]) -> dict[str, float]:

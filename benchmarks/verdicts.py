@@ -18,8 +18,8 @@ import numpy as np
 from benchmarks.speed import Recording, real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
-from features.fault_classes import CLASSES
 from features.table.indicators import Orders
+from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
@@ -168,7 +168,7 @@ def main() -> None:
         verdicts = (diagnose_recording(*without_fault(kind, seed), model).verdict for seed in range(SEEDS))
         print(*rows("made up", {f"{kind} alone": Counter(answer(one, HEALTHY) for one in verdicts)}), sep="\n")
     print("\n| sure of | lines of its own | of another class alone | none |\n|---|---:|---:|---:|")
-    for fault in CLASSES:
+    for fault in FAULTS:
         counts = [agreed[fault, lines] for lines in ("own", "another's", "none")]
         if any(counts):
             print(f"| {fault} | {' | '.join(map(str, counts))} |")

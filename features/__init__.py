@@ -8,7 +8,6 @@ It uses the format of a corpus and not the simulator, so that recordings of real
 module        responsibility
 ============= ===================================================================================
 signal        spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
-fault_classes lines, features and words of each fault class
 table         records -> feature table: bands, definitions, indicators, files
 auditing      splits of real recordings that can leak
 baselines     classifiers on a feature table, scored by specimen or rig beside their controls

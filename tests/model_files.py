@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from features.baselines import ESTIMATORS, Model, estimators
-from features.fault_classes import EVIDENCE
+from features.table.class_features import EVIDENCE
 
 NAMES = (*EVIDENCE, "raw_kurtosis")
 

@@ -5,6 +5,7 @@ import pkgutil
 import re
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -37,3 +38,8 @@ def test_a_package_lists_its_modules_and_no_others_in_its_docstring(name):
     tables = re.findall(r"^=+ =+\n(?:.*\n)*?=+ =+\n((?:.*\n)*?)=+ =+$", package.__doc__ or "", re.MULTILINE)
     listed = {line.split()[0] for table in tables for line in table.splitlines() if line[:1].strip()}
     assert listed == modules
+
+
+def test_a_file_name_stands_once():
+    names = Counter(path.name for package in PACKAGES[:3] for path in (ROOT / package).rglob("*.py"))
+    assert [name for name, count in names.items() if count > 1] == ["__init__.py"]

@@ -26,7 +26,7 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 
 from features.baselines.own import Maker, OwnClassifier
 from features.baselines.records import FloatArray, IntArray
-from features.fault_classes import CLASSES, COMBS, EVIDENCE
+from features.table.class_features import COMBS, EVIDENCE, class_features
 from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY
 
@@ -70,7 +70,7 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
         Raises
         ------
         ValueError
-            If a feature of ``features.fault_classes.EVIDENCE`` is not among the columns.
+            If a feature of ``features.table.class_features.EVIDENCE`` is not among the columns.
         """
         missing = set(EVIDENCE) - set(getattr(X, "columns", ()))
         if missing:
@@ -99,8 +99,8 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
 def rule_levels(features: "DataFrame", threshold: float) -> dict[str, FloatArray]:
     """Level of each class, shape (record,); the rule predicts the class with the highest level.
 
-    The level of a class is the mean of the features of its row in `features.fault_classes`; a missing feature counts
-    as -inf, and so does a class whose row has no features: the rule never predicts it. Three classes differ:
+    The level of a class is the mean of its features in `features.table.class_features`; a missing feature counts
+    as -inf, and so does a class without features: the rule never predicts it. Three classes differ:
 
     - Healthy: the threshold.
     - Cage: the mean of the first two lines of FTF, or -inf if these lines come from a spalled ball, which passes the
@@ -110,14 +110,14 @@ def rule_levels(features: "DataFrame", threshold: float) -> dict[str, FloatArray
       exceeds the bar. The bar is the highest of the threshold, half the highest comb, and the cage level. The comb of
       2 BSF counts only up to the level of the FTF lines, because shaft sidebands of BPFI can coincide with it.
     """
-    levels = {row.name: _mean(features, row.evidence) for row in CLASSES.values() if row.evidence}
+    levels = {name: _mean(features, own) for name in FAULTS if (own := class_features(name))}
     outer, ball, series = (levels[name] for name in ("outer", "ball", "cage"))
     from_cage = (ball < RIVAL_SHARE * series) | ((ball < outer) & (outer < series))
     cage = np.where(from_cage, series, -np.inf)
     combs = {name: levels[name] for name in COMBS} | {"ball": np.minimum(ball, series)}
     second, first = np.sort(list(combs.values()), axis=0)[-2:]
     bar = np.maximum.reduce([np.full_like(cage, threshold), cage, RIVAL_SHARE * first])
-    unknown = dict.fromkeys(CLASSES, np.full_like(cage, -np.inf))
+    unknown = dict.fromkeys(FAULTS, np.full_like(cage, -np.inf))
     return unknown | levels | {HEALTHY: np.full_like(cage, threshold), "cage": cage, "compound": first + second - bar}
 
 

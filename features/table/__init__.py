@@ -9,6 +9,7 @@ band               band of frequencies that features are computed from [pure]
 channels           channel of a corpus by name or number
 durations          durations of the records of a table [pure]
 definitions        name, unit, meaning, formula and range of every feature [pure]
+class_features     features that tell a fault class, by its lines [pure]
 indicators         the feature vector of records, in four groups [pure]
 speed_search       shaft speed of a recording, from its windows [pure]
 recording_speeds   shaft speed of every recording of a corpus, and warnings of wrong labels

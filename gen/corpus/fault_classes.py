@@ -1,33 +1,141 @@
-"""Names of the fault classes, and their codes.
+"""Table of the fault classes, and their codes in a process and in a file.
 
-Plug-ins add names by entry points of the group ``raceway.classes``, so the code of a class is that of one process. A file has codes of its
-own with their names, and whoever reads it turns them into those of the process. `features.fault_classes` says what a class looks like.
+A plug-in adds a row by an entry point of the group ``raceway.classes``, which has the name of the class. A row is loaded when it is first
+read, because a plug-in imports this module. `features.table.class_features` says which features tell a class.
+
+The code of a class is its place among the classes of this process. In a file, the classes of plug-ins that its records have follow the
+built-in ones. So a file does not depend on what else is installed, and whoever reads it translates.
+
+A ball spall strikes both races in each spin, so its fundamental line is twice the ball spin frequency ``bsf``.
 """
 
+import functools
 import json
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gen.support.errors import CorpusError, RacewayError
-from gen.support.plugins import missing_distributions, plugins
+from gen.support.plugins import missing_distributions, plugin, plugins
+
+
+class NominalLine(NamedTuple):
+    """Line of an envelope spectrum: its label in pictures, and its order as a multiple of a nominal order.
+
+    ``base`` is a field of `features.signal.lines.Orders`, or ``shaft`` for the shaft rate itself.
+    """
+
+    label: str
+    base: str
+    multiple: int
+
+    def order(self, orders: Any) -> Any:
+        """Order of the line for the nominal orders of a bearing."""
+        return self.multiple * getattr(orders, self.base, 1.0)
+
+
+class FaultClass(NamedTuple):
+    """One fault class.
+
+    Attributes
+    ----------
+    name
+        Value of ``fault`` in a corpus.
+    lines
+        The lines marked in its pictures; for a class with harmonics, the fundamental line first.
+    words
+        The class in a sentence.
+    part
+        The damaged part in a sentence, empty if the class does not name one.
+    side
+        Distance of the sidebands of its lines: a field of `features.signal.lines.Orders`, or ``shaft``. A spall on a ball
+        passes the load zone with the cage.
+    beside
+        What the sidebands of its lines at the shaft rate are like: ``needed`` on an inner race, which turns through the load zone,
+        ``lower`` than the lines on an outer race, which stands still, or empty.
+    companion
+        Class whose lines go with those of this one, so that they do not speak against it.
+    n_spalls
+        Spalls of a recording that does not state their number.
+    """
+
+    name: str
+    lines: tuple[NominalLine, ...] = ()
+    words: str = ""
+    part: str = ""
+    side: str = "shaft"
+    beside: Literal["", "needed", "lower"] = ""
+    companion: str = ""
+    n_spalls: int = 0
+
+    @property
+    def is_family(self) -> bool:
+        """Whether its lines are multiples of one order."""
+        return len({line.base for line in self.lines}) == 1
+
+
+def harmonics(base: str, *multiples: int) -> tuple[NominalLine, ...]:
+    """Lines at multiples of a nominal order.
+
+    >>> [line.label for line in harmonics("bsf", 2, 4)]
+    ['2 BSF', '4 BSF']
+    """
+    return tuple(NominalLine(f"{n} {base.upper()}" if n > 1 else base.upper(), base, n) for n in multiples)
+
 
 HEALTHY = "healthy"
 UNKNOWN, UNKNOWN_CODE = "unknown", 127  # recording whose class is not known: a value of ``fault``, not a class
 
-BUILT_IN = (HEALTHY, "inner", "outer", "ball", "cage", "compound")
+BPFI, BPFO = harmonics("bpfi", 1, 2, 3), harmonics("bpfo", 1, 2, 3)
+BSF, FTF = harmonics("bsf", 2, 4, 6), harmonics("ftf", 1, 2, 3)
+SHAFT = NominalLine("shaft", "shaft", 1)
 
-FAULTS = (*BUILT_IN, *plugins("classes"))
+BUILT_IN = (
+    FaultClass(HEALTHY, words="Healthy"),
+    FaultClass("inner", BPFI, words="Inner race fault", part="inner race", beside="needed", n_spalls=1),
+    FaultClass("outer", BPFO, words="Outer race fault", part="outer race", beside="lower", n_spalls=1),
+    FaultClass("ball", BSF, part="balls", side="ftf", companion="cage", n_spalls=1),
+    FaultClass("cage", FTF, part="cage"),
+    # the label does not say which parts are damaged, so the fundamental line of every part is marked
+    FaultClass("compound", (BPFI[0], BPFO[0], BSF[0], FTF[0]), words="Several faults", n_spalls=2),
+)
+
+SIDES = {SHAFT.base: "shaft", "ftf": "cage"}
+"""Part that turns at the distance of sidebands."""
+
+FAULTS = (*(row.name for row in BUILT_IN), *plugins("classes"))
 """Names of the classes; the code of a class is its place."""
 
 FAULT_NAMES: Mapping[int, str] = {**dict(enumerate(FAULTS)), UNKNOWN_CODE: UNKNOWN}
 
 for _name in plugins("classes"):
-    if not re.fullmatch("[a-z][a-z0-9_]*", _name) or _name in (*BUILT_IN, UNKNOWN):
+    if not re.fullmatch("[a-z][a-z0-9_]*", _name) or _name in (*FAULTS[: len(BUILT_IN)], UNKNOWN):
         raise RacewayError(f"raceway.classes: {_name!r} is no name for a further class; uninstall its plug-in.")
+
+
+@functools.cache
+def fault_class(name: str) -> FaultClass:
+    """Row of a class, or of records whose class is not known."""
+    rows = {row.name: row for row in (*BUILT_IN, FaultClass(UNKNOWN, n_spalls=-1))}
+    row = rows[name] if name in rows else plugin("classes", name, FaultClass)
+    return row._replace(name=name, words=row.words or f"{name.replace('_', ' ').capitalize()} fault")
+
+
+def families() -> tuple[FaultClass, ...]:
+    """Classes whose lines are multiples of one order, the first class of each order."""
+    rows: dict[NominalLine, FaultClass] = {}
+    for row in map(fault_class, FAULTS):
+        if row.is_family:
+            rows.setdefault(row.lines[0], row)
+    return tuple(rows.values())
+
+
+def fundamentals() -> tuple[NominalLine, ...]:
+    """Fundamental line of each of the `families`."""
+    return tuple(row.lines[0] for row in families())
 
 
 def own_codes(

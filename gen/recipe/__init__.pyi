@@ -1,4 +1,4 @@
-from .faults import Fault as Fault, fault_class as fault_class
+from .faults import Fault as Fault, class_of as class_of
 from .finding import find_recipe as find_recipe, recipe_purpose as recipe_purpose, shipped_recipes as shipped_recipes
 from .keywords import make_recipe as make_recipe
 from .machine import CatalogueBearing as CatalogueBearing

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from gen.mechanisms.mechanism import mechanisms_of
-from gen.recipe.faults import fault_class
+from gen.recipe.faults import class_of
 from gen.recipe.life_checks import life_problems
 from gen.recipe.loads import contact_angles, load_problems
 from gen.recipe.machine import CatalogueBearing
@@ -56,7 +56,7 @@ def _numbers_of_a_record(recipe: Sections) -> int:
 def _faults(recipe: Sections) -> Iterator[str]:
     weights = {"healthy": 0.0, "faulty": 0.0}
     for number, entry in enumerate(recipe.faults):
-        weights["healthy" if fault_class(entry) == "healthy" else "faulty"] += entry.weight
+        weights["healthy" if class_of(entry) == "healthy" else "faulty"] += entry.weight
         if recipe.corpus.fault_choice == "in_turn" and entry.weight != 1:
             yield f"faults[{number}].weight: has no effect with corpus.fault_choice: in_turn; leave it out, or choose by_weight."
         if entry.level is not None and recipe.level.kind != "snr":

@@ -53,6 +53,6 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(name)
 
 
-def fault_class(fault: Fault) -> str:
+def class_of(fault: Fault) -> str:
     """Class label of records with a fault."""
     return fault.kind if fault.kind in FAULTS else fault.part

@@ -8,7 +8,7 @@ from pydantic import ValidationError, model_validator
 
 from gen.drawing import plain
 from gen.recipe.checks import check_recipe
-from gen.recipe.faults import fault_class
+from gen.recipe.faults import class_of
 from gen.recipe.sections import Sections
 from gen.support.display import Shown
 from gen.support.errors import RecipeError
@@ -47,7 +47,7 @@ class Recipe(Shown, Sections):
             "bearing": self.bearing,
             "speed": f"{self.operation.shaft_rpm} rpm",
             "load": f"{self.operation.load_n} N",
-            "classes": ", ".join(dict.fromkeys(map(fault_class, self.faults))),
+            "classes": ", ".join(dict.fromkeys(map(class_of, self.faults))),
             "next": 'gen.generate(recipe, "corpus"), gen.draw_scenarios(recipe), gen.write_recipe(recipe, "my_recipe.yaml")',
         }
 

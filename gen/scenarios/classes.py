@@ -15,7 +15,7 @@ import numpy as np
 
 from gen.corpus import FAULTS
 from gen.drawing import stream
-from gen.recipe import Recipe, fault_class
+from gen.recipe import Recipe, class_of
 
 # Irrational steps without a common small multiple, and without one with that of the split (the golden ratio).
 _HEALTHY_STEP, _FAULTY_STEP = math.sqrt(2), 2 ** (1 / 3)
@@ -26,7 +26,7 @@ def class_shares(recipe: Recipe) -> dict[str, float]:
     """Share of the specimens of each class that the recipe has [1]; with rungs, such that the records have the shares of the weights."""
     weights: dict[str, float] = dict.fromkeys(FAULTS, 0.0)
     for entry in recipe.faults:
-        weights[fault_class(entry)] += entry.weight
+        weights[class_of(entry)] += entry.weight
     total, corpus = sum(weights.values()), recipe.corpus
     if corpus.rungs is not None and corpus.rungs[0] == 0 and corpus.fault_choice == "by_weight":
         # the specimens of a fault also have one healthy record for every n_rungs - 1 with their fault
@@ -46,7 +46,7 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     shares, count = class_shares(recipe), recipe.corpus.specimens_per_rig
     if recipe.corpus.fault_choice == "in_turn":
         entries = recipe.faults
-        return [fault_class(entries[number % len(entries)]) for number in range(rig * count, (rig + 1) * count)]
+        return [class_of(entries[number % len(entries)]) for number in range(rig * count, (rig + 1) * count)]
     # systematic sampling: every rig has nearly the shares of the recipe, and all rigs together have them
     offsets = _offsets(recipe.seed, rig)
     healthy = count * shares.pop("healthy", 0.0)
@@ -61,7 +61,7 @@ def possible_entries(recipe: Recipe, specimen: int, fault: str) -> list[int]:
     """Places in ``faults`` of the entries that a specimen with a fault class can have."""
     if recipe.corpus.fault_choice == "in_turn":
         return [specimen % len(recipe.faults)]
-    return [place for place, one in enumerate(recipe.faults) if fault_class(one) == fault]
+    return [place for place, one in enumerate(recipe.faults) if class_of(one) == fault]
 
 
 def _offsets(seed: int, rig: int) -> tuple[float, float]:

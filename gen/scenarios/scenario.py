@@ -13,7 +13,7 @@ from gen.mechanisms.faults.bearing_fault import BearingFault
 from gen.physics.bearing import Bearing
 from gen.physics.kernel_input import Spall
 from gen.physics.profile import Profile
-from gen.recipe import OriginSection, Recipe, fault_class, recipe_text
+from gen.recipe import OriginSection, Recipe, class_of, recipe_text
 from gen.support.display import Shown
 from gen.support.errors import RecipeError, SimulationError
 
@@ -60,7 +60,7 @@ class Scenario(Shown):
     @functools.cached_property
     def fault(self) -> str:
         """Class of the fault."""
-        return fault_class(self.recipe.faults[0])
+        return class_of(self.recipe.faults[0])
 
     @property
     def components(self) -> tuple[BearingFault, ...]:

@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import irfft
 
-from features.fault_classes import CLASSES, COMBS
 from features.signal.colour import centroid, roll_off, tonality
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.impulsive import band_kurtosis, equal_bands
@@ -21,7 +20,9 @@ from features.signal.rows import FloatArray, squared_modulus
 from features.signal.shape import envelope_shape, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd
 from features.table.band import DEFAULT_BAND
+from features.table.class_features import COMBS, class_features
 from features.table.indicators import FLOOR_WIDTH, Orders
+from gen.corpus.fault_classes import fault_class
 
 LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their amplifiers differ
 UPPER_BAND = 3500.0  # Hz
@@ -36,8 +37,8 @@ HARMONICS = 3
 DB_PER_NEPER = 20 / np.log(10)
 
 SPALLED = tuple(COMBS)  # classes with a line of their own
-RACES = tuple(name for name in SPALLED if CLASSES[name].lines[0].base in ("bpfi", "bpfo"))
-BALLS = tuple(name for name in SPALLED if CLASSES[name].lines[0].base == "bsf")
+RACES = tuple(name for name in SPALLED if fault_class(name).lines[0].base in ("bpfi", "bpfo"))
+BALLS = tuple(name for name in SPALLED if fault_class(name).lines[0].base == "bsf")
 
 
 class Measure(NamedTuple):
@@ -117,7 +118,7 @@ def compute_measures(
     by_name = _colour(x, fs, top) | _impulsiveness(x, fs, top)
     weighted = weight_by_hann(np.sqrt(envelope.power))
     *_, by_name["slow_share"] = envelope_shape(envelope.power, weighted, envelope.spectrum, envelope.rate, shaft_rate).T
-    if CLASSES[fault].evidence:
+    if class_features(fault):
         by_name |= _lines(envelope, shaft_rate, orders, fault)
     missing = np.full(len(x), np.nan)
     columns = [by_name.get(measure.name, missing) if measure.belongs_to(fault) else missing for measure in MEASURES]
@@ -193,7 +194,7 @@ def _envelopes(x: FloatArray, fs: float, top: float, shaft_rate: FloatArray) -> 
 
 def _lines(envelope: _Envelopes, shaft_rate: FloatArray, orders: Orders, fault: str) -> dict[str, FloatArray]:
     """Measures of the line of a class with a line of its own."""
-    fundamental = CLASSES[fault].lines[0]
+    fundamental = fault_class(fault).lines[0]
     order = fundamental.order(orders)
     line = highest_place(envelope.level, order * shaft_rate / envelope.step, SEARCHED)
     rows = np.arange(len(line))

@@ -8,12 +8,12 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.fault_classes import CLASSES, SHAFT, families
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray
 from features.signal.velocity import velocity_band
 from features.table.band import DEFAULT_BAND, Band
-from gen.corpus.fault_classes import HEALTHY
+from features.table.class_features import COMBS
+from gen.corpus.fault_classes import HEALTHY, SHAFT, families, fault_class
 from gen.support.units import from_si
 from raceway.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis
 from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
@@ -143,7 +143,7 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
                 alpha=0.65,
                 linestyle="-" if number == 0 else (0, (3, 3)),
             )
-        names[CLASSES[fault].lines[0].label] = lines[0]
+        names[fault_class(fault).lines[0].label] = lines[0]
     axes.axvline(1.0, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
     axes.plot(order[visible], level[visible], color=INK, linewidth=0.7)
     axes.axhline(LEAST_LEVEL, color=FAINT, linewidth=0.7, linestyle=(0, (4, 3)))
@@ -168,6 +168,8 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
 def _families(orders: Orders) -> dict[str, list[float]]:
     """Orders of the first harmonics of each family, by its class."""
     return {
-        row.name: [float(row.lines[0].order(orders)) * n for n in range(1, DRAWN_HARMONICS + 1 if row.comb else 2)]
+        row.name: [
+            float(row.lines[0].order(orders)) * n for n in range(1, DRAWN_HARMONICS + 1 if row.name in COMBS else 2)
+        ]
         for row in families()
     }

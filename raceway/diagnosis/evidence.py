@@ -21,8 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.fault_classes import SHAFT, FaultClass, families
+from features.table.class_features import COMBS
 from features.table.indicators import Orders
+from gen.corpus.fault_classes import SHAFT, FaultClass, families
 from raceway.diagnosis.spectrum import TOP_ORDER, BandSpectrum
 
 FALSE_ALARM = 0.01  # probability that noise has a first line in a recording, and that it adds a further line to one
@@ -111,7 +112,11 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
         ratio, _, fundamental = first_lines[strongest]
         row, family = sought.pop(strongest), held[strongest]
         level = 10 * float(np.log10(max(ratio, 1.0)))
-        if not family or level < least or (not row.comb and sum(not line.side for line in family) < CAGE_LINES):
+        if (
+            not family
+            or level < least
+            or (row.name not in COMBS and sum(not line.side for line in family) < CAGE_LINES)
+        ):
             continue
         lines += family
         least = max(least, level - SPREAD)
@@ -141,7 +146,7 @@ def side_of(row: FaultClass, orders: Orders) -> float:
 
 
 def _harmonics(row: FaultClass) -> range:
-    return range(1, (HARMONICS if row.comb else len(row.lines)) + 1)
+    return range(1, (HARMONICS if row.name in COMBS else len(row.lines)) + 1)
 
 
 def _search_bins(
@@ -194,7 +199,7 @@ def _higher_at_half(
     """Whether a line at half the fundamental [Hz] of a race exceeds a ratio; a ball may strike one race alone, at BSF."""
     first, last = spectrum.bins(0.5 * fundamental, 0.5 * spectrum.width + DRIFT * fundamental)
     half = np.where(free[first:last], spectrum.ratio[first:last], 0.0)
-    return bool(row.comb and row.lines[0].multiple == 1 and half.max(initial=0.0) > ratio)
+    return bool(row.name in COMBS and row.lines[0].multiple == 1 and half.max(initial=0.0) > ratio)
 
 
 def _family(
@@ -205,7 +210,7 @@ def _family(
     base = row.lines[0].multiple
     places = [(harmonic, "", 0) for harmonic in _harmonics(row)]
     # of balls and races also sidebands, at the rate of the cage and of the shaft
-    if row.comb:
+    if row.name in COMBS:
         places += [(harmonic, side, sign) for harmonic in (1, 2) for side in rates if side for sign in (-1, 1)]
     searches = {}
     for harmonic, side, sign in places:

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from features.fault_classes import CLASSES
 from features.signal.demodulation import ZERO_PADDING
 from features.signal.lines import families
 from features.signal.rows import FloatArray, centre
@@ -35,6 +34,7 @@ from features.signal.speed import TOLERANCE as LABEL_TOLERANCE
 from features.table.band import DEFAULT_BAND
 from features.table.indicators import SHORTEST, Orders
 from features.table.speed_search import LONGEST, level_spectra
+from gen.corpus.fault_classes import fault_class
 from gen.support.units import rpm_to_hertz
 from raceway.diagnosis.evidence import SHAFT_DRIFT, TOLERANCE, Line, side_of
 
@@ -281,7 +281,7 @@ def strange_comb(spectra: LevelSpectra, pair: Pair, lines: Sequence[Line]) -> fl
         if not line.side:
             beside = [order - harmonic * line.order / line.harmonic for harmonic in HARMONICS]
             strange &= _off(
-                np.array(beside), side_of(CLASSES[line.fault], pair.orders), width + SHAFT_DRIFT * order
+                np.array(beside), side_of(fault_class(line.fault), pair.orders), width + SHAFT_DRIFT * order
             ).all(axis=0)
     left = np.where(strange, heights, -np.inf)
     place = int(left.argmax())

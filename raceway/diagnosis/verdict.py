@@ -20,8 +20,7 @@ A class is answered if the classifier is sure of it and the lines do not tell an
 from collections.abc import Mapping, Sequence
 
 from features.baselines.predictions import DAMAGED, UNSURE
-from features.fault_classes import CLASSES, SHAFT, SIDES
-from gen.corpus.fault_classes import HEALTHY
+from gen.corpus.fault_classes import HEALTHY, SHAFT, SIDES, fault_class
 from raceway.diagnosis.evidence import Line
 from raceway.diagnosis.wording import by_family, family_in_words, faulty, line_of
 
@@ -65,23 +64,23 @@ def judge(
         foreign = _foreign_sidebands(families[likely])
         return (UNSURE, f"the classifier says {likely}, but {foreign}") if foreign else (likely, "")
     # lines of the cage alone speak for balls, which go round with it
-    if families.keys() == {CLASSES[likely].companion}:
+    if families.keys() == {fault_class(likely).companion}:
         return likely, ""
     # healthy bearings have faint lines of all parts
     if likely == HEALTHY:
         level = OBVIOUS if probabilities[likely] >= SURE else PLAIN
         families = {fault: held for fault, held in families.items() if _plain(held, level)}
-    if not CLASSES[likely].is_family and bool(families) != (likely == HEALTHY):
+    if not fault_class(likely).is_family and bool(families) != (likely == HEALTHY):
         return likely, ""
     if not families:
         return UNSURE, f"the classifier says {likely}, but no {line_of(likely)} line stands out"
-    fault, held = next(each for each in families.items() if each[0] != CLASSES[likely].companion)
+    fault, held = next(each for each in families.items() if each[0] != fault_class(likely).companion)
     return UNSURE, f"the classifier says {likely}, but {family_in_words(held)}, which tells of {fault}"
 
 
 def _foreign_sidebands(lines: Sequence[Line]) -> str:
     """Clause on sidebands at the shaft rate, or their absence, that tell of another part; empty if they fit the family."""
-    row = CLASSES[lines[0].fault]
+    row = fault_class(lines[0].fault)
     highest = {side: max((line.level for line in lines if line.side == side), default=0.0) for side in ("", *SIDES)}
     shaft = highest[SHAFT.base]
     if row.beside == "needed" and not shaft:

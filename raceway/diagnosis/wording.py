@@ -3,9 +3,8 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from features.fault_classes import CLASSES, SIDES, families
 from features.signal.speed import DISAGREEMENT
-from gen.corpus.fault_classes import HEALTHY
+from gen.corpus.fault_classes import HEALTHY, SIDES, families, fault_class
 from gen.support.units import from_si
 from raceway.diagnosis.evidence import LEAST_LEVEL, Line
 from raceway.diagnosis.search import STRONG_COMB, Given, Pair
@@ -53,7 +52,8 @@ def reasons(verdict: str, lines: Sequence[Line]) -> str:
 
 def line_of(fault: str) -> str:
     """Name of the line that tells a class; "fault" for a class without a line of its own."""
-    return CLASSES[fault].lines[0].label if CLASSES[fault].is_family else "fault"
+    row = fault_class(fault)
+    return row.lines[0].label if row.is_family else "fault"
 
 
 def faulty(probabilities: Mapping[str, float]) -> float:
@@ -83,8 +83,10 @@ def answer_in_words(verdict: str, probabilities: Mapping[str, float], lines: Seq
     likely = max(probabilities, key=lambda name: probabilities[name])
     told = f"probability {probability_in_words(probabilities[likely])}"
     if likely == verdict:
-        return f"{CLASSES[verdict].words} ({told}): {reasons(verdict, lines)}"
-    return f"{CLASSES[verdict].words}: {reasons(verdict, lines)}, although the classifier alone says {likely} ({told})"
+        return f"{fault_class(verdict).words} ({told}): {reasons(verdict, lines)}"
+    return (
+        f"{fault_class(verdict).words}: {reasons(verdict, lines)}, although the classifier alone says {likely} ({told})"
+    )
 
 
 def damaged_in_words(probabilities: Mapping[str, float], share: float) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from features.fault_classes import ALL_CLASSES
+from gen.corpus.fault_classes import fault_class
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from gen.support.units import rpm_to_hertz, to_si
@@ -189,7 +189,7 @@ def _join(files: Sequence[Labels], folder: Path) -> tuple[list[FloatArray], floa
 
 
 def _recording(labels: Labels, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:
-    spalls = ALL_CLASSES[labels.fault].n_spalls
+    spalls = fault_class(labels.fault).n_spalls
     unknown = math.nan if spalls else 0.0
     return Recording(
         number=number,

@@ -4,7 +4,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from features.fault_classes import ALL_CLASSES
+from gen.corpus.fault_classes import fault_class
 from gen.physics.bearing import Bearing
 from gen.physics.bearing_text import bearing_of_label
 from gen.support.key_types import Keys, Millimetres, Name, Text
@@ -121,7 +121,7 @@ class Labels(SensorKeys):
         ):
             raise ValueError("unit: is missing; give it.")
         spall = next((key for key in _OF_SPALLS if getattr(self, key) is not None), None)
-        if spall and ALL_CLASSES[self.fault].n_spalls <= 0:
+        if spall and fault_class(self.fault).n_spalls <= 0:
             raise ValueError(f"{spall}: describes a spall, and fault is {self.fault}; remove one of the two.")
         for keys in (self, *(self.channels or ())):
             if keys.sensitivity_mv_per_g is not None and keys.sensitivity_mv_per_m_s2 is not None:

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from features.fault_classes import ALL_CLASSES, COMBS
+from features.table.class_features import COMBS, class_features
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULT_NAMES
 from gen.support.units import from_si
@@ -84,5 +84,5 @@ def _line_level(shown: DrawnRecord) -> float:
     names = feature_names(("lines",))
     orders = Orders(*(order.reshape(1) for order in shown.orders))
     values, _ = indicators(shown.signal[None], shown.fs, np.array([shown.shaft_rate]), orders, ("lines",))
-    columns = [names.index(name) for name in ALL_CLASSES[shown.fault].evidence or COMBS.values()]
+    columns = [names.index(name) for name in class_features(shown.fault) or COMBS.values()]
     return float(np.nan_to_num(values[0, columns], nan=-np.inf).max())

@@ -21,11 +21,11 @@ import numpy as np
 import xarray as xr
 from scipy.signal import resample
 
-from features.fault_classes import ALL_CLASSES, COMBS, SHAFT, fundamentals
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 from features.table.band import DEFAULT_BAND, Band, checked_band
 from features.table.channels import channel_number, channels_of
+from features.table.class_features import COMBS
 from features.table.indicators import Orders
 from features.table.table_files import read_table
 from gen.corpus import (
@@ -40,6 +40,7 @@ from gen.corpus import (
 )
 from gen.corpus.choice import per_record
 from gen.corpus.contents import extent
+from gen.corpus.fault_classes import FAULT_NAMES, SHAFT, fault_class, fundamentals
 from gen.support.display import visible
 from gen.support.errors import CorpusError
 from gen.support.executor import run
@@ -342,8 +343,12 @@ def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence
         "tolerance": TOLERANCE,
         "compared": [SHAFT, *fundamentals()],
         "classes": {
-            name: {"colour": FAULT_COLOURS[name], "lines": row.lines, "side": row.side if row.comb else None}
-            for name, row in ALL_CLASSES.items()
+            row.name: {
+                "colour": FAULT_COLOURS[row.name],
+                "lines": row.lines,
+                "side": row.side if row.name in COMBS else None,
+            }
+            for row in map(fault_class, FAULT_NAMES.values())
         },
         "quantities": [each.about for each in known],
     }

@@ -17,15 +17,15 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.fault_classes import ALL_CLASSES, SHAFT, fundamentals
 from features.signal.demodulation import amplitude_spectrum, analytic_band
 from features.signal.orders import order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray, squared_modulus
 from features.signal.spectra import fourier_coefficients, psd, whiten_by_psd
 from features.table.band import DEFAULT_BAND, Band
+from features.table.class_features import COMBS
 from features.table.indicators import WHITENING_WIDTH, Orders
 from gen.corpus import GENERATOR, check_result, write_durably
-from gen.corpus.fault_classes import HEALTHY
+from gen.corpus.fault_classes import HEALTHY, SHAFT, fault_class, fundamentals
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
 from raceway.reports.class_colours import FAULT_COLOURS
@@ -216,11 +216,11 @@ def draw_cursors(axes: Axes, shown: DrawnRecord) -> float:
 def mark_lines(axes: Axes, shown: DrawnRecord) -> tuple[dict[str, float], dict[str, float]]:
     """Lines of the fault over orders, shaded, with their sidebands dotted, and those of others dashed; both as `fault_lines`."""
     own, others = fault_lines(shown.orders, shown.fault)
-    row, colour = ALL_CLASSES[shown.fault], FAULT_COLOURS[shown.fault]
+    row, colour = fault_class(shown.fault), FAULT_COLOURS[shown.fault]
     side = float(getattr(shown.orders, row.side, SHAFT.multiple))
     for line in own.values():
         axes.axvspan(line * (1 - TOLERANCE), line * (1 + TOLERANCE), color=colour, alpha=0.2, linewidth=0)
-        for beside in (line - side, line + side) if row.comb else ():
+        for beside in (line - side, line + side) if row.name in COMBS else ():
             axes.axvline(beside, color=colour, linewidth=0.6, linestyle=(0, (1, 2)))
     for line in others.values():
         axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
@@ -269,7 +269,7 @@ def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str,
     """Orders of the lines of a fault class, and of the fundamental lines of the others and the shaft, by label."""
     own, compared = (
         {line.label: float(line.order(orders)) for line in lines}
-        for lines in (ALL_CLASSES[fault].lines, (SHAFT, *fundamentals()))
+        for lines in (fault_class(fault).lines, (SHAFT, *fundamentals()))
     )
     return own, {label: order for label, order in compared.items() if label not in own}
 

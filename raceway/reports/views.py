@@ -11,13 +11,13 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.fault_classes import SHAFT, fundamentals
 from features.signal.cyclic import spectral_coherence
 from features.signal.impulsive import comb_bands, kurtogram
 from features.signal.orders import order_map, order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
 from features.signal.spectra import cepstrum
 from features.table.band import Band
+from gen.corpus.fault_classes import SHAFT, fundamentals
 from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.maps import BRIGHTEST_DB, FAINTEST, draw_coherence, draw_grid, level_over_median, plot
 from raceway.reports.pictures import (

@@ -6,8 +6,8 @@ from typing import Any, ClassVar, Literal
 import click
 import numpy as np
 
-from features.fault_classes import BPFO, FaultClass
 from features.table.definitions import Feature, FeatureGroup
+from gen.corpus.fault_classes import BPFO, FaultClass
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.chain.sensor_fault import SensorFault

@@ -11,13 +11,13 @@ from features.baselines.estimators import class_probabilities
 from features.baselines.records import features_of, labelled_records
 from features.baselines.splits import control_cases, grouped_case, permuted_labels, score_splits
 from features.baselines.tracks import check_taught, grouped_splits
-from features.fault_classes import CLASSES, COMBS, EVIDENCE
+from features.table.class_features import COMBS, EVIDENCE, class_features
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 
 NAMES = (*EVIDENCE, *(f"whitened_line_{n}" for n in range(3)), "raw_kurtosis", "raw_crest_factor")
 GROUPS = ("lines",) * (len(NAMES) - 2) + ("shape",) * 2
-TELLING = {name: row.evidence for name, row in CLASSES.items()} | {"compound": (COMBS["inner"], COMBS["outer"])}
+TELLING = {name: class_features(name) for name in FAULTS} | {"compound": (COMBS["inner"], COMBS["outer"])}
 pytestmark = pytest.mark.usefixtures("few_trees")
 FOUR = FAULTS[:4]  # a recipe need not have all classes
 

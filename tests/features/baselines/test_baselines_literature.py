@@ -9,7 +9,7 @@ import pytest
 
 from features.baselines import Model, cross_validate
 from features.baselines.estimators import EnvelopeRule
-from features.fault_classes import COMBS
+from features.table.class_features import COMBS
 from features.table.corpus_features import feature_table
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS

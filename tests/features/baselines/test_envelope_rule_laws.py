@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.special import softmax
 
 from features.baselines.estimators import EnvelopeRule
-from features.fault_classes import CLASSES, COMBS, EVIDENCE
+from features.table.class_features import COMBS, EVIDENCE, class_features
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
 
@@ -24,7 +24,7 @@ TRAINS = {
     "cage": (FTF,),
     "compound": (BPFI, BPFO),
 }
-COLUMNS = [feature for fault in TRAINS for feature in CLASSES[fault].evidence]
+COLUMNS = [feature for fault in TRAINS for feature in class_features(fault)]
 FOUR, SIX = np.arange(4), np.array([FAULTS.index(fault) for fault in TRAINS])
 levels = st.one_of(st.floats(-1, 4), st.just(np.nan))
 rows = st.lists(st.tuples(*[levels] * len(COLUMNS)), min_size=1, max_size=5)

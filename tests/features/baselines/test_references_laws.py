@@ -11,7 +11,7 @@ from features import feature_table
 from features.baselines import Model, predict
 from features.baselines.reference_choice import check_durations, choose_reference
 from features.baselines.references import ENERGIES, NEAREST, SAME_SPEED, relative_names, relative_to, virtual_references
-from features.fault_classes import EVIDENCE
+from features.table.class_features import EVIDENCE
 from features.table.indicators import Orders
 from features.table.recording_features import recording_table
 from features.table.recording_speeds import recording_numbers

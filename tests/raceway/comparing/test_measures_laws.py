@@ -8,7 +8,6 @@ from raceway.comparing.contrast import auc, quantiles
 from scipy.signal import resample_poly
 from sklearn.metrics import roc_auc_score
 
-from features.fault_classes import CLASSES
 from features.table.indicators import Orders
 from gen.corpus import FAULTS
 from raceway.comparing.measures import MEASURES, NAMES, compute_measures, limit_band
@@ -53,7 +52,7 @@ def test_a_class_has_its_measures_and_no_others(fault):
         if not measure.belongs_to(fault):
             assert np.isnan(found[measure.name])
     assert np.isfinite(found["kurtosis"])
-    assert all(name in CLASSES for measure in MEASURES for name in measure.classes)
+    assert all(name in FAULTS for measure in MEASURES for name in measure.classes)
 
 
 def test_shorter_pulses_are_more_impulsive():
