@@ -8,7 +8,8 @@ import xarray as xr
 
 from features.table.channels import channels_of
 from gen.corpus import LIBRARY_LOCK, check_result, whole_or_not_at_all
-from gen.corpus.schema import with_own_codes
+from gen.corpus.fault_classes import further_classes
+from gen.corpus.schema import with_file_codes, with_own_codes
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
@@ -28,6 +29,8 @@ def write_table(table: xr.Dataset, path: Path | str) -> None:
     """
     path = Path(path)
     check_destination(path)
+    if "fault" in table:
+        table = with_file_codes(table, further_classes(table["fault"].values))
     with whole_or_not_at_all(path) as temporary:
         WRITERS[path.suffix](table, temporary)
 

@@ -3,8 +3,8 @@
 A plug-in adds a row by an entry point of the group ``raceway.classes``, which has the name of the class. A row is loaded when it is first
 read, because a plug-in imports this module. `features.table.class_features` says which features tell a class.
 
-The code of a class is its place among the classes of this process. In a file, the classes of plug-ins that its records have follow the
-built-in ones. So a file does not depend on what else is installed, and whoever reads it translates.
+The code of a class is its place among the classes of this process. In the files of a corpus, the classes of plug-ins that the corpus has
+follow the built-in ones. So they do not depend on what else is installed, and whoever reads them translates.
 
 A ball spall strikes both races in each spin, so its fundamental line is twice the ball spin frequency ``bsf``.
 """
@@ -12,7 +12,7 @@ A ball spall strikes both races in each spin, so its fundamental line is twice t
 import functools
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -136,6 +136,19 @@ def families() -> tuple[FaultClass, ...]:
 def fundamentals() -> tuple[NominalLine, ...]:
     """Fundamental line of each of the `families`."""
     return tuple(row.lines[0] for row in families())
+
+
+def further_classes(codes: NDArray[Any]) -> list[str]:
+    """Classes of plug-ins among codes of this process."""
+    return [FAULTS[code] for code in range(len(BUILT_IN), len(FAULTS)) if (codes == code).any()]
+
+
+def file_codes(codes: NDArray[Any], further: Sequence[str]) -> tuple[NDArray[Any], dict[int, str]]:
+    """Codes of ``fault`` in a file, of those of this process, and their names there: ``further`` classes follow the built-in ones."""
+    names, stored = (*FAULTS[: len(BUILT_IN)], *further), codes.copy()
+    for code, name in enumerate(names):
+        stored[codes == FAULTS.index(name)] = code
+    return stored, {**dict(enumerate(names)), UNKNOWN_CODE: UNKNOWN}
 
 
 def own_codes(

@@ -147,7 +147,7 @@ def stored_records(described: Sequence[Path], parts: Sequence[Path], counts: Seq
     signal = _Signal(SIGNAL, of_signal, [records] if counts is None else counts, tuple(row), dtype)
     signal.packing = packing
     heads = [_head(source) for source in sources]
-    with _opened(sources[0]) as opened:
+    with _opened(sources[-1]) as opened:  # a part names the classes of those before it
         meanings = {name: attributes_of(stored) for name, stored in variables_of(opened.file).items()}
         columns = {name: _column(name, sources, heads, of) for name, of in meanings.items()}
         columns[SIGNAL] = xr.Variable(SIGNAL_DIMS, indexing.LazilyIndexedArray(signal), attributes)

@@ -15,23 +15,30 @@ from gen.corpus.disk import (
     write_text_durably,
     writing,
 )
+from gen.corpus.fault_classes import further_classes
 from gen.corpus.finishing import finish_corpus, finish_file
 from gen.corpus.manifest import RECIPE_NAME
 from gen.corpus.outputs import check_new
 from gen.corpus.part import PartRow, part_name, write_part
+from gen.corpus.schema import with_file_codes
 from gen.support.errors import CorpusError
 
 
 class NewCorpus:
-    """Corpus under way; ``facts`` are fields of its manifest, which can be completed until the end."""
+    """Corpus under way; ``facts`` are fields of its manifest, which can be completed until the end.
+
+    ``classes`` of plug-ins have codes in the order in which records have them, unless they are named before.
+    """
 
     def __init__(self, folder: Path, codec: Codec, facts: dict[str, Any]) -> None:
-        self.facts, self.rows = facts, list[PartRow]()
+        self.facts, self.rows, self.classes = facts, list[PartRow](), list[str]()
         self._parts = folder / "parts"
         self._codec: Codec = codec
 
     def write(self, records: xr.Dataset, name: str | None = None) -> None:
         """Write records in the layout of the corpus (undecoded) as the next part, with the next file name or another one."""
+        self.classes += [name for name in further_classes(records["fault"].values) if name not in self.classes]
+        records = with_file_codes(records, self.classes)
         self.rows.append(write_part(records, self._parts / (name or part_name(len(self.rows))), self._codec))
 
 

@@ -5,14 +5,14 @@
 ``provenance`` (origin of the record). Features may use the signal and ``operating`` variables only.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gen.corpus.fault_classes import FAULT_NAMES, own_codes
+from gen.corpus.fault_classes import FAULT_NAMES, file_codes, own_codes
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
@@ -182,9 +182,19 @@ def with_own_codes(records: "xr.Dataset", place: object) -> "xr.Dataset":
         return records  # refused by the check of the format
     if names == FAULT_NAMES:
         return records
+    return _with_codes(records, own_codes(fault.values, names, place, records.attrs), FAULT_NAMES)
+
+
+def with_file_codes(records: "xr.Dataset", further: Sequence[str]) -> "xr.Dataset":
+    """Records with the codes that ``fault`` has in a file whose ``further`` classes of plug-ins follow the built-in ones."""
+    codes, names = file_codes(records["fault"].values, further)
+    return records if names == FAULT_NAMES else _with_codes(records, codes, names)
+
+
+def _with_codes(records: "xr.Dataset", codes: NDArray[Any], names: Mapping[int, str]) -> "xr.Dataset":
+    fault = records["fault"]
     (variable,) = (variable for variable in SCHEMA if variable.name == "fault")
-    codes = own_codes(fault.values, names, place, records.attrs)
-    return records.assign(fault=(fault.dims, codes, fault.attrs | variable_attributes(variable)))
+    return records.assign(fault=(fault.dims, codes, fault.attrs | variable_attributes(variable._replace(flags=names))))
 
 
 def add_class_names(records: "xr.Dataset") -> None:

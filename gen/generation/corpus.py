@@ -36,9 +36,11 @@ from gen.corpus import (
     write_part,
     writing,
 )
-from gen.generation.identity import failures_of, made_by, part_file
+from gen.corpus.schema import with_file_codes
+from gen.generation.identity import added_classes, failures_of, made_by, part_file
 from gen.generation.record_sources import sources_sha256
 from gen.generation.target import check_parts, check_same, claim, part_numbers, prepare, records_of, remove_other_parts
+from gen.mechanisms.mechanism import plugins_of
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.display import Shown
 from gen.support.errors import ClusterError, CorpusError, RecipeError
@@ -216,7 +218,7 @@ def _all_parts(
         here = isinstance(workers, int)
         if here and (sentence := too_many(workers)) is not None:
             notice(sentence)
-        task = partial(_write, recipe, folder.resolve(), _code())
+        task = partial(_write, recipe, folder.resolve(), _code(recipe))
         with connected(min(workers, len(missing)) if here else workers, _SIMULATOR) as place:
             if here:
                 from gen.generation.compilation import compile_kernels  # loaded while the processes start
@@ -229,9 +231,9 @@ def _all_parts(
     return [outcomes[part] for part in parts]
 
 
-def _code() -> str:
-    """Sources and plug-ins of this process that make records."""
-    plugins = (f"{name} {number}" for name, number in plugin_versions("mechanisms").items())
+def _code(recipe: Recipe) -> str:
+    """Sources and plug-ins of this process that make records of a recipe."""
+    plugins = (f"{name} {number}" for name, number in plugin_versions("mechanisms", plugins_of(recipe)).items())
     return ", ".join((sources_sha256()[:12], *plugins))
 
 
@@ -243,15 +245,17 @@ def _write(recipe: Recipe, folder: Path, code: str, part: int) -> Outcome:
     ClusterError
         If this process has other sources than the one that asks for the part.
     """
-    if _code() != code:
+    own = _code(recipe)
+    if own != code:
         raise ClusterError(
-            f"worker {platform.node()}: has other sources of raceway ({_code()}) than this process ({code}); install the same version on "
+            f"worker {platform.node()}: has other sources of raceway ({own}) than this process ({code}); install the same version on "
             "every worker."
         )
     from gen.generation.make_part import make_part  # the simulator, which takes a second and a half to load
 
     made = make_part(recipe, recipe.records_of_part(part))
     path = folder / "parts" / part_file(recipe, part)
+    made = with_file_codes(made, added_classes(recipe))
     row = write_part(made, path, recipe.storage.codec) if made.sizes["record"] else None
     return Outcome(row, failures_of(made))
 

@@ -3,7 +3,6 @@
 It loads nothing of the simulator, so that ``generate`` refuses within a second, and starts its processes while it loads the rest.
 """
 
-import functools
 import json
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -13,8 +12,9 @@ import xarray as xr
 
 from gen.corpus import facts_as_attributes, part_name
 from gen.generation.record_sources import sources_sha256
-from gen.recipe import Recipe, recipe_hash
-from gen.support.plugins import plugin_versions
+from gen.mechanisms.mechanism import plugins_of
+from gen.recipe import Recipe, class_of, recipe_hash
+from gen.support.plugins import plugin_versions, plugins
 
 
 def failures_of(part: xr.Dataset) -> tuple[str, ...]:
@@ -43,12 +43,17 @@ def made_by(recipe: Recipe) -> dict[str, Any]:
         "recipe": recipe.name,
         "recipe_sha256": recipe_hash(recipe),
         "sources_sha256": sources_sha256(),
-        "versions": library_versions(),
+        "versions": library_versions(recipe),
     }
 
 
-@functools.cache
-def library_versions() -> dict[str, str]:
-    """Versions of the libraries and plug-ins that determine the bytes of a part; all mechanisms and classes stand in each."""
+def library_versions(*recipes: Recipe) -> dict[str, str]:
+    """Versions of the libraries, and of the plug-ins with mechanisms and classes of some recipes, that determine the bytes of a part."""
     libraries = {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
-    return libraries | plugin_versions("classes") | plugin_versions("mechanisms")
+    added = [name for recipe in recipes for name in added_classes(recipe)]
+    return libraries | plugin_versions("classes", added) | plugin_versions("mechanisms", plugins_of(*recipes))
+
+
+def added_classes(recipe: Recipe) -> list[str]:
+    """Classes of plug-ins that a recipe has, in the order of their codes in its corpus."""
+    return [name for name in plugins("classes") if name in map(class_of, recipe.faults)]

@@ -13,7 +13,8 @@ from gen.corpus import DRAWS, LIFE, make_dataset
 from gen.corpus.simulated import with_values
 from gen.measurement import gains
 from gen.measurement.measure import Measured, counts_per_unit
-from gen.mechanisms import mechanism_labels as mechanisms
+from gen.mechanisms.mechanism import plugins_of
+from gen.mechanisms.mechanism_labels import label_values, labels_with
 from gen.recipe import Recipe
 from gen.scenarios import scenario_texts, variables
 from gen.simulation import truth
@@ -22,7 +23,7 @@ LABELS = (
     *variables.LABELS,
     *truth.LABELS,
     *gains.LABELS,
-    *mechanisms.LABELS,
+    *labels_with(),
     *with_values(step_error=None, draws=None),
 )
 """Variables of every simulated record, those of all corpora among them."""
@@ -42,7 +43,7 @@ def part_dataset(
     lives = [life for one in scenarios if (life := one.origin.life) is not None]
     life_labels = LIFE if lives or recipe.life is not None else ()
     of_mechanisms = [
-        mechanisms.label_values(one.recipe, record.chain_labels) for one, record in zip(scenarios, records, strict=True)
+        label_values(one.recipe, record.chain_labels) for one, record in zip(scenarios, records, strict=True)
     ]
     # each stage gives the labels of what it knows
     columns: dict[str, ArrayLike] = {
@@ -56,7 +57,9 @@ def part_dataset(
         (gains.LABELS, records),
     ):
         columns |= {label.name: label.column(rows) for label in labels}
-    columns |= {label.name: [values[label.name] for values in of_mechanisms] for label in mechanisms.LABELS}
+    # 0 in a record without the mechanism
+    mechanism_labels = labels_with(plugins_of(recipe, *(one.recipe for one in scenarios)))
+    columns |= {label.name: [values.get(label.name, 0) for values in of_mechanisms] for label in mechanism_labels}
     per_unit, n_channels = counts_per_unit(recipe), len(recipe.recording.channels)
     # filled row by row, so that memory holds each signal once
     signal: Any = np.empty((len(records), n_channels, recipe.n_samples), np.float32 if per_unit is None else np.int16)
@@ -67,7 +70,7 @@ def part_dataset(
         recipe.recording.sample_rate_hz,
         tuple(channel.name for channel in recipe.recording.channels),
         columns,
-        extra=LABELS + life_labels,
+        extra=LABELS + mechanism_labels + life_labels,
         counts_per_unit=per_unit,
         attributes={
             "title": f"Records of recipe {recipe.name}",

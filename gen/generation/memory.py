@@ -124,7 +124,9 @@ def simulate(scenarios: Sequence[Scenario]) -> xr.Dataset:
         raise RecipeError(f"scenarios: {type(scenarios).__name__} given; give a list of scenarios.")
     made = made_from([*scenarios])
     part = labelled(scenarios[0].recipe, made)
-    return _joined([part], failures_of(part), {"versions": json.dumps(library_versions())})
+    return _joined(
+        [part], failures_of(part), {"versions": json.dumps(library_versions(*(one.recipe for one in scenarios)))}
+    )
 
 
 def _made(recipe: Recipe, workers: int) -> xr.Dataset:

@@ -26,7 +26,7 @@ from gen.corpus import (
 from gen.corpus.numbering import new_numbers
 from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
 from gen.generation.corpus import facts_of
-from gen.generation.identity import part_attributes, part_file
+from gen.generation.identity import added_classes, part_attributes, part_file
 from gen.generation.labels import LABELS
 from gen.measurement.measure import LARGEST_COUNT
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
@@ -85,6 +85,7 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
         facts = facts_of(recipe, {"seed": None, "records": None})
         facts |= {"publication": recipe.publication.dated(), "failures": failures}
     with new_corpus(target, codec=codec, recipe_text=text, **facts) as corpus:
+        corpus.classes += [] if recipe is None else added_classes(recipe)
         for part in np.unique(parts):
             corpus.write(stored.isel(record=parts == part), None if recipe is None else part_file(recipe, int(part)))
     return target

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from gen.corpus.schema import Variable
-from gen.drawing import Probability, Section, composed
+from gen.drawing import Probability, Section, composed, sections_with_places
 from gen.support.plugins import plugin, plugins
 
 FloatArray = NDArray[np.floating]
@@ -34,6 +34,13 @@ def with_plugins(base: type[Base], built_in: tuple[type[Base], ...]) -> tuple[ty
     """Classes that are built in, and those of plug-ins with the same base."""
     added = (plugin("mechanisms", name, type) for name in plugins("mechanisms"))
     return *built_in, *(mechanism for mechanism in added if issubclass(mechanism, base))
+
+
+def plugins_of(*recipes: Section) -> list[str]:
+    """Names of the plug-ins whose mechanisms some recipes have."""
+    added = {name: plugin("mechanisms", name, type) for name in plugins("mechanisms")}
+    sections = [section for recipe in recipes if added for _, section in sections_with_places(recipe)]
+    return [name for name, mechanism in added.items() if any(isinstance(one, mechanism) for one in sections)]
 
 
 def section_with(name: str, module: str, base: type[Section], mechanisms: Iterable[type[Mechanism]]) -> Any:

@@ -1,5 +1,6 @@
 """Variables of the corpus that tell what mechanisms did to a record."""
 
+from collections.abc import Container
 from typing import Any
 
 from gen.corpus.schema import Variable
@@ -16,17 +17,18 @@ for _name in plugins("mechanisms"):
             f"raceway.mechanisms: {_name} is no BearingFault, LockedSource, SensorFault or MachineCondition, so it would do nothing."
         )
 
-LABELS: tuple[Variable, ...] = tuple(
-    {label.name: label for mechanism in (*KINDS, *LOCKED, *CHAIN) for label in mechanism.labels}.values()
-)
-"""Of faults, of the background, then of the measuring chain."""
+
+def labels_with(added: Container[str] = ()) -> tuple[Variable, ...]:
+    """Of faults, of the background, then of the measuring chain: all that are built in, and those ``added`` by some plug-ins."""
+    absent = [plugin("mechanisms", name, type) for name in plugins("mechanisms") if name not in added]
+    mechanisms = (one for one in (*KINDS, *LOCKED, *CHAIN) if one not in absent)
+    return tuple({label.name: label for one in mechanisms for label in one.labels}.values())
 
 
 def label_values(recipe: Any, chain: dict[str, float]) -> dict[str, float]:
-    """Values of all ``LABELS`` of a drawn recipe, 0 for those of mechanisms that it does not have; ``chain`` has those of the chain.
+    """Values of the labels of the mechanisms that a drawn recipe has; ``chain`` has those of the measuring chain.
 
     A later source may change a label of an earlier one.
     """
     there = *recipe.faults[0].components, *locked_of(recipe)
-    known = {label.name: label.column([one])[0] for one in there for label in one.labels} | chain
-    return {label.name: known.get(label.name, 0) for label in LABELS}
+    return {label.name: label.column([one])[0] for one in there for label in one.labels} | chain

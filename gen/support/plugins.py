@@ -52,10 +52,9 @@ def plugin(group: str, name: str, of_type: type) -> Any:
     return loaded
 
 
-def plugin_versions(group: str, names: Container[str] | None = None) -> dict[str, str]:
-    """Versions of the distributions with some of the names of a group, by default all."""
-    entries = plugins(group)
-    chosen = (entries[name].dist for name in entries if names is None or name in names)
+def plugin_versions(group: str, names: Container[str]) -> dict[str, str]:
+    """Versions of the distributions with some of the names of a group."""
+    chosen = (entry.dist for name, entry in plugins(group).items() if name in names)
     return {dist.name: dist.version for dist in chosen if dist is not None}
 
 

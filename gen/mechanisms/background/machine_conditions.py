@@ -16,9 +16,9 @@ from gen.mechanisms.background.source import FloatArray, LockedSource, Streams
 from gen.mechanisms.mechanism import with_plugins
 
 CONDITIONS = with_plugins(MachineCondition, (MachineCondition,))
-_KINDS = [kind for one in CONDITIONS for kind in get_args(one.model_fields["kind"].annotation)]
+_KINDS = (*get_args(MachineCondition.model_fields["kind"].annotation), "other")
 MACHINE_CONDITIONS: Mapping[int, str] = {**dict(enumerate(("sound", *_KINDS))), UNKNOWN_CODE: UNKNOWN}
-"""Classes of ``machine_condition``."""
+"""Classes of ``machine_condition``; a condition of a plug-in is another one."""
 
 if TYPE_CHECKING or len(CONDITIONS) == 1:
     Condition = MachineCondition
@@ -29,7 +29,10 @@ else:
 def label_of(kind: Callable[[Any], str]) -> Variable:
     """The label ``machine_condition`` of a source, from the kind of condition that it stands for."""
     meaning = "condition of the machine, whatever that of its bearing"
-    code = lambda one: 1 + _KINDS.index(kind(one))  # noqa: E731
+
+    def code(source: Any) -> int:
+        return 1 + _KINDS.index(kind(source) if kind(source) in _KINDS else "other")
+
     return Variable("machine_condition", "i1", "1", "label", meaning, code, MACHINE_CONDITIONS)
 
 
