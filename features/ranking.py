@@ -9,7 +9,7 @@ import xarray as xr
 from features.baselines.inspection import permutation_losses
 from features.baselines.records import check_classes, check_table, features_of, labelled_records
 from features.baselines.tracks import track_splits
-from features.table.indicators import GROUPS
+from features.table.definitions import ALL_GROUPS
 
 IMPORTANCE_ESTIMATOR = "extra_trees"
 
@@ -42,7 +42,7 @@ def rank_features(
         If the table has one class, or too few specimens for the folds.
     """
     check_table(table)
-    held = [group for group in GROUPS if group in table["group"].values] if groups is None else groups
+    held = [group for group in ALL_GROUPS if group in table["group"].values] if groups is None else groups
     records = labelled_records(table, features_of(table, held))
     check_classes(records)
     splits = track_splits(records, records.fault, "specimen", folds, seed)

@@ -23,7 +23,7 @@ from features.baselines.names import DEFAULT_ESTIMATOR
 from features.table.durations import DURATION
 from gen.support.errors import CorpusError
 from gen.support.sources import hash_sources
-from raceway.console.options import USUAL, Team
+from raceway.console.options import USUAL, USUAL_ANALYSIS, Analysis, Team
 from raceway.console.progress_bar import notice, progress
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ _LIBRARIES = ("scikit-learn", "skops", "numpy", "scipy", "numba")  # whose versi
 
 
 def train_and_score(
-    tables: Sequence["xr.Dataset"], estimator: str, team: Team = USUAL
+    tables: Sequence["xr.Dataset"], estimator: str, team: Team = USUAL, analysis: Analysis = USUAL_ANALYSIS
 ) -> tuple["Model", "Scores | None"]:
     """Model trained on a feature table without its test split, and its scores on that split, with progress.
 
@@ -53,7 +53,7 @@ def train_and_score(
     CorpusError
         If the training has only one class, or the table lacks features.
     """
-    from features.baselines import Model
+    from features.baselines import DEFAULT_GROUPS, Model
     from gen.corpus import SPLITS
 
     def trained(some: "xr.Dataset") -> "tuple[Model, Scores | None]":
@@ -62,7 +62,8 @@ def train_and_score(
         whole = not test.any() or test.all()
         with progress("training", "fits") as report:
             workers = team.options(len(test))["workers"]
-            model = Model(estimator).fit(some if whole else some.isel(record=~test), workers=workers, progress=report)
+            model = Model(estimator, groups=analysis.with_groups(DEFAULT_GROUPS))
+            model.fit(some if whole else some.isel(record=~test), workers=workers, progress=report)
         return model, None if whole else model.score(some.isel(record=test))
 
     (model, scores), *shorter = map(trained, tables)

@@ -87,10 +87,10 @@ def made(installed, tmp_path_factory):
         "validate corpus",
         "info corpus --json",
         "replay corpus --record 5",
-        "features corpus -o features.nc",
-        "train corpus -o model.skops",
+        "features corpus --group crossings -o features.nc",
+        "train corpus --group crossings -o model.skops",
         "evaluate corpus --model model.skops",
-        "benchmark corpus -o report --estimator envelope_rule --folds 2",
+        "benchmark corpus -o report --group crossings --estimator envelope_rule --folds 2",
         "explore corpus -o explore.html",
         "import plain recorded -o imported --window 0.2",
         "diagnose recorded/brinelled-6205-1700.npy --rate 12000 --bearing 6205 --rpm 1700 --unit m/s2 --model model.skops -o page.html",
@@ -110,6 +110,7 @@ def test_a_fault_class_of_a_plugin_goes_all_the_way_to_scores_and_pages(made):
     facts = json.loads(said["info corpus --json"])
     assert facts["classes"] == {"healthy": 6, "inner": 6, "brinelled": 6}
     assert facts["versions"]["raceway-example"] == "0.1"
+    assert "crossings" in (folder / "report" / "results.json").read_text()
     assert "\nbrinelled               0      0          6" in said["evaluate corpus --model model.skops"]
     for page in ("report/report.html", "corpus/README.md", "page.html"):
         assert "brinelled" in (folder / page).read_text()
@@ -134,19 +135,41 @@ def test_without_the_plugin_a_sentence_names_it(made):
 
 
 def test_codes_of_classes_are_those_of_the_file(made, installed, tmp_path):
-    """A class that comes before the one in the file moves the code of this one in the process."""
+    """A class that comes before the one in the file moves the code of this one in the process, and nothing in a corpus."""
     folder, said = made
+    index, part = folder / "corpus" / "index.nc", folder / "corpus" / "parts" / "part-00000.nc"
+    before = index.read_bytes(), part.read_bytes()
+    part.unlink()
     other = distribution(tmp_path, "other", "classes", "abraded = raceway_example:BRINELLED")
     lines = [
+        "generate dented.yaml -o corpus",
         "info corpus --json",
         "validate corpus",
         "evaluate corpus --model model.skops",
-        "generate dented.yaml -o corpus",
     ]
-    info, sound, scores, completed = run(folder, lines, installed, other)
-    assert json.loads(info[1])["classes"] == json.loads(said[lines[0]])["classes"]
-    assert (sound[1], scores[1]) == (said["validate corpus"], said[lines[2]])
-    assert "other none; other 1.0 is installed" in completed[1]
+    _, info, sound, scores = run(folder, lines, installed, other)
+    assert (index.read_bytes(), part.read_bytes()) == before
+    assert json.loads(info[1])["classes"] == json.loads(said["info corpus --json"])["classes"]
+    assert (sound[1], scores[1]) == (said["validate corpus"], said["evaluate corpus --model model.skops"])
+
+
+def test_a_plugin_that_nothing_names_changes_no_byte(installed, tmp_path):
+    recipe = RECIPE.replace("brinelled", "outer").partition("sensor_faults")[0]
+    for name, plugins in (("with", [installed]), ("without", [])):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "plain.yaml").write_text(recipe)
+        lines = [
+            "generate plain.yaml -o corpus",
+            "features corpus -o features.nc",
+            "copy corpus -o copy.nc",
+        ]
+        assert {code for code, _ in run(tmp_path / name, lines, *plugins)} <= {0, None}
+    first, second = (
+        {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+        for folder in (tmp_path / "with", tmp_path / "without")
+    )
+    assert len(first) >= 8
+    assert first == second
 
 
 def test_a_plugin_that_cannot_be_loaded_is_named_and_the_others_work(tmp_path):

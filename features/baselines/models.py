@@ -41,7 +41,7 @@ from features.baselines.scores import Scores, score
 from features.table.band import DEFAULT_BAND, Band, band_of
 from features.table.channels import channels_of
 from features.table.corpus_features import feature_table
-from features.table.definitions import GROUPS
+from features.table.definitions import ALL_GROUPS, GROUPS
 from features.table.durations import durations_of
 from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS, UNKNOWN_CODE, check_result, corpus_name
@@ -159,7 +159,11 @@ class Model(Shown):
         ValueError
             For an unknown baseline.
         """
-        table = _feature_table(data, GROUPS) if _holds_signals(data) else cast("xr.Dataset | Waveforms", data)
+        table = (
+            _feature_table(data, [*dict.fromkeys((*GROUPS, *self.groups))])
+            if _holds_signals(data)
+            else cast("xr.Dataset | Waveforms", data)
+        )
         if isinstance(table, xr.Dataset) and len(channels_of(table)) > 1:
             raise CorpusError(f"{title_of(table)}: a model is trained on one channel; give the feature table of one.")
         if isinstance(table, Waveforms) and isinstance(self.classifier, str):
@@ -339,11 +343,11 @@ def _feature_table(
     corpus: Path | str | xr.Dataset, groups: Sequence[str], band: tuple[float, float] = DEFAULT_BAND
 ) -> xr.Dataset:
     """Feature table of a corpus."""
-    unknown = [group for group in groups if group not in GROUPS]
+    unknown = [group for group in groups if group not in ALL_GROUPS]
     if unknown:
         message = (
             f"{corpus_name(corpus)}: the model takes features of the group {unknown[0]!r}, and the groups are "
-            f"{', '.join(GROUPS)}; train the model again."
+            f"{', '.join(ALL_GROUPS)}; train the model again."
         )
         raise CorpusError(message)
     return feature_table(corpus, groups, band=band)

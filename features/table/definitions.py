@@ -193,8 +193,9 @@ _OF_EVERY_BAND = {
     "shape": (*_in_views(SHAPES), *RAW),
     "time": tuple(feature._replace(name=f"time_{feature.name}") for feature in TIMES),
 }
-BUILT_IN = ("lines", "shape", "bands", "time")
-GROUPS = (*BUILT_IN, *plugins("features"))
+GROUPS = ("lines", "shape", "bands", "time")
+"""Groups of a table for which none are named, so that no package that is installed changes it."""
+ALL_GROUPS = (*GROUPS, *plugins("features"))
 
 
 class FeatureGroup(NamedTuple):
@@ -219,15 +220,15 @@ def define_features(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -
     ValueError
         For a group that does not exist.
     """
-    unknown = [group for group in groups if group not in GROUPS]
+    unknown = [group for group in groups if group not in ALL_GROUPS]
     if unknown or isinstance(groups, str):
-        message = f"groups: {groups!r} is not a list of feature groups; choose from {', '.join(GROUPS)}."
+        message = f"groups: {groups!r} is not a list of feature groups; choose from {', '.join(ALL_GROUPS)}."
         raise ValueError(message)
     return tuple(feature for group in groups for feature in _features_of(group, band))
 
 
 def _features_of(group: str, band: Band) -> Iterable[Feature]:
-    if group not in BUILT_IN:
+    if group not in GROUPS:
         return (feature._replace(group=group) for feature in added_group(group).features)
     return _OF_EVERY_BAND.get(group) or _energies(band)
 

@@ -18,12 +18,12 @@ from raceway.console.options import (
     REFERENCE_MODEL,
     Analysis,
     Team,
-    analysis_options,
     corpus_argument,
     file_option,
     json_option,
     pages_option,
     speed_option,
+    training_options,
     worker_options,
 )
 from raceway.console.progress_bar import progress
@@ -109,7 +109,7 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 @click.option(
     "--seed", type=int, default=0, show_default=True, metavar="S", help="Seed of splits, classifiers and bootstrap."
 )
-@analysis_options
+@training_options
 @speed_option
 @worker_options
 @json_option
@@ -157,6 +157,9 @@ def benchmark(
         raise click.UsageError("--per-turn is for --waveforms")
     if [output, submit, check].count(None) != 2:
         raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
+    if analysis.groups and output is None:
+        raise click.UsageError("--group is for -o OUTDIR")
+    from features.baselines import DEFAULT_GROUPS
     from features.baselines import benchmark as run
     from features.baselines import check_submission, load_maker, write_submission
     from gen.corpus import result_folder
@@ -186,6 +189,9 @@ def benchmark(
     # a wrong model file is told before the features are computed
     loaded = {str(path or REFERENCE_MODEL): open_model(path)[0] for path in dict.fromkeys(models)}
     with result_folder(output):
+        groups = analysis.with_groups(DEFAULT_GROUPS)
+        of_models = [group for model in loaded.values() for group in model.groups]
+        analysis = analysis._replace(groups=analysis.with_groups(of_models))
         table = table_of(corpus, "off", team, analysis)
         # speeds are checked or corrected on other corpora, whose labels may be wrong
         others = [table_of(test, speed, team, analysis._replace(channel=None)) for test in tests]
@@ -201,6 +207,7 @@ def benchmark(
             if waveforms
             else [],
             "workers": team.options(table.sizes["record"])["workers"],
+            "groups": groups,
         }
         with progress("scoring", "scores") as report:
             results = run(table, others, **options, folds=folds, seed=seed, progress=report)

@@ -14,6 +14,7 @@ from raceway.console.options import (
     band_option,
     channels_option,
     file_option,
+    group_option,
     json_option,
     speed_option,
     worker_options,
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 @click.option("--list", "listed", is_flag=True, help="List the features with unit, range and meaning instead.")
 @channels_option
 @band_option
+@group_option
 @speed_option
 @worker_options
 @json_option
@@ -38,6 +40,7 @@ def features(
     listed: bool,
     channel: tuple[str, ...] | None,
     band: tuple[float, float] | None,
+    groups: tuple[str, ...],
     speed: "Speed",
     team: Team,
     as_json: bool,
@@ -64,7 +67,7 @@ def features(
 
     check_destination(output)
     one, *more = channel or (None,)
-    table = table_of(corpus, speed, team, Analysis(channel if more else one, band))
+    table = table_of(corpus, speed, team, Analysis(channel if more else one, band, groups))
     write_table(table, output)
     records, columns = table.sizes["record"], table.sizes["feature"]
     missing = table.attrs["records_with_missing_features"]
@@ -78,9 +81,9 @@ def features(
 
 
 def _list_features(analysis: Analysis, as_json: bool) -> None:
-    from features.table.definitions import define_features
+    from features.table.definitions import ALL_GROUPS, define_features
 
-    defined = define_features(band=analysis.options()["band"])
+    defined = define_features(ALL_GROUPS, analysis.options()["band"])
     if as_json:
         show.as_json({"features": [feature._asdict() for feature in defined]})
         return

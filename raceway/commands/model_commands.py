@@ -12,13 +12,13 @@ from raceway.console.options import (
     A_CORPUS,
     Analysis,
     Team,
-    analysis_options,
     channels_option,
     corpus_argument,
     file_option,
     json_option,
     model_option,
     speed_option,
+    training_options,
     worker_options,
 )
 from raceway.console.progress_bar import notice
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     metavar="NAME",
     help=f"One of {', '.join(BASELINES)}.",
 )
-@analysis_options
+@training_options
 @worker_options
 @json_option
 def train(
@@ -72,7 +72,7 @@ def train(
 
     table = table_of(corpus, "off", team, analysis)
     notice_of_unknown(corpus, count_unknown(table))
-    model, scores = train_and_score([table], estimator, team)
+    model, scores = train_and_score([table], estimator, team, analysis)
     model.save(output)
     if as_json:
         names = ("records", "classes", "groups")
@@ -141,7 +141,7 @@ def evaluate(
     if reference is not None:
         check_durations(corpus, reference)
     loaded, source = open_model(model)
-    analysis = Analysis(channel, loaded.band)
+    analysis = Analysis(channel, loaded.band, tuple(loaded.groups))
     table = table_of(corpus, speed, team, analysis)
     healthy = table if reference == corpus else reference and table_of(reference, speed, team, analysis)
     scores = loaded.score(table, reference=healthy)

@@ -25,12 +25,13 @@ def table_of(
     """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
     from features import feature_table
     from features.table.corpus_features import band_warnings
+    from features.table.definitions import GROUPS
     from features.table.recording_speeds import speed_warnings
     from gen.corpus import read_manifest
 
     options = team.options(read_manifest(corpus).records) | analysis.options()
     with progress("computing features", "parts") as report:
-        table = feature_table(corpus, speed=speed, **options, progress=report)
+        table = feature_table(corpus, analysis.with_groups(GROUPS), speed=speed, **options, progress=report)
     for sentence in (*band_warnings(table), *speed_warnings(table)):
         notice(f"warning: {sentence}")
     return table

@@ -1,6 +1,6 @@
 """Arguments and options that several commands share; the place for the result is checked before any work is done."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
 from typing import Any, NamedTuple, cast
@@ -78,13 +78,13 @@ _scheduler: Decorator = click.option(
 
 
 def gathered(name: str, kind: Any, *options: Decorator) -> Decorator:
-    """Make options whose values, named as the fields of the named tuple ``kind``, the command gets as one argument of a name."""
+    """Make options whose values, named as fields of the named tuple ``kind``, the command gets as one argument of a name."""
 
     def decorator(command: Any) -> Any:
         @wraps(command)
         def gather(**values: Any) -> Any:
             # what belongs together stays together in the command
-            one = kind(*(values.pop(field) for field in kind._fields))
+            one = kind(**{field: values.pop(field) for field in kind._fields if field in values})
             return command(**{name: one}, **values)
 
         decorated = gather
@@ -114,10 +114,15 @@ worker_options = gathered("team", Team, _workers, _scheduler)
 
 
 class Analysis(NamedTuple):
-    """Values of the options ``--channel`` and ``--band``; None for the first channel and for the default band."""
+    """Values of ``--channel``, ``--band`` and ``--group``; None for the first channel and for the default band."""
 
     channel: str | tuple[str, ...] | None = None
     band: tuple[float, float] | None = None
+    groups: tuple[str, ...] = ()
+
+    def with_groups(self, groups: Iterable[str]) -> tuple[str, ...]:
+        """Some groups of features, then those of ``--group``."""
+        return tuple(dict.fromkeys((*groups, *self.groups)))
 
     def options(self) -> dict[str, Any]:
         """Arguments ``channel`` and ``band`` of a function of features."""
@@ -172,7 +177,25 @@ band_option: Decorator = click.option(
 )
 
 
+def _known_groups(_context: click.Context, _option: click.Parameter, groups: tuple[str, ...]) -> tuple[str, ...]:
+    if groups:
+        from features.table.definitions import ALL_GROUPS
+
+        if unknown := [group for group in groups if group not in ALL_GROUPS]:
+            raise click.BadParameter(f"{unknown[0]!r} is no group of features; choose from {', '.join(ALL_GROUPS)}")
+    return groups
+
+
+group_option: Decorator = click.option(
+    "--group",
+    "groups",
+    multiple=True,
+    metavar="NAME",
+    callback=_known_groups,
+    help="Take this group of features too (raceway features --list), such as one of a plug-in. Repeatable.",
+)
 analysis_options = gathered("analysis", Analysis, channel_option, band_option)
+training_options = gathered("analysis", Analysis, channel_option, band_option, group_option)
 
 where_option: Decorator = click.option(
     "--where",

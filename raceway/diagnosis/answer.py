@@ -23,7 +23,7 @@ from features.baselines.predictions import DAMAGED, UNSURE, Predictions
 from features.baselines.references import with_energies
 from features.table.band import Band
 from features.table.channels import joined_channels
-from features.table.definitions import GROUPS
+from features.table.definitions import ALL_GROUPS
 from features.table.indicators import feature_names
 from features.table.recording_features import recording_table, windows_of
 from gen.corpus import FAULTS, UNKNOWN_CODE
@@ -87,7 +87,7 @@ def diagnose_recording(
     CorpusError
         If a recording has values that are not finite, or the model cannot take its features or the healthy recording.
     """
-    if not set(model.groups) <= set(GROUPS) or not set(model.features) <= set(
+    if not set(model.groups) <= set(ALL_GROUPS) or not set(model.features) <= set(
         feature_names(model.groups, Band(*model.band))
     ):
         raise CorpusError(f"{model.name}: the model takes features that this version does not make; train it again.")
