@@ -27,6 +27,7 @@ faults:
   - {kind: inner, width_mm: 0.8}
   - {kind: brinelled, width_mm: 0.8, n_spalls: 3}
 sensor_faults: {stuck_bits: {probability: 1, step_m_s2: 0.01}}
+background: {hiss: {probability: 1, level_db: 6}}
 """
 RUN = """
 import contextlib, io, json, sys

@@ -15,7 +15,7 @@ from scipy.fft import irfft, rfft
 
 from gen.measurement.mixing import Lines, Parts, mix
 from gen.measurement.rig import RigFilters
-from gen.mechanisms.background.background import locked_of
+from gen.mechanisms.background.background import machine_sources_of
 from gen.physics.elementary import power
 from gen.physics.profile import share_at
 from gen.scenarios import Scenario
@@ -95,7 +95,7 @@ def _noise(scenario: Scenario, rig: RigFilters, rng: np.random.Generator) -> Com
 
 
 def _others(scenario: Scenario, rig: RigFilters, angles: FloatArray, rng: np.random.Generator) -> ComplexArray:
-    """Spectrum behind the paths of impulses at random times and of sources locked to the shaft, shape (channel, frequency) [1]."""
+    """Spectrum behind the paths of impulses and of other sources in the machine, shape (channel, frequency) [1]."""
     spectrum, background = np.zeros(rig.paths.shape, np.complex64), scenario.recipe.background
     if background.impulses or background.knocks:
         hits = np.zeros(len(angles), np.float32)  # strength at the samples where they start
@@ -104,7 +104,7 @@ def _others(scenario: Scenario, rig: RigFilters, angles: FloatArray, rng: np.ran
         if background.knocks is not None:
             background.knocks.add_to(hits, angles, rng, scenario.stream("phase of knocks", "rig"))
         spectrum += rfft(hits, rig.n) * rig.impulse_paths
-    for source in locked_of(scenario.recipe):
+    for source in machine_sources_of(scenario.recipe):
         for vibration in source.vibrations(angles, rig.fs, partial(scenario.stream, source.place)):
             spectrum += rig.source_in_channels(vibration)
     return spectrum

@@ -4,7 +4,7 @@ from collections.abc import Container
 from typing import Any
 
 from gen.corpus.schema import Variable
-from gen.mechanisms.background.background import LOCKED, locked_of
+from gen.mechanisms.background.background import MACHINE_SOURCES, machine_sources_of
 from gen.mechanisms.background.machine_conditions import CONDITIONS
 from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.mechanisms.faults.kinds import KINDS
@@ -12,16 +12,16 @@ from gen.support.errors import RacewayError
 from gen.support.plugins import plugin, plugins
 
 for _name in plugins("mechanisms"):
-    if plugin("mechanisms", _name, type) not in (*KINDS, *LOCKED, *CHAIN, *CONDITIONS):
+    if plugin("mechanisms", _name, type) not in (*KINDS, *MACHINE_SOURCES, *CHAIN, *CONDITIONS):
         raise RacewayError(
-            f"raceway.mechanisms: {_name} is no BearingFault, LockedSource, SensorFault or MachineCondition, so it would do nothing."
+            f"raceway.mechanisms: {_name} is no BearingFault, MachineSource, SensorFault or MachineCondition, so it would do nothing."
         )
 
 
 def labels_with(added: Container[str] = ()) -> tuple[Variable, ...]:
     """Of faults, of the background, then of the measuring chain: all that are built in, and those ``added`` by some plug-ins."""
     absent = [plugin("mechanisms", name, type) for name in plugins("mechanisms") if name not in added]
-    mechanisms = (one for one in (*KINDS, *LOCKED, *CHAIN) if one not in absent)
+    mechanisms = (one for one in (*KINDS, *MACHINE_SOURCES, *CHAIN) if one not in absent)
     return tuple({label.name: label for one in mechanisms for label in one.labels}.values())
 
 
@@ -30,5 +30,5 @@ def label_values(recipe: Any, chain: dict[str, float]) -> dict[str, float]:
 
     A later source may change a label of an earlier one.
     """
-    there = *recipe.faults[0].components, *locked_of(recipe)
+    there = *recipe.faults[0].components, *machine_sources_of(recipe)
     return {label.name: label.column([one])[0] for one in there for label in one.labels} | chain

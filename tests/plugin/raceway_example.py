@@ -1,4 +1,4 @@
-"""A plug-in of Raceway with one of each: fault class, fault, sensor fault, feature group, importer and command."""
+"""A plug-in of Raceway with one of each: fault class, fault, source, sensor fault, feature group, importer and command."""
 
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -10,6 +10,7 @@ from features.table.definitions import Feature, FeatureGroup
 from gen.corpus.fault_classes import BPFO, FaultClass
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
+from gen.mechanisms.background.source import MachineSource
 from gen.mechanisms.chain.sensor_fault import SensorFault
 from gen.mechanisms.faults.race_spalls import Spalls
 from gen.physics.catalogue import CATALOGUE
@@ -33,6 +34,22 @@ class Brinelled(Spalls):
         dents = super().draw(of)
         angles = tuple(360 / of.bearing.n_balls * number for number in range(len(dents.width_mm)))
         return dents.model_copy(update={"angle_deg": angles})
+
+
+# a source that the shaft does not drive
+class Hiss(MachineSource):
+    """Noise of a leak in the machine."""
+
+    place = "hiss"
+
+    probability: Probability
+    """Share of the rigs with a leak."""
+    level_db: Distribution = within(-80, 40)
+    """Rms of the noise relative to that of the background noise."""
+
+    def vibrations(self, angles: np.ndarray, fs: float, stream: Any) -> list[np.ndarray]:
+        """Noise of the record."""
+        return [10 ** (self.si()["level"] / 20) * stream().standard_normal(len(angles))]
 
 
 # a fault of the measuring chain, with a label

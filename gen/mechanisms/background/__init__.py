@@ -14,5 +14,5 @@ looseness          machines whose support lifts off the ground
 background         all of them, as a recipe has them and as they are drawn
 ================== =============================================================
 
-A further source is one file, and its line in ``section.LOCKED``.
+A further source is one file, and its line in ``background.MACHINE_SOURCES``.
 """

@@ -19,11 +19,11 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.background.source import FloatArray, LockedSource, Streams
+from gen.mechanisms.background.source import FloatArray, MachineSource, Streams
 from gen.support.units import decibel_to_ratio
 
 
-class GearMesh(LockedSource):
+class GearMesh(MachineSource):
     """A gear on the shaft: lines at multiples of its tooth mesh, with sidebands of the shaft and of the mating gear."""
 
     place = "gear_mesh"

@@ -17,11 +17,11 @@ import numpy as np
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.background.machine_conditions import label_of
-from gen.mechanisms.background.source import FloatArray, LockedSource, Streams
+from gen.mechanisms.background.source import FloatArray, MachineSource, Streams
 from gen.support.units import STANDARD_GRAVITY, decibel_to_ratio
 
 
-class Looseness(LockedSource):
+class Looseness(MachineSource):
     """A support that the shaft lifts off the ground once a turn, or every second turn: harmonics, half orders and impacts."""
 
     place = "looseness"

@@ -12,7 +12,7 @@ from gen.corpus.fault_classes import UNKNOWN, UNKNOWN_CODE
 from gen.corpus.schema import Variable
 from gen.drawing import Draws, Probability, weighted_index
 from gen.mechanisms.background.machine_condition import MachineCondition, bursts_of, lines_of
-from gen.mechanisms.background.source import FloatArray, LockedSource, Streams
+from gen.mechanisms.background.source import FloatArray, MachineSource, Streams
 from gen.mechanisms.mechanism import with_plugins
 
 CONDITIONS = with_plugins(MachineCondition, (MachineCondition,))
@@ -36,7 +36,7 @@ def label_of(kind: Callable[[Any], str]) -> Variable:
     return Variable("machine_condition", "i1", "1", "label", meaning, code, MACHINE_CONDITIONS)
 
 
-class MachineConditions(LockedSource):
+class MachineConditions(MachineSource):
     """Conditions of the machine other than those of its bearings, drawn per rig and the same for all classes of bearings."""
 
     place = "machine_conditions"

@@ -16,8 +16,8 @@ class BackgroundSource(Mechanism):
     drawn_per = "rig"
 
 
-class LockedSource(BackgroundSource):
-    """A source whose vibration follows from the angle of the shaft, ahead of the paths."""
+class MachineSource(BackgroundSource):
+    """A source whose vibration is computed ahead of the paths: from the angle of the shaft, random numbers, or both."""
 
     def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
         """Vibrations over the rms of the background noise, for ``angles`` of the shaft [rad], shape (time,) each [1].

@@ -3,7 +3,7 @@
 import pytest
 
 from gen.drawing import Distribution, Section, composed, within
-from gen.mechanisms.background.background import LOCKED, SOURCES
+from gen.mechanisms.background.background import MACHINE_SOURCES, SOURCES
 from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.recipe import Recipe, read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios
@@ -74,7 +74,9 @@ def test_a_further_key_or_section_moves_no_other_value(name, addition):
 
 
 def test_every_mechanism_is_tried():
-    assert {place.rpartition(".")[2] for place in MECHANISMS} == {one.place for one in (*SOURCES, *LOCKED, *CHAIN)}
+    assert {place.rpartition(".")[2] for place in MECHANISMS} == {
+        one.place for one in (*SOURCES, *MACHINE_SOURCES, *CHAIN)
+    }
 
 
 @pytest.mark.parametrize("place", MECHANISMS)
