@@ -60,8 +60,8 @@ def _end(awaited: set[signal.Signals]) -> None:
     files = sys.modules.get("gen.corpus.disk")  # loaded only if a file was written
     remove = (lambda: None) if files is None else files.remove_unfinished
     remove()
-    below_the_bar = "\n\x1b[?25h" if os.isatty(terminal) else ""  # and show the cursor again
-    os.write(terminal, f"{below_the_bar}{sentence}\n".encode())
+    below_progress = "\n" if os.isatty(terminal) else ""
+    os.write(terminal, f"{below_progress}{sentence}\n".encode())
     remove()  # the main thread may have started another file meanwhile
     os._exit(INTERRUPTED)
 

@@ -23,19 +23,15 @@ class _Model(click.Path):
 
 
 class _Corpus(click.Path):
-    """Folder or single file of a corpus."""
+    """Folder or single file of a corpus; ``index.nc`` stands for its folder."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        return corpus_path(cast("Path", super().convert(value, param, ctx)))
+        path = cast("Path", super().convert(value, param, ctx))
+        return path.parent if path.name == "index.nc" and path.is_file() else path
 
 
 A_MODEL = _Model(path_type=Path)
 A_CORPUS = _Corpus(path_type=Path)
-
-
-def corpus_path(path: Path) -> Path:
-    """Folder or single file of a corpus; ``index.nc`` stands for its folder."""
-    return path.parent if path.name == "index.nc" and path.is_file() else path
 
 
 def complete_recipes(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[CompletionItem]:

@@ -1,4 +1,4 @@
-"""Progress of a long call: a bar on a terminal, one renewed line in a notebook, else a line every ten seconds on standard error."""
+"""Progress of a long call: one renewed line on a terminal or in a notebook, else a line every ten seconds on standard error."""
 
 import sys
 import time
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from gen.support.progress import Progress
 
 SECONDS_BETWEEN_LINES = 10.0
-SECONDS_IN_NOTEBOOK = 0.5
+SECONDS_BETWEEN_RENEWALS = 0.5
 BURST_S = 1.0  # records of a batch are reported together, and parts that were kept from before are too
 BURSTS_IN_SPEED = 32
 
@@ -28,29 +28,11 @@ def progress(doing: str, unit: str) -> "Iterator[Progress]":
     """
     if _quiet():
         yield lambda _done, _total: None
-    elif sys.stderr.isatty():
-        with _bar(doing, unit) as report:
-            yield report
-    else:
+        return
+    try:
         yield show_progress(doing, unit)
-
-
-@contextmanager
-def _bar(doing: str, unit: str) -> "Iterator[Progress]":
-    from rich import progress as rich  # not at the top: help needs no rich
-    from rich.console import Console
-
-    columns = (
-        rich.TextColumn("{task.description}"),
-        rich.BarColumn(),
-        rich.MofNCompleteColumn(),
-        rich.TimeElapsedColumn(),
-        rich.TextColumn("{task.fields[pace]}"),
-    )
-    pace = _pace(unit)
-    with rich.Progress(*columns, console=Console(stderr=True)) as bars:
-        task = bars.add_task(doing, total=None, pace="")
-        yield lambda done, total: bars.update(task, completed=done, total=total, pace=pace(done, total))
+    finally:
+        _clear_line()  # of a call that has failed
 
 
 def show_progress(doing: str = "done", unit: str = "") -> "Progress":
@@ -60,8 +42,9 @@ def show_progress(doing: str = "done", unit: str = "") -> "Progress":
     """
     start = last = time.monotonic()
     pace = _pace(unit)
-    renew = _notebook_line()
-    between = SECONDS_BETWEEN_LINES if renew is None else SECONDS_IN_NOTEBOOK
+    on_terminal = sys.stderr.isatty()
+    renew = _notebook_line() or (_renew_line if on_terminal else None)
+    between = SECONDS_BETWEEN_LINES if renew is None else SECONDS_BETWEEN_RENEWALS
 
     def report(done: int, total: int) -> None:
         nonlocal last
@@ -70,9 +53,20 @@ def show_progress(doing: str = "done", unit: str = "") -> "Progress":
         if done == total or now - last >= between:
             last = now
             ending = f"in {show.duration(now - start)}" if done == total else current
-            (renew or notice)(f"{doing}: {f'{done:,} of {total:,} {unit}'.rstrip()}, {ending}")
+            sentence = f"{doing}: {f'{done:,} of {total:,} {unit}'.rstrip()}, {ending}"
+            (notice if renew is None or (on_terminal and done == total) else renew)(sentence)
 
     return report
+
+
+def _renew_line(sentence: str) -> None:
+    """Write a line of the terminal that the next one replaces."""
+    click.echo(f"{sentence}\x1b[K\r", nl=False, err=True)
+
+
+def _clear_line() -> None:
+    if sys.stderr.isatty():
+        _renew_line("")
 
 
 def _notebook_line() -> Callable[[str], None] | None:
@@ -111,8 +105,9 @@ def _quiet() -> bool:
 
 
 def notice(sentence: str) -> None:
-    """Print a sentence on standard error, above the bar if there is one; none with ``--quiet``."""
+    """Print a sentence on standard error, in place of the progress if that is shown; none with ``--quiet``."""
     if not _quiet():
+        _clear_line()
         sys.stderr.write(show.printable(sentence) + "\n")
 
 

@@ -99,12 +99,6 @@ class Chosen:
         return channel_names(self.corpora[0])
 
     @property
-    def scale(self) -> float | None:
-        """Factor from stored counts to m s-2; None for floating point."""
-        scale = None if self.float32 else self.corpora[0][SIGNAL].encoding.get("scale_factor")
-        return None if scale is None else float(scale)
-
-    @property
     def publication(self) -> Publication:
         """Licence, creators and references if they are the same for all corpora; else none, since they cannot be joined."""
         first, *others = (manifest.publication for manifest in self.manifests)

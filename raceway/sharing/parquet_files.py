@@ -26,7 +26,7 @@ def write_parquet(chosen: Chosen, path: Path, places: NDArray[np.intp] | None = 
 
     columns = columns_of(chosen)
     schema = _schema(chosen, columns)
-    with parquet.ParquetWriter(path, schema, **_storage(chosen, columns)) as file:
+    with parquet.ParquetWriter(path, schema, compression="zstd") as file:
         for block in chosen.blocks(_ROW_GROUP_BYTES, places):
             file.write_table(_table(block, columns, schema))
 
@@ -44,18 +44,6 @@ def _schema(chosen: Chosen, columns: Sequence[Column]) -> "pa.Schema":
         about = {"units": "m s-2", "role": "signal", "channel": text, "sample_rate_hz": repr(chosen.sample_rate)}
         fields.append(pa.field(f"{SIGNAL_PREFIX}{name}", pa.list_(pa.float32(), chosen.samples), metadata=about))
     return pa.schema(fields, {str(key): str(value) for key, value in chosen.attributes.items()})
-
-
-def _storage(chosen: Chosen, columns: Sequence[Column]) -> dict[str, Any]:
-    """Compression and encodings of the columns.
-
-    Counts have at most 65,536 different values, which fit the dictionary of a row group: half the size of any other encoding.
-    """
-    signals = [f"{SIGNAL_PREFIX}{name}.list.element" for name in plain_names(chosen.channels)]
-    labels = [column.name for column in columns]
-    if chosen.scale is None:
-        return {"compression": "zstd", "use_dictionary": labels, "use_byte_stream_split": signals}
-    return {"compression": "zstd", "use_dictionary": [*labels, *signals]}
 
 
 def _table(block: Block, columns: Sequence[Column], schema: "pa.Schema") -> "pa.Table":

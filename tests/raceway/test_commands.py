@@ -70,7 +70,7 @@ SIMULATOR = {"numba", "distributed", "scipy.stats", "sklearn", "matplotlib"}
 
 
 def test_help_and_version_load_no_heavy_library():
-    heavy = {"numpy", "xarray", "rich", "gen", "features.table", "features.baselines.estimators"} | SIMULATOR
+    heavy = {"numpy", "xarray", "gen", "features.table", "features.baselines.estimators"} | SIMULATOR
     assert loaded(["--help", "--version", "generate --help"], heavy) == set()
 
 

@@ -55,6 +55,15 @@ def test_a_notebook_renews_one_line(clock, lines, monkeypatch):
     assert shown == ["generating: 2 of 3 records, 0.5 records/s, 2 s left", "generating: 3 of 3 records, in 2 s"]
 
 
+def test_a_terminal_renews_one_line_and_keeps_the_last(clock, lines, monkeypatch, capsys):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    report = progress_bar.show_progress("generating", "records")
+    for clock[0], done in ((0.1, 1), (2.1, 2), (2.2, 3)):
+        report(done, 3)
+    assert capsys.readouterr().err == "generating: 2 of 3 records, 0.5 records/s, 2 s left\x1b[K\r"
+    assert lines == ["generating: 3 of 3 records, in 2 s"]
+
+
 def test_quiet_prints_results_alone(run, tiny_recipe, tmp_path):
     loud = run("generate", tiny_recipe, "-o", tmp_path / "loud", "--records", 2)
     quiet = run("--quiet", "generate", tiny_recipe, "-o", tmp_path / "quiet", "--records", 2)

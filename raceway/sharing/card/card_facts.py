@@ -1,6 +1,5 @@
 """Facts of a corpus for its data card: counts by class and split, ranges, meanings, the command that makes it again."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,10 +19,8 @@ from gen.corpus.contents import (
 )
 from gen.corpus.manifest import RECIPE_NAME, Manifest
 from gen.corpus.schema import ROLES, SPLITS, stored_unit
-from gen.corpus.slices import codec_of
 from gen.corpus.unusable import counts_in_words
 
-MOST_NAMES = 12  # bearings named on the card; the others are counted
 _NEW = "../again"
 
 
@@ -43,7 +40,7 @@ def card_facts(corpus: xr.Dataset, manifest: Manifest) -> dict[str, Any]:
         "channels": corpus["channel"].values.tolist(),
         "unusable": counts_in_words(manifest.signals),
         "clipped": clipped_records(corpus),
-        "bearings": _bearings(corpus),
+        "bearings": text_counts(corpus["bearing"].values.tolist()),
         "splits": SPLITS,
         "classes": _classes(corpus),
         "one_split": used[0] if len(used) == 1 else None,
@@ -54,13 +51,6 @@ def card_facts(corpus: xr.Dataset, manifest: Manifest) -> dict[str, Any]:
         "command": rebuilding(corpus, manifest),
         "variables": _variables(corpus),
     }
-
-
-def _bearings(corpus: xr.Dataset) -> str:
-    counts = text_counts(corpus["bearing"].values.tolist())
-    shown = [f"{name} ({n})" for name, n in counts.items()][:MOST_NAMES]
-    more = len(counts) - len(shown)
-    return ", ".join(shown) + (f" and {more} more" if more else "")
 
 
 def _classes(corpus: xr.Dataset) -> list[tuple[str | int, ...]]:
@@ -109,11 +99,6 @@ def rebuilding(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
         window = corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])
         return ["raceway", "import", manifest.importer, "SRC", "--window", f"{window:g}", "-o", _NEW]
     return []
-
-
-def needs_plugin(part: Path) -> bool:
-    """Whether the signals of a file can be read with the zstd filter of HDF5 alone."""
-    return codec_of(part) == "zstd"
 
 
 def _variables(corpus: xr.Dataset) -> list[tuple[str, list[str]]]:

@@ -12,10 +12,10 @@ from gen.corpus.fault_classes import FAULTS
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import RECIPE_NAME, Manifest, corpus_files, read_manifest, recipe_text
 from gen.corpus.schema import listed_flags
-from gen.corpus.slices import read_classes
+from gen.corpus.slices import codec_of, read_classes
 from gen.support.errors import CorpusError
 from raceway.sharing.card import additions
-from raceway.sharing.card.card_facts import card_facts, needs_plugin
+from raceway.sharing.card.card_facts import card_facts
 from raceway.sharing.card.citation import citation
 from raceway.sharing.card.markdown import code_text, plain_text
 
@@ -80,7 +80,7 @@ def card_text(corpus: xr.Dataset, manifest: Manifest, added: additions.CardAddit
         added=added,
         whole=path.name if single else None,
         file=path.name if single else first.relative_to(path).as_posix(),
-        zstd=needs_plugin(first),
+        zstd=codec_of(first) == "zstd",
         faulty=listed_flags({code: name for code, name in read_classes(first).items() if name in FAULTS[1:]}),
         citation=citation(title, manifest),
         most=MOST_SENTENCES,
