@@ -116,10 +116,9 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
         If the file is none, or its scores are of another corpus: one with another title, or other counts of records.
     """
     # a file of scores comes from anywhere
-    if path.is_file():
-        check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
     try:
-        results = TypeAdapter(Results).validate_json(path.read_bytes())
+        check_limit("manifest_bytes", path.stat().st_size if path.is_file() else 0, f"{path}:", CorpusError)
+        results = TypeAdapter(Results).validate_json(path.read_bytes() if path.is_file() else b"")
     except (OSError, ValidationError):
         raise CorpusError(f"{path}: is not a file of scores; give results.json of raceway benchmark.") from None
     # scores belong to the card of the corpus that they were measured on

@@ -6,7 +6,7 @@ import pytest
 from gen.corpus import SignalCounts, read_manifest
 from gen.generation.corpus import generate
 from gen.physics.catalogue import CATALOGUE
-from raceway.console.summary import describe
+from raceway.console.summary import corpus_facts
 from raceway.importing.assemble import Collection, import_recordings
 from raceway.importing.recordings import Candidate, Recording
 from raceway.sharing.card.card_page import data_card
@@ -47,5 +47,5 @@ def test_recordings_that_cannot_be_used_are_counted_when_they_are_imported(tmp_p
     )
     expected = SignalCounts(clipped=1, dead=1, constant=1)
     assert part_counts(tmp_path / "c") == [expected]
-    assert describe(tmp_path / "c")["signals"] == expected._asdict()
+    assert corpus_facts(tmp_path / "c")["signals"] == expected._asdict()
     assert "cannot be used: 1 clipped, 1 dead, 1 constant." in data_card(tmp_path / "c")

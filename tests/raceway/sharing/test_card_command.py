@@ -52,7 +52,8 @@ def results(monkeypatch, copied, tmp_path):
             corpus=SimpleNamespace(**about | changed), track="specimen", folds=5, seed=0, groups=("lines",),
             versions={"raceway": "0.1.0"}, baselines={"linear": baseline},
         )  # fmt: skip
-        monkeypatch.setattr("raceway.sharing.card_pictures.read_results", lambda _: read)
+        of_file = SimpleNamespace(validate_json=lambda _: read)
+        monkeypatch.setattr("raceway.sharing.card_pictures.TypeAdapter", lambda _: of_file)
         path = tmp_path / "results.json"
         path.touch()
         return path
