@@ -11,7 +11,7 @@ const COMPARE = {
   ">": (a, b) => a > b,
   ">=": (a, b) => a >= b,
 };
-const KEYS = { ArrowLeft: () => step(-1), ArrowRight: () => step(1), "/": () => byId("condition").focus(), p: play };
+const KEYS = { ArrowLeft: () => step(-1), ArrowRight: () => step(1), "/": () => byId("condition").focus() };
 
 let about;
 let numbers; // of the quantities among the parts, by name
@@ -20,7 +20,6 @@ let shown = []; // rows that the filter leaves, in the chosen order
 let current = 0; // row of the shown record
 let scatter;
 let choices = 0;
-let audio, sounding;
 const inflated = new Map();
 
 async function inflate(id) {
@@ -42,15 +41,10 @@ function valuesOf(name) {
   return keep(`quantity${numbers[name]}`, async (part) => (await part.json()).map((value) => value ?? NaN));
 }
 
-// Buffer of the block of a row, the place of the row in it, and the number of its rows.
-async function blockOf(kind, row) {
-  const place = row % about.block;
-  const buffer = await keep(`${kind}${Math.floor(row / about.block)}`, (part) => part.arrayBuffer());
-  return [buffer, place, Math.min(about.block, about.records - row + place)];
-}
-
 async function arraysOf(row) {
-  const [buffer, place, rows] = await blockOf("block", row);
+  const place = row % about.block;
+  const rows = Math.min(about.block, about.records - row + place); // of the block
+  const buffer = await keep(`block${Math.floor(row / about.block)}`, (part) => part.arrayBuffer());
   const types = { float32: Float32Array, int8: Int8Array, uint8: Uint8Array };
   const arrays = {};
   let start = 0;
@@ -93,20 +87,6 @@ async function tellLabels(row) {
     cell.nextElementSibling.textContent = shownUnit;
     cell.parentElement.querySelector("small").textContent = known && unit !== shownUnit ? `${value} ${unit}` : "";
   }
-}
-
-async function play() {
-  if (!about.sound) return;
-  const [buffer, place, rows] = await blockOf("sound", current);
-  const size = buffer.byteLength / rows;
-  const samples = Float32Array.from(new Int8Array(buffer, place * size, size), (value) => value / 128);
-  audio ??= new AudioContext();
-  const piece = audio.createBuffer(1, size, about.sound_rate);
-  piece.copyToChannel(samples, 0);
-  sounding?.stop();
-  sounding = new AudioBufferSourceNode(audio, { buffer: piece });
-  sounding.connect(audio.destination);
-  sounding.start();
 }
 
 // Allowed name that differs from a wrong one in the fewest letters.
@@ -281,7 +261,6 @@ async function start() {
   document.querySelector("section").addEventListener("input", choose);
   byId("previous").addEventListener("click", () => step(-1));
   byId("next").addEventListener("click", () => step(1));
-  byId("play")?.addEventListener("click", play);
   document.addEventListener("keydown", onKey);
   let width = innerWidth;
   addEventListener("resize", () => {

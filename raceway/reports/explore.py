@@ -1,4 +1,4 @@
-"""A corpus on one page to browse: its records by class and range, and each one with its pictures, labels and sound.
+"""A corpus on one page to browse: its records by class and range, and each one with its pictures and labels.
 
 ``records, 64 at a time -> small arrays of each record -> one deflated text -> a page that inflates the block it shows``
 
@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy.signal import resample
 
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
@@ -81,7 +80,6 @@ FIELDS: Mapping[str, tuple[str, int]] = {
     "waterfall": ("uint8", ROWS * CELLS // 2),
 }
 """Arrays of a record by name, with their type and number of values. In a block, those of all its records follow each other."""
-SOUND_RATE, SOUND_S = 8000, 0.5  # Hz, s
 LONGEST_TEXT = 200
 READ = ("fault", "sample_rate", "shaft_rate", "first_shaft_rate", "last_shaft_rate", *Orders._fields)
 
@@ -99,7 +97,6 @@ def write_explorer(
     *,
     table: Path | str | None = None,
     records: int = RECORDS,
-    sound: bool = False,
     channel: int | str = 0,
     band: tuple[float, float] = DEFAULT_BAND,
     workers: int = 1,
@@ -118,8 +115,6 @@ def write_explorer(
         Feature table of the corpus, whose features become quantities of the page.
     records
         Largest number of records on the page; of more, an even choice is taken.
-    sound
-        Whether to store half a second of each record to play.
     channel, band
         Number or name of the channel, and band of the envelopes [Hz].
     workers, scheduler, progress
@@ -147,16 +142,16 @@ def write_explorer(
         kept = opened[[SIGNAL, *(name for name in READ if name in opened)]].isel(record=places, channel=[number])
         kept = kept.assign({name: kept[name].load() for name in kept.data_vars if name != SIGNAL})
         blocks = (kept.isel(record=slice(first, first + BLOCK)) for first in range(0, len(places), BLOCK))
-        reduced, report = list[list[str]](), counter(progress, len(places))
-        task = partial(_reduced_block, band=band, sound=sound)
+        reduced, report = list[str](), counter(progress, len(places))
+        task = partial(_reduced_block, band=band)
         # one block of records at a time, so that memory does not grow with their number
         with closing(run(task, blocks, workers if scheduler is None else scheduler)) as made:
-            for size, texts in made:
-                reduced.append(texts)
+            for size, text in made:
+                reduced.append(text)
                 report(size)
         sensor = str(opened["channel"].values[number]) if opened.sizes["channel"] > 1 else ""
         title = _text(opened.attrs.get("title", "untitled corpus"))
-        facts = {"band": [*band], "fs": float(opened["sample_rate"][0]), "sound": sound, "axes": _axes(known)}
+        facts = {"band": [*band], "fs": float(opened["sample_rate"][0]), "axes": _axes(known)}
     folder = files("raceway.reports")
     script = "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
     write_page(
@@ -166,7 +161,6 @@ def write_explorer(
         channel=_text(sensor),
         shown=len(places),
         records=count,
-        sound=sound,
         script=script,
         # the page runs no script but this one, whatever texts a corpus holds
         digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
@@ -227,25 +221,12 @@ def _steps(level_db: FloatArray) -> np.ndarray:
     return np.clip(np.round(level_db / STEP_DB), 0, 255).astype(np.uint8)
 
 
-def _reduced_block(block: xr.Dataset, band: Band, sound: bool) -> tuple[int, list[str]]:
-    """Number of records of a block, their arrays as a text, and their sound as another one."""
+def _reduced_block(block: xr.Dataset, band: Band) -> tuple[int, str]:
+    """Number of records of a block, and their arrays as a text."""
     records = block.load()
     shown = [shown_of(records.isel(record=k), k, 0)._replace(band=band) for k in range(records.sizes["record"])]
     arrays = [reduce_record(one) for one in shown]
-    contents = [b"".join(one[name].tobytes() for name in FIELDS for one in arrays)]
-    if sound:
-        contents.append(b"".join(_sound(one).tobytes() for one in shown))
-    return len(shown), [_packed(content) for content in contents]
-
-
-def _sound(shown: DrawnRecord) -> np.ndarray:
-    """First half second as 8 bits at 8 kHz, as loud as it goes; silence if a sample is not finite."""
-    samples = np.zeros(round(SOUND_S * SOUND_RATE))
-    x = shown.signal[: round(SOUND_S * shown.fs)]
-    if np.isfinite(x).all():
-        heard = resample(x - x.mean(), min(len(samples), round(len(x) * SOUND_RATE / shown.fs)))
-        samples[: len(heard)] = heard / max(np.abs(heard).max(), TINY)
-    return np.round(127 * samples).astype(np.int8)
+    return len(shown), _packed(b"".join(one[name].tobytes() for name in FIELDS for one in arrays))
 
 
 def _labels(corpus: xr.Dataset, places: np.ndarray) -> Iterator[Quantity]:
@@ -329,7 +310,7 @@ def _axes(known: Sequence[Quantity]) -> list[str]:
     return combs[:2] if len(combs) > 1 else [across, [*labels, *others, "record"][0]]
 
 
-def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence[Sequence[str]]) -> dict[str, str]:
+def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence[str]) -> dict[str, str]:
     """Deflated parts of the page by their names, in the order in which they are needed."""
     about = {
         **facts,
@@ -339,7 +320,6 @@ def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence
         "step_db": STEP_DB,
         "shades": SHADES,
         "cells": CELLS,
-        "sound_rate": SOUND_RATE,
         "tolerance": TOLERANCE,
         "compared": [SHAFT, *fundamentals()],
         "classes": {
@@ -355,9 +335,7 @@ def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence
     # each part is inflated by the page when it is needed
     parts = {"about": about} | {f"quantity{n}": one.values for n, one in enumerate(known)}
     parts = {name: _packed(json.dumps(part, allow_nan=False).encode()) for name, part in parts.items()}
-    for number, texts in enumerate(blocks):
-        parts |= dict(zip((f"block{number}", f"sound{number}"), texts, strict=False))
-    return parts
+    return parts | {f"block{n}": text for n, text in enumerate(blocks)}
 
 
 def _packed(content: bytes) -> str:

@@ -29,7 +29,6 @@ from raceway.console.progress_bar import progress
     metavar="N",
     help="Largest number of records on the page, evenly chosen.",
 )
-@click.option("--sound", is_flag=True, help="Store half a second of each record, to play it.")
 @analysis_options
 @worker_options
 def explore(
@@ -37,30 +36,26 @@ def explore(
     output: Path,
     table: Path | None,
     records: int,
-    sound: bool,
     analysis: Analysis,
     team: Team,
 ) -> None:
     """Make a page to browse DIR in a web browser.
 
       raceway explore corpus -o explore.html
-      raceway explore corpus -o explore.html --sound
       raceway explore corpus -o explore.html --features features.nc --records 2000
 
     The page is one file and needs neither a server nor a network. It draws the records over two quantities of your choice, filters them
     by class, range and condition, and shows waveform, power spectral density, envelope spectrum with fault lines, waterfall and labels
-    of the chosen record. In the page, the left and right keys choose a record, / goes to the condition, and p plays the record.
+    of the chosen record. In the page, the left and right keys choose a record and / goes to the condition.
 
-    A record takes 1.5 kB on the page, its features another 0.8 kB and its sound 4 kB: 10,000 records are 15 MB.
+    A record takes 1.5 kB on the page, and its features another 0.8 kB: 10,000 records are 15 MB.
     """
     from gen.corpus import read_manifest
     from raceway.reports.explore import write_explorer
 
     options = team.options(min(records, read_manifest(corpus).records)) | analysis.options()
     with progress("reading", "records") as report:
-        shown, count = write_explorer(
-            corpus, output, table=table, records=records, sound=sound, **options, progress=report
-        )
+        shown, count = write_explorer(corpus, output, table=table, records=records, **options, progress=report)
     of_all = "" if shown == count else f" of {count:,}"
     size = output.stat().st_size / 1e6
     show.text(f"{output}: {shown:,}{of_all} records of {corpus}, {size:.1f} MB. Open it in a web browser.")

@@ -38,7 +38,7 @@ def page(corpus, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "explore.html"
     table = path.with_name("features.nc")
     write_table(feature_table(corpus), table)
-    write_explorer(corpus, path, table=table, sound=True)
+    write_explorer(corpus, path, table=table)
     return path
 
 
@@ -63,7 +63,7 @@ def test_the_stored_spectra_have_their_peaks_at_the_planted_lines():
     assert {name: (value.dtype.name, value.size) for name, value in stored.items()} == dict(FIELDS)
 
 
-def test_the_page_has_all_records_in_blocks_with_their_labels_features_and_sound(page):
+def test_the_page_has_all_records_in_blocks_with_their_labels_and_features(page):
     found = parts(page)
     about = json.loads(found["about"])
     names = [one["name"] for one in about["quantities"]]
@@ -76,7 +76,6 @@ def test_the_page_has_all_records_in_blocks_with_their_labels_features_and_sound
     assert about["axes"] == ["whitened_bpfi_comb", "whitened_bpfo_comb"]
     record = sum(np.dtype(kind).itemsize * size for kind, size in FIELDS.values())
     assert [len(found[f"block{k}"]) for k in range(2)] == [BLOCK * record, (RECORDS - BLOCK) * record]
-    assert [len(found[f"sound{k}"]) for k in range(2)] == [BLOCK * 4000, (RECORDS - BLOCK) * 4000]
 
 
 def test_text_of_a_corpus_cannot_become_markup_and_only_the_script_of_the_page_may_run(page, tmp_path):
@@ -134,7 +133,6 @@ def test_the_page_works_in_a_browser_by_keys_at_any_width(page, corpus, tmp_path
         assert 0 < int(opened.value(count).split()[0]) <= 20
         opened.until(f"{name}.includes(': inner')")
         opened.press("Escape")
-        opened.press("p")
         opened.value("byId('condition').value = 'nothing > 1'; choose()")
         told = opened.value("byId('complaint').textContent")
         assert told.startswith("nothing: no such column; the nearest is ")
