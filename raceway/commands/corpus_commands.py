@@ -146,6 +146,17 @@ def _show_plan(planned: "Plan") -> None:
         show.text("", f"The first record that is left out: {planned.first_left_out}")
 
 
+def _range_of(_context: click.Context, _option: click.Parameter, text: str | None) -> range | None:
+    """Parts from their first and last number, ``A-B``, or from one number."""
+    if text is None:
+        return None
+    first, dash, last = text.partition("-")
+    last = last if dash else first
+    if not (first.isdecimal() and last.isdecimal()):
+        raise click.BadParameter(f"{text!r} is no range; give the first and the last part, such as 0-4.")
+    return range(int(first), int(last) + 1)
+
+
 @click.command()
 @recipe_argument
 @target_option("The corpus: a file if the name ends in .nc, else a folder; new, or begun by this command.")
@@ -155,7 +166,7 @@ def _show_plan(planned: "Plan") -> None:
 @click.option(
     "--parts",
     metavar="A-B",
-    callback=lambda _context, _option, text: None if text is None else _range_of(text),
+    callback=_range_of,
     help="Make the parts A to B alone; copy joins them with those of other machines.",
 )
 @json_option
@@ -180,15 +191,21 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
 
     Next: raceway info DIR, raceway benchmark DIR -o REPORT
     """
+    from gen import generate as generate_corpus
     from gen.corpus import complaint
     from gen.recipe import read_recipe
+    from gen.support.executor import cores
+    from raceway.sharing import describe
 
     wanted = read_recipe(recipe, seed=options["seed"], records=options["records"])
     start = time.monotonic()
-    workers = team.workers or _default_workers(wanted)
+    usual = min(cores(), wanted.n_parts) if wanted.n_records > WORTH_WORKERS else 1
+    options |= {"workers": team.workers or usual, "scheduler": team.scheduler}
     # after Ctrl-C: how many records are kept, and how to go on
-    with if_interrupted(_kept(output, wanted)):
-        made = _generate(recipe, output, workers=workers, scheduler=team.scheduler, **options)
+    with if_interrupted(_kept(output, wanted)), progress("generating", "records") as report:
+        made = generate_corpus(recipe, output, **options, progress=report, notice=notice)
+        if made.path.is_dir():
+            describe(made.path)
     for failure in made.failures:
         notice(f"left out: {failure}")
     useless = complaint(made.signals, made.records)
@@ -202,26 +219,6 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
         _show_generated(made, wanted)
     # a corpus that no analysis can use is a failure for scripts
     return DONE if useless is None else FOUND_WANTING
-
-
-def _range_of(text: str) -> range:
-    """Parts from their first and last number, ``A-B``, or from one number."""
-    first, dash, last = text.partition("-")
-    last = last if dash else first
-    if not (first.isdecimal() and last.isdecimal()):
-        raise click.BadParameter(f"{text!r} is no range; give the first and the last part, such as 0-4.")
-    return range(int(first), int(last) + 1)
-
-
-def _generate(recipe: str, output: Path, **options: Any) -> "Generated":
-    from gen import generate as generate_corpus
-    from raceway.sharing import describe
-
-    with progress("generating", "records") as report:
-        made = generate_corpus(recipe, output, **options, progress=report, notice=notice)
-    if made.path.is_dir():
-        describe(made.path)
-    return made
 
 
 def _show_generated(made: "Generated", wanted: "Recipe") -> None:
@@ -265,12 +262,6 @@ def _kept(corpus: Path, recipe: "Recipe") -> "Callable[[], str]":
         return f"interrupted; {of_all} kept in {folder}; the same command completes the corpus."
 
     return told
-
-
-def _default_workers(recipe: "Recipe") -> int:
-    from gen.support.executor import cores
-
-    return min(cores(), recipe.n_parts) if recipe.n_records > WORTH_WORKERS else 1
 
 
 @click.command()

@@ -32,11 +32,6 @@ VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "wat
 @click.option("--bearing", metavar="BEARING", help="Of a recording: designation such as 6205, or a geometry.")
 @rpm_option
 @band_option
-@click.option(
-    "--band-by",
-    type=click.Choice(["kurtogram", "line"]),
-    help="Choose the band of the envelope: the most impulsive one, or that in which a fault line stands out most.",
-)
 @reading_options
 def plot(
     source: Path,
@@ -47,7 +42,6 @@ def plot(
     bearing: str | None,
     speeds: tuple[float, float] | None,
     band: tuple[float, float] | None,
-    band_by: str | None,
     reading: Reading,
 ) -> None:
     """Draw records of a corpus, or a recording.
@@ -67,31 +61,27 @@ def plot(
     varies, --rpm is its range; the speed is then found in the signal, and the lines are drawn over orders of the shaft.
     """
     # without any choice: a record of each class
-    if _is_corpus(source) and (record, view, healthy, band, band_by) == (None,) * 5:
+    if _is_corpus(source) and (record, view, healthy, band) == (None,) * 4:
         _draw_classes(source, output)
         return
     from gen.support.errors import CorpusError
     from raceway.reports.pictures import draw_record, write_picture
-    from raceway.reports.views import band_by as chosen_band
     from raceway.reports.views import draw_view
 
     shown = _shown(source, record, bearing, speeds, band, reading)
-    if band_by is not None:
-        shown = shown._replace(band=chosen_band(band_by, shown))
     under = None
     # a number is a record of the same corpus, anything else a file
     if healthy is not None:
         of_corpus = _is_corpus(source) and healthy.isdecimal()
         path, number = (source, int(healthy)) if of_corpus else (Path(healthy), None)
-        under = _shown(path, number, bearing, speeds, band, reading)._replace(band=shown.band)
+        under = _shown(path, number, bearing, speeds, band, reading)
     try:
         figure = draw_record(shown, under) if view is None else draw_view(view, shown, under)
     except ValueError as error:
         raise CorpusError(f"{source}: cannot be drawn as {view or 'a record'}: {error}") from None
     write_picture(figure, output)
     what = source.name if record is None else f"record {record} of {source}"
-    band_text = f", envelope of {shown.band[0]:.0f}-{shown.band[1]:.0f} Hz" if band_by is not None else ""
-    show.text(f"{output}: {what}{band_text}.")
+    show.text(f"{output}: {what}.")
 
 
 def _draw_classes(corpus: Path, output: Path) -> None:

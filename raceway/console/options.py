@@ -233,9 +233,11 @@ def target_option(what: str) -> Decorator:
     return click.option("-o", "--output", type=A_PATH, required=True, metavar="TARGET", help=what, callback=check)
 
 
-def checked_pages(_context: click.Context, _option: click.Parameter, path: Path) -> Path:
+def checked_pages(_context: click.Context, _option: click.Parameter, path: Path | None) -> Path | None:
     """Folder for pages and pictures, which is no corpus and lies in none."""
-    from gen.corpus import check_result_folder
+    if path is None:
+        return None
+    from gen.corpus import check_result_folder  # not at the top: help needs nothing of gen
 
     if path.exists() and not path.is_dir():
         raise click.BadParameter(f"{path} is a file; give a folder")
@@ -245,11 +247,8 @@ def checked_pages(_context: click.Context, _option: click.Parameter, path: Path)
 
 def pages_option(metavar: str, what: str, *, required: bool = True) -> Decorator:
     """Make the option that names the folder for pages and pictures, which is no corpus and lies in none."""
-
-    def check(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
-        return None if path is None else checked_pages(context, option, path)
-
-    return click.option("-o", "--output", type=A_PATH, required=required, metavar=metavar, help=what, callback=check)
+    options: Any = {"type": A_PATH, "required": required, "metavar": metavar, "help": what, "callback": checked_pages}
+    return click.option("-o", "--output", **options)
 
 
 def checked_file(path: Path, suffixes: tuple[str, ...] = (), kind: str | None = None) -> Path:

@@ -28,7 +28,8 @@ def _checked_output(context: click.Context, option: click.Parameter, path: Path 
             raise click.BadParameter(f"{path} is the folder of the recordings; give another one for the pages")
         from gen.corpus import check_result  # not at the top: help needs nothing of gen
 
-        check_result(checked_pages(context, option, path) / LIST, LIST_KIND)
+        checked_pages(context, option, path)
+        check_result(path / LIST, LIST_KIND)
         return path
     return path and checked_file(path, (".html",), "page")
 

@@ -8,7 +8,6 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.signal.lines import Orders
 from features.signal.rows import FloatArray
 from features.signal.velocity import velocity_band
 from features.table.band import DEFAULT_BAND, Band
@@ -129,12 +128,18 @@ def _levels(spectrum: BandSpectrum, shaft_rate: float) -> tuple[FloatArray, Floa
 def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> None:
     """Level of the envelope spectrum over its floor, with the lines of each family, and the evidence marked."""
     order, level = _levels(spectrum, diagnosis.shaft_rate)
-    families = _families(diagnosis.orders)
+    # the first harmonics of each family by its class; of those without a comb the first alone
+    lines_of = {
+        row.name: [
+            float(row.lines[0].order(diagnosis.orders)) * n for n in range(1, DRAWN_HARMONICS + 1 if row.name in COMBS else 2)
+        ]
+        for row in families()
+    }
     # some harmonics of the highest family, as far as the spectrum goes
-    top = min(order[-1], (DRAWN_HARMONICS + 0.15) * max(lines[0] for lines in families.values()))
+    top = min(order[-1], (DRAWN_HARMONICS + 0.15) * max(lines[0] for lines in lines_of.values()))
     visible = order <= top
     names: dict[str, float] = {SHAFT.label: 1.0}
-    for fault, lines in families.items():
+    for fault, lines in lines_of.items():
         for number, line in enumerate(lines):
             axes.axvline(
                 line,
@@ -163,13 +168,3 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
     name_lines(axes, {}, names, INK, top)
     low, high = (f"{from_si(edge, 'khz'):.3g}" for edge in spectrum.band)
     axes.set_title(f"Envelope spectrum of {low}-{high} kHz over its floor; dots mark the evidence", pad=30)
-
-
-def _families(orders: Orders) -> dict[str, list[float]]:
-    """Orders of the first harmonics of each family, by its class."""
-    return {
-        row.name: [
-            float(row.lines[0].order(orders)) * n for n in range(1, DRAWN_HARMONICS + 1 if row.name in COMBS else 2)
-        ]
-        for row in families()
-    }

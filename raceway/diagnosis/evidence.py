@@ -145,10 +145,6 @@ def side_of(row: FaultClass, orders: Orders) -> float:
     return 1.0 if row.side == SHAFT.base else float(getattr(orders, row.side))
 
 
-def _harmonics(row: FaultClass) -> range:
-    return range(1, (HARMONICS if row.name in COMBS else len(row.lines)) + 1)
-
-
 def _search_bins(
     row: FaultClass, spectrum: BandSpectrum, shaft_rate: float, orders: Orders
 ) -> Iterator[tuple[int, int]]:
@@ -208,7 +204,7 @@ def _family(
     """Harmonics of a fundamental [Hz], and the sidebands of those found at the rate of the family and of the shaft."""
     rates = {"": 0.0, row.side: side_of(row, orders) * shaft_rate, SHAFT.base: shaft_rate}
     base = row.lines[0].multiple
-    places = [(harmonic, "", 0) for harmonic in _harmonics(row)]
+    places = [(harmonic, "", 0) for harmonic in range(1, (HARMONICS if row.name in COMBS else len(row.lines)) + 1)]
     # of balls and races also sidebands, at the rate of the cage and of the shaft
     if row.name in COMBS:
         places += [(harmonic, side, sign) for harmonic in (1, 2) for side in rates if side for sign in (-1, 1)]

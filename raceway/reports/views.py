@@ -12,11 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from features.signal.cyclic import spectral_coherence
-from features.signal.impulsive import comb_bands, kurtogram
+from features.signal.impulsive import kurtogram
 from features.signal.orders import order_map, order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
 from features.signal.spectra import cepstrum
-from features.table.band import Band
 from gen.corpus.fault_classes import SHAFT, fundamentals
 from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.maps import BRIGHTEST_DB, FAINTEST, draw_coherence, draw_grid, level_over_median, plot
@@ -42,7 +41,6 @@ MAP_TURNS = 24  # revolutions of a window of the waterfall
 CEPSTRUM_TURNS = 1.3  # end of the axis, in revolutions
 SHORTEST_CEPSTRUM = 0.06  # revolutions: what lies below is the shape of the spectrum
 COHERENCE_BAND = 200.0  # Hz
-NARROWEST_BAND = 1000.0  # Hz, of a chosen band: as that of a band that is given
 
 
 @rc_context(STYLE)
@@ -61,19 +59,6 @@ def draw_view(view: str, shown: DrawnRecord, under: DrawnRecord | None = None) -
     if under is not None and view not in MAPS:
         figure.legend(*axes.get_legend_handles_labels(), loc="outside lower right", ncols=2)
     return figure
-
-
-def band_by(choice: str, shown: DrawnRecord) -> Band:
-    """Band of the envelope that is the most impulsive (``kurtogram``), or in which a fault line stands out most (``line``)."""
-    x, fs = shown.signal[None], shown.fs
-    if choice == "kurtogram":
-        return Band(*kurtogram(x, fs, narrowest=NARROWEST_BAND).best()[0].tolist())
-    own, others = fault_lines(shown.orders, shown.fault)
-    labels = [line.label for line in fundamentals()]
-    wanted = [label for label in own if label in labels] or [label for label in others if label in labels]
-    trees = [comb_bands(x, fs, np.array([(own | others)[label] * shown.shaft_rate])) for label in wanted]
-    best = max(trees, key=lambda tree: tree.score.max())
-    return Band(*best.best()[0].tolist())
 
 
 def _orders(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None:

@@ -3,15 +3,12 @@
 import re
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from raceway.console import show
 from raceway.console.options import A_PATH, corpus_argument, json_option
-
-if TYPE_CHECKING:
-    from gen.corpus import Publication
 
 
 def _creators(_context: click.Context, _option: click.Parameter, texts: tuple[str, ...]) -> list[dict[str, str]]:
@@ -59,10 +56,15 @@ def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None
 
     Next: read DIR/README.md, then raceway copy DIR -o NAME.nc
     """
-    publication = _publication(corpus, {name: value for name, value in given.items() if value})
+    from gen.corpus import read_manifest
+    from raceway.sharing import publish
     from raceway.sharing.card.card_page import card_folder
     from raceway.sharing.card_pictures import complete_card
 
+    # facts that are given replace those of the corpus
+    given = {name: value for name, value in given.items() if value}
+    publish(corpus, read_manifest(corpus).publication.stored | given)
+    publication = read_manifest(corpus).publication
     added = complete_card(corpus, scores)
     written = card_folder(corpus) / "README.md"
     rows = () if added.scores is None else added.scores.rows
@@ -83,12 +85,3 @@ def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None
         show.text(
             f"Before you publish it: raceway card {shlex.quote(str(corpus))} {' '.join(f'--{name} ...' for name in missing)}"
         )
-
-
-def _publication(corpus: Path, given: dict[str, Any]) -> "Publication":
-    """Facts of the corpus after those that are given have replaced others."""
-    from gen.corpus import read_manifest
-    from raceway.sharing.publishing import publish
-
-    publish(corpus, read_manifest(corpus).publication.stored | given)
-    return read_manifest(corpus).publication

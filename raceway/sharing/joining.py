@@ -34,28 +34,20 @@ def check_fit(first: Named, other: Named, *, float32: bool) -> None:
             f"{other_name}: has the channels {', '.join(channel_names(two))}, and {name} has {', '.join(channel_names(one))}; give "
             f"channels of one sensor one name (rename {example}), or choose common ones (channels)."
         )
-    for what, describe, advice in (
-        ("sample rate", _sample_rate, "make both at one sample rate"),
-        ("record length", _length, "make both with records of one length"),
-        ("storage of the signals", _storage, "store all in floating point (float32)"),
-    ):
-        if describe(one) != describe(two) and not (float32 and describe is _storage):
-            raise CorpusError(
-                f"{other_name}: has the {what} {describe(two)}, and {name} has {describe(one)}; {advice}."
-            )
+    for (what, of_other, advice), (_, of_first, _) in zip(_form(two), _form(one), strict=True):
+        if of_other != of_first and not (float32 and what.startswith("storage")):
+            raise CorpusError(f"{other_name}: has the {what} {of_other}, and {name} has {of_first}; {advice}.")
 
 
-def _sample_rate(corpus: xr.Dataset) -> str:
-    return f"{float(corpus['sample_rate'][0]):.17g} Hz"
-
-
-def _length(corpus: xr.Dataset) -> str:
-    return f"{corpus.sizes['elapsed_time']} samples"
-
-
-def _storage(corpus: xr.Dataset) -> str:
+def _form(corpus: xr.Dataset) -> list[tuple[str, str, str]]:
+    """Name of each fact that corpora must share, the fact, and what to do where it differs."""
     encoding = corpus[SIGNAL].encoding
-    return f"int16 in steps of {encoding['scale_factor']:.9g} m s-2" if "scale_factor" in encoding else "float32"
+    storage = f"int16 in steps of {encoding['scale_factor']:.9g} m s-2" if "scale_factor" in encoding else "float32"
+    return [
+        ("sample rate", f"{float(corpus['sample_rate'][0]):.17g} Hz", "make both at one sample rate"),
+        ("record length", f"{corpus.sizes['elapsed_time']} samples", "make both with records of one length"),
+        ("storage of the signals", storage, "store all in floating point (float32)"),
+    ]
 
 
 def with_same_variables(corpora: Sequence[Named]) -> tuple[list[xr.Dataset], tuple[str, ...]]:

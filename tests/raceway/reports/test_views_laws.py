@@ -7,7 +7,7 @@ from features.table.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
 from raceway.reports.pictures import picture, squared_envelope
 from raceway.reports.subject import shown_recording
-from raceway.reports.views import MAPS, VIEWS, band_by, draw_view
+from raceway.reports.views import MAPS, VIEWS, draw_view
 from tests.pulses import pulse_train
 
 FS = 12_000.0
@@ -66,10 +66,3 @@ def test_a_recording_whose_varying_speed_cannot_be_tracked_is_refused_with_the_o
         CorpusError, match=r"noise: the speed between 600 and 1800 rpm cannot be tracked .* give one speed"
     ):
         shown_recording("noise", noise, FS, (10.0, 30.0), ORDERS, DEFAULT_BAND)
-
-
-@pytest.mark.parametrize("choice", ["kurtogram", "line"])
-def test_the_chosen_band_holds_the_resonance(choice, steady):
-    low, high = band_by(choice, steady)
-    assert low < 3000 < high
-    assert high - low < 4000
