@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from features.signal.rows import FloatArray
 from features.signal.velocity import velocity_band
-from features.table.band import DEFAULT_BAND, Band
+from features.table.band import Band
 from features.table.class_features import COMBS
 from gen.corpus.fault_classes import HEALTHY, SHAFT, families, fault_class
 from gen.support.units import from_si
@@ -66,7 +66,7 @@ def write_diagnosis(
     CorpusError
         If the disk refuses the file.
     """
-    drawn = diagnosis.spectrum is not None
+    spectrum, under = diagnosis.spectrum, next(iter(healthy), None)
     write_page(
         Path(output),
         "diagnosis.html.jinja",
@@ -74,48 +74,43 @@ def write_diagnosis(
         name=name,
         diagnosis=diagnosis,
         colour=FAULT_COLOURS.get(diagnosis.verdict, FAINT),
-        picture=picture(draw_diagnosis(diagnosis, recording, next(iter(healthy), None)), "svg") if drawn else b"",
+        # a useless signal has no spectrum
+        picture=spectrum and picture(draw_diagnosis(diagnosis, spectrum, recording, under), "svg"),
         healthy=len(healthy),
-        several=len(recording.signals) > 1,
-        unit=recording.unit,
+        recording=recording,
         band=velocity_band(diagnosis.shaft_rate),
         colours=FAULT_COLOURS,
         least=LEAST_LEVEL,
         false_alarm=FALSE_ALARM,
-        duration=recording.used.duration,
-        fs=recording.fs,
         probability_in_words=probability_in_words,
         assumed=assumed,
     )
 
 
 @rc_context(STYLE)
-def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded, healthy: Recorded | None = None) -> Figure:
+def draw_diagnosis(
+    diagnosis: Diagnosis, spectrum: BandSpectrum, recording: Recorded, healthy: Recorded | None = None
+) -> Figure:
     """Waveform, power spectral density, and envelope spectrum over its floor, one above the other, over those of a healthy recording."""
-    shown = _shown(diagnosis, recording)
-    under = None if healthy is None else _shown(diagnosis, healthy)
+    shown = _shown(diagnosis, spectrum, recording)
+    under = healthy and _shown(diagnosis, spectrum, healthy)
     figure = Figure(figsize=(WIDTH, 6.4), layout="constrained")
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(0.8, 0.8, 1.4))
     draw_waveform(waveform, shown, under)
     draw_density(density, shown, under)
-    if diagnosis.spectrum is not None:
-        spectrum = diagnosis.spectrum
-        if under is not None:
-            # in the band of the recording, which may not be the best one of the healthy recording
-            (of_healthy,) = band_spectra(under.signal, under.fs, under.shaft_rate, spectrum.channel, [spectrum.band])
-            envelope.plot(*_levels(of_healthy, diagnosis.shaft_rate), linewidth=0.7, **UNDER)
-        _draw_levels(envelope, spectrum, diagnosis)
     if under is not None:
+        # in the band of the recording, which may not be the best one of the healthy recording
+        (of_healthy,) = band_spectra(under.signal, under.fs, under.shaft_rate, spectrum.channel, [spectrum.band])
+        envelope.plot(*_levels(of_healthy, diagnosis.shaft_rate), linewidth=0.7, **UNDER)
         figure.legend(*waveform.get_legend_handles_labels(), loc="outside upper right", ncols=2)
+    _draw_levels(envelope, spectrum, diagnosis)
     figure.align_ylabels()
     return figure
 
 
-def _shown(diagnosis: Diagnosis, recording: Recorded) -> DrawnRecord:
-    """Channel whose spectrum is shown, or the first one, at the speed of the diagnosis."""
-    channel = next(iter(recording.signals)) if diagnosis.spectrum is None else diagnosis.spectrum.channel
-    signal = recording.used.signals[channel]
-    band = DEFAULT_BAND if diagnosis.spectrum is None else Band(*diagnosis.spectrum.band)
+def _shown(diagnosis: Diagnosis, spectrum: BandSpectrum, recording: Recorded) -> DrawnRecord:
+    """Channel whose spectrum is shown, at the speed of the diagnosis."""
+    signal, band = recording.used.signals[spectrum.channel], Band(*spectrum.band)
     return DrawnRecord("", signal, recording.fs, diagnosis.shaft_rate, diagnosis.orders, HEALTHY, band, recording.unit)
 
 
