@@ -27,10 +27,7 @@ from gen.corpus import (
     unit_counts,
     write_numbers,
 )
-from gen.corpus.choice import per_record
 from gen.corpus.fault_classes import HEALTHY
-from gen.corpus.schema import stored_unit
-from gen.support.units import READABLE, shown_unit
 from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.curves import draw_detection, draw_reliability, draw_roc
 from raceway.reports.examples import examples_of
@@ -40,7 +37,6 @@ from raceway.reports.templates import write_page
 
 LONGEST_TEXT = 300
 BARS, LEAST_IMPORTANCE = 15, 5e-4  # of the drawn quantities
-LONGEST_NAME = 40
 
 
 def write_report(corpus: Path | str, results: Results, output: Path | str) -> Path:
@@ -91,25 +87,8 @@ def _content(corpus: xr.Dataset) -> dict[str, Any]:
             (fault, caption, b"" if shown is None else picture(draw_record(shown), "svg"))
             for fault, (shown, caption) in examples_of(corpus).items()
         ],
-        "content": picture(draw_content(corpus["fault"].values, corpus["rig"].values, quantities(corpus)), "svg"),
+        "content": picture(draw_content(corpus), "svg"),
     }
-
-
-def quantities(corpus: xr.Dataset) -> dict[str, np.ndarray]:
-    """Quantities whose distributions are drawn, by name and unit: operating conditions and labels with a unit, and levels.
-
-    A label is 0 in a record without what it describes; such a record is left out of its distribution, NaN in shape (record,).
-    """
-    drawn = dict[str, np.ndarray]()
-    for name in filter(str.isidentifier, per_record(corpus)):
-        role, unit = corpus[name].attrs["role"], stored_unit(corpus[name].attrs)
-        measured = unit in READABLE and role in ("operating", "label")
-        if corpus[name].dtype.kind == "f" and (measured or unit == "dB"):
-            shown, factor = shown_unit(name, unit)
-            values = corpus[name].values / factor
-            named = f"{name[:LONGEST_NAME].replace('_', ' ')} [{shown}]"
-            drawn[named] = np.where(values == 0, np.nan, values) if role == "label" else values
-    return drawn
 
 
 def _scores(results: Results) -> dict[str, Any]:

@@ -1,10 +1,11 @@
-"""Pictures of corpora and scores, drawn from plain arrays."""
+"""Pictures of the contents of corpora, and of scores."""
 
 from collections.abc import Mapping, Sequence
 from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,41 +13,55 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULT_NAMES
+from gen.corpus.choice import per_record
+from gen.corpus.schema import stored_unit
+from gen.support.units import READABLE, shown_unit
 from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 
 if TYPE_CHECKING:
     from features.baselines import Baseline, Scores
 
+LONGEST_NAME = 40
 TEST_MARKERS = ((VERMILION, "s"), ("#009E73", "^"), ("#CC79A7", "v"), ("#E69F00", "P"))
 
 
 @rc_context(STYLE)
-def draw_content(fault: IntArray, rig: IntArray, quantities: Mapping[str, FloatArray]) -> Figure:
-    """Records per rig, and histograms of the quantities that vary, stacked by class.
-
-    Parameters
-    ----------
-    fault, rig
-        Class and rig number of each record, shape (record,).
-    quantities
-        Values by label, shape (record,). Each gets a histogram if it varies; values that are not finite are omitted.
-    """
+def draw_content(corpus: xr.Dataset) -> Figure:
+    """Records per rig, and histograms of the `quantities` that vary, stacked by class; values that are not finite are omitted."""
+    fault, rig = corpus["fault"].values, corpus["rig"].values
     # what has one value throughout needs no picture
-    quantities = {label: values for label, values in quantities.items() if _varies(values)}
-    rows = -(-(1 + len(quantities)) // 2)
+    varying = {label: values for label, values in quantities(corpus).items() if _varies(values)}
+    rows = -(-(1 + len(varying)) // 2)
     figure = Figure(figsize=(WIDTH, 0.4 + 1.5 * rows), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False).ravel()
     present = np.unique(fault)
     _draw_rigs(panels[0], fault, rig, present)
-    for axes, (label, values) in zip(panels[1:], quantities.items(), strict=False):
+    for axes, (label, values) in zip(panels[1:], varying.items(), strict=False):
         axes.set(xlabel=label, ylabel="records")
         _draw_distribution(axes, fault, values, present)
-    for axes in panels[1 + len(quantities) :]:
+    for axes in panels[1 + len(varying) :]:
         axes.remove()
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper left", ncols=len(FAULT_NAMES))
     return figure
+
+
+def quantities(corpus: xr.Dataset) -> dict[str, FloatArray]:
+    """Quantities whose distributions are drawn, by name and unit: operating conditions and labels with a unit, and levels.
+
+    A label is 0 in a record without what it describes; such a record is left out of its distribution, NaN in shape (record,).
+    """
+    drawn = dict[str, FloatArray]()
+    for name in filter(str.isidentifier, per_record(corpus)):
+        role, unit = corpus[name].attrs["role"], stored_unit(corpus[name].attrs)
+        measured = unit in READABLE and role in ("operating", "label")
+        if corpus[name].dtype.kind == "f" and (measured or unit == "dB"):
+            shown, factor = shown_unit(name, unit)
+            values = corpus[name].values / factor
+            named = f"{name[:LONGEST_NAME].replace('_', ' ')} [{shown}]"
+            drawn[named] = np.where(values == 0, np.nan, values) if role == "label" else values
+    return drawn
 
 
 def _draw_rigs(axes: Axes, fault: IntArray, rig: IntArray, present: IntArray) -> None:

@@ -27,7 +27,6 @@ from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 from raceway.reports.examples import examples_of
 from raceway.reports.pictures import draw_record, picture
-from raceway.reports.report_page import quantities
 from raceway.reports.summaries import draw_content
 from raceway.sharing.card.additions import (
     PICTURES,
@@ -92,8 +91,7 @@ def _write_pictures(folder: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]
             caption="Records of each class, stacked; sizes of faults are of the records that have them.",
         )
     )
-    fault, rig = (corpus[name].values for name in ("fault", "rig"))
-    write_durably(small_png(draw_content(fault, rig, quantities(corpus))), folder / drawn[-1].name)
+    write_durably(small_png(draw_content(corpus)), folder / drawn[-1].name)
     return tuple(drawn)
 
 

@@ -21,8 +21,9 @@ from gen.support.errors import CorpusError
 from raceway.reports import examples
 from raceway.reports.curves import draw_detection
 from raceway.reports.pictures import draw_record, fault_lines, thin, write_picture
-from raceway.reports.report_page import _findings, quantities, write_report
+from raceway.reports.report_page import _findings, write_report
 from raceway.reports.subject import shown_record
+from raceway.reports.summaries import quantities
 from tests.browser import CHROMIUM, browser
 from tests.corpora import write_records
 
