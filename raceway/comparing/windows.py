@@ -5,7 +5,7 @@ blocks, so that memory does not grow with the signals of a corpus.
 """
 
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -108,18 +108,18 @@ def measured_windows(folder: Path, name: str, common: CommonForm, most: int) -> 
         labels = DataFrame({key: corpus[key].values for key in names})
         # a line is looked up at a rate and at orders that are known
         needed = labels[["shaft_rate", *Orders._fields]]
-        known = (np.isfinite(needed.to_numpy()) & (needed.to_numpy() > 0)).all(axis=1)
+        known = ((needed > 0) & (needed < np.inf)).all(axis=1)
         if not known.any():
             message = (
                 f"{folder}: no record has a shaft rate and fault orders above 0, which are needed to find its lines."
             )
             raise CorpusError(message)
         labelled = labels["fault"] != UNKNOWN_CODE
-        chosen = _chosen(labels[known & labelled.to_numpy()], corpus.sizes["elapsed_time"], common.window, most)
+        chosen = _chosen(labels[known & labelled], corpus.sizes["elapsed_time"], common.window, most)
         values = np.full((len(chosen), len(NAMES)), np.nan)
         # records of one class and sample rate at a time, so that memory does not grow with the corpus
-        for key, places in chosen.groupby(["fault", "sample_rate"]).indices.items():
-            code, fs = cast("tuple[int, float]", key)
+        groups: Any = chosen.groupby(["fault", "sample_rate"]).indices
+        for (code, fs), places in groups.items():
             for block in np.array_split(places, range(BLOCK, len(places), BLOCK)):
                 values[block] = _measure_block(corpus, chosen.iloc[block], common, FAULTS[code], fs)
     # a constant signal has no measures

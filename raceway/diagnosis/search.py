@@ -7,7 +7,7 @@ computed over speeds from half to 1.7 times those that are given, so that lines 
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +70,7 @@ class Given(NamedTuple):
         return (1 - reach) * low, (1 + reach) * high
 
 
-def given_of(orders: Mapping[str, Iterable[Any]], rpm: Sequence[float] | None) -> Given:
+def given_of(orders: Mapping[str, Iterable[float]], rpm: Sequence[float] | None) -> Given:
     """Bearings by name with their fault orders, and the lowest and highest speed; all usual speeds if it is not known."""
     low, high = ANY_RATE if rpm is None else (rpm_to_hertz(float(speed)) for speed in rpm)
     return Given({name: Orders(*map(np.asarray, each)) for name, each in orders.items()}, (low, high))

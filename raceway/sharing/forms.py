@@ -101,16 +101,11 @@ def copy(
     form = _form(target, to, codec)
     # before anything is read
     check_new(target)
-    writers: dict[str, Callable[[Chosen, Any], None]] = {
-        "folder": _write_parts,
-        "nc": _write_parts,
-        "parquet": write_parquet,
-    }
     choice = {"where": where, "split": split, "channels": channels, "rename": rename, "float32": float32}
     with choose(paths, **choice, progress=progress) as chosen:
         remove_left_behind_of(target.absolute())
         with _place(form, target, chosen.recipe, codec or "zlib") as place:
-            {**writers, **FORMS}[form](chosen, place)
+            _WRITERS[form](chosen, place)
             # hashes of the records are known when all are written; the target is then still temporary
             chosen.check_repeats()
     files = [target] if target.is_file() else [path for path in target.rglob("*") if path.is_file()]
@@ -150,3 +145,12 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
     if package is not None and find_spec(package) is None:
         raise CorpusError(f"{form}: needs {package}; pip install {package}, or choose another form.")
     return form
+
+
+_WRITERS: Mapping[str, Callable[[Chosen, Any], None]] = {
+    "folder": _write_parts,
+    "nc": _write_parts,
+    "parquet": write_parquet,
+    **FORMS,
+}
+"""Functions that write the chosen records to their place, by form."""
