@@ -6,6 +6,7 @@ Each real set counts equally in a class, whatever its number of windows, so that
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from sklearn.metrics import roc_auc_score
@@ -129,22 +130,24 @@ def contrast(synthetic: Windows, real: tuple[Windows, ...], common: CommonForm) 
     CorpusError
         If no class has enough windows on both sides.
     """
-    classes = _classes(synthetic, real)
-    comparison = Comparison({}, {}, {}, {}, common, synthetic, real)
-    for fault in classes:
-        samples = {w.name: w.values_of(fault) for w in (synthetic, *real)}
+    tables, quantiles, counts = dict[str, Any](), dict[str, Any](), dict[str, Any]()
+    yardstick = dict[str, Table]()
+    for fault in _classes(synthetic, real):
+        samples = {windows.name: windows.values_of(fault) for windows in (synthetic, *real)}
         samples = {name: values for name, values in samples.items() if len(values) >= FEWEST}
-        columns = {m.name: {name: finite(v[:, NAMES.index(m.name)]) for name, v in samples.items()}
-                   for m in MEASURES if m.belongs_to(fault)}  # fmt: skip
-        comparison.auc[fault] = {name: _auc(sets, synthetic.name) for name, sets in columns.items()}
-        comparison.quantiles[fault] = {name: _quantiles(sets, synthetic.name) for name, sets in columns.items()}
-        comparison.counts[fault] = {name: {key: len(v) for key, v in sets.items()} for name, sets in columns.items()}
-        others = [w.name for w in real if w.name in samples]
+        columns = {
+            measure.name: {name: finite(values[:, NAMES.index(measure.name)]) for name, values in samples.items()}
+            for measure in MEASURES
+            if measure.belongs_to(fault)
+        }
+        tables[fault] = {name: _auc(sets, synthetic.name) for name, sets in columns.items()}
+        quantiles[fault] = {name: _quantiles(sets, synthetic.name) for name, sets in columns.items()}
+        counts[fault] = {name: {key: len(values) for key, values in sets.items()} for name, sets in columns.items()}
+        others = [windows.name for windows in real if windows.name in samples]
         for held in others if len(others) > 1 else []:
             of_real = {name: {key: sets[key] for key in others} for name, sets in columns.items()}
-            table = {name: _auc(sets, held) for name, sets in of_real.items()}
-            comparison.yardstick.setdefault(held, {})[fault] = table
-    return comparison
+            yardstick.setdefault(held, {})[fault] = {name: _auc(sets, held) for name, sets in of_real.items()}
+    return Comparison(tables, quantiles, yardstick, counts, common, synthetic, real)
 
 
 def _classes(synthetic: Windows, real: tuple[Windows, ...]) -> list[str]:

@@ -8,7 +8,6 @@ from raceway.console import show
 from raceway.console.corpus_table import table_of
 from raceway.console.options import (
     A_CORPUS,
-    USUAL_ANALYSIS,
     Team,
     corpus_argument,
     json_option,
@@ -66,31 +65,17 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
     for one in (corpus, tested or corpus):
         with open_corpus(one) as opened:
             check_lives(opened, str(one))
-    tables = [None if one is None else table_of(one, "off", team, USUAL_ANALYSIS) for one in (corpus, tested)]
-    assert tables[0] is not None  # noqa: S101
-    scores = score_lives(tables[0], tables[1], folds=folds)
+    table, other = table_of(corpus, team=team), tested and table_of(tested, team=team)
+    scores = score_lives(table, other, folds=folds)
     if as_json:
         show.as_json({"lives": scores.to_dict("index")})
         return
-    at = tuple(f"mae_{100 * share:.0f}" for share in SHARES)
-    others = "phm_2012", "alpha_lambda", "concordance"
-    show.table(
-        (
-            "estimate",
-            *(f"error at {name[4:]} % [h]" for name in at),
-            "PHM 2012",
-            "within 20 %",
-            "concordance",
-            "before [h]",
-        ),
-        (
-            (
-                str(name),
-                *(f"{from_si(row[column], 'h'):,.1f}" for column in at),
-                *(f"{row[column]:.3f}" for column in others),
-                f"{from_si(row['mae_before'], 'h'):,.1f}",
-            )
-            for name, row in scores.iterrows()
-        ),
+    errors = {f"mae_{100 * share:.0f}": f"error at {100 * share:.0f} % [h]" for share in SHARES}
+    ratios = {"phm_2012": "PHM 2012", "alpha_lambda": "within 20 %", "concordance": "concordance"}
+    columns = {**errors, **ratios, "mae_before": "before [h]"}
+    rows = (
+        [name, *(f"{row[key]:.3f}" if key in ratios else f"{from_si(row[key], 'h'):,.1f}" for key in columns)]
+        for name, row in scores.iterrows()
     )
+    show.table(("estimate", *columns.values()), rows)
     show.text("before: error while the bearing has no spall, where nothing may be better than without_signal.")
