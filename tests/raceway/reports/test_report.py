@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from features.baselines import ESTIMATORS, benchmark
+from features.baselines import ESTIMATORS, TrackResults, benchmark
 from features.baselines.detection import detection
 from features.table.band import DEFAULT_BAND
 from features.table.corpus_features import feature_table
@@ -192,6 +192,16 @@ def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, 
     assert held["importance"] == results.importance
     assert held["baselines"]["ensemble"]["grouped"]["roc"]["area"] == results.baselines["ensemble"].grouped.roc.area
     assert held["baselines"]["ensemble"]["null"]["accuracy"] == results.baselines["ensemble"].null.accuracy
+
+
+def test_a_further_track_is_drawn_although_other_corpora_are_not_tested_on_it(corpus, results, tmp_path):
+    tested = {
+        name: replace(row, tests=(replace(row.grouped, by_recording=row.grouped),))
+        for name, row in results.baselines.items()
+    }
+    further = {"rig": TrackResults(2, 24, 24, results.baselines)}
+    both = replace(results, tests=(results.corpus,), baselines=tested, further=further)
+    assert "on every track" in write_report(corpus, both, tmp_path / "out").read_text()
 
 
 def test_a_score_above_chance_with_permuted_labels_is_reported_as_a_leak(results):
