@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy import integrate, interpolate
+from scipy import interpolate
 from scipy import signal as sp
 from scipy.fft import irfft, rfft
 
@@ -36,11 +36,6 @@ def coherence(x: Array) -> list[Array]:
     return [sp.coherence(x + 0j, other, FS, nperseg=100)[1] for other in shifted]
 
 
-def velocity(x: Array) -> Array:
-    filtered = sp.sosfiltfilt(sp.butter(4, 10, "highpass", fs=FS, output="sos"), x)
-    return integrate.cumulative_trapezoid(filtered, dx=1 / FS)
-
-
 def velocity_rms(x: Array) -> Array:
     f, density = (part[10:1001] for part in sp.welch(x, FS, nperseg=round(FS)))
     return np.sqrt(np.trapezoid(density / (2 * np.pi * f) ** 2, f))
@@ -62,10 +57,8 @@ def cases(samples: int) -> dict[str, tuple[tuple, str, Work]]:
             "stft, rfft",
             lambda x: rfft(abs(sp.stft(x, FS, "hann", 128, 112)[2]) ** 2),
         ),
-        "spectral_kurtosis": ((FS,), "stft", lambda x: kurtosis(abs(sp.stft(x, FS, nperseg=100)[2]) ** 2)),
         "resample_to_angle": (turned, "CubicSpline", lambda x: interpolate.CubicSpline(angle, x)(places)),
         "order_spectrum": ((PER_TURN,), "rfft, four times padded", lambda x: abs(rfft(x * hann, 4 * samples))),
-        "velocity": ((FS,), "butter, sosfiltfilt, cumulative_trapezoid", velocity),
         "velocity_rms": ((FS, SHAFT_RATE), "welch", velocity_rms),
         "cepstrum": ((), "irfft(log(abs(rfft(x))))", lambda x: irfft(np.log(abs(rfft(x))), samples)),
         "psd": ((FS,), "welch", lambda x: sp.welch(x, FS, nperseg=round(FS / 4))),

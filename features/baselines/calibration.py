@@ -11,11 +11,9 @@ A signal without a line is called damaged only if it is more impulsive than near
 .. [1] C. Guo, G. Pleiss, Y. Sun, K. Q. Weinberger, "On calibration of modern neural networks", ICML 2017.
 """
 
-from collections.abc import Callable
-from typing import Annotated, Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
 from scipy.special import log_softmax, softmax
 
 from features.signal.rows import FloatArray, IntArray
@@ -27,11 +25,9 @@ SMALLEST = 1e-6  # probabilities below it count as this: a forest can give 0
 TEMPERATURES = (0.2, 5.0)  # lowest and highest: records that are all right would make any probability certain
 
 Groups = Literal["rig", "specimen", "record", "nothing"]
-Temperature = Annotated[float, Field(ge=TEMPERATURES[0], le=TEMPERATURES[1])]
-Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 
 
-class Calibration(BaseModel):
+class Calibration(NamedTuple):
     """Numbers that turn the probabilities of an estimator into calibrated ones and into answers.
 
     Attributes
@@ -49,12 +45,10 @@ class Calibration(BaseModel):
         Largest ``IMPULSIVENESS`` of ``HEALTHY_SHARE`` of the healthy training records; None if they have no such feature.
     """
 
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
-
     by: Groups
-    temperature: Temperature
-    threshold: Share
-    coverage: Share
+    temperature: float
+    threshold: float
+    coverage: float
     impulsive: float | None = None
 
 
@@ -99,9 +93,11 @@ def fit_calibration(probabilities: FloatArray, truth: IntArray, by: Groups = "re
         Groups that the cross-validation kept together.
     """
     logarithms = _logarithms(probabilities)
-    temperature = float(
-        np.exp(_lowest(lambda log: _loss(logarithms / np.exp(log), truth), *np.log(TEMPERATURES).tolist()))
-    )
+    from scipy.optimize import minimize_scalar  # a tenth of a second, which a prediction need not wait for
+
+    bounds = np.log(TEMPERATURES).tolist()
+    lowest = minimize_scalar(lambda log: _loss(logarithms / np.exp(log), truth), bounds=bounds, method="bounded")
+    temperature = float(np.exp(lowest.x))
     records = calibrate(probabilities, temperature)
     threshold = answering(records)
     coverage = float(np.mean(records.max(axis=1) >= threshold))
@@ -112,13 +108,6 @@ def _loss(logarithms: FloatArray, truth: IntArray) -> float:
     """Log-loss of the softmax of some rows, with the same total weight for each class."""
     of_truth = log_softmax(logarithms, axis=1)[np.arange(len(truth)), truth]
     return -float(np.average(of_truth, weights=1 / np.bincount(truth)[truth]))
-
-
-def _lowest(function: Callable[[float], float], low: float, high: float) -> float:
-    """Place of the lowest value of a function between two bounds."""
-    from scipy.optimize import minimize_scalar  # a tenth of a second, which a prediction need not wait for
-
-    return float(minimize_scalar(function, bounds=(low, high), method="bounded").x)
 
 
 def answering(probabilities: FloatArray, coverage: float = COVERAGE) -> float:

@@ -52,8 +52,7 @@ def fit_and_calibrate(
     probabilities = np.zeros((len(truth), len(classes)))
     for (_, test), (_, of_tested) in zip(splits, folds, strict=True):
         probabilities[test] = of_tested
-    calibration = fit_calibration(probabilities, truth, by)
-    return whole, calibration.model_copy(update={"impulsive": _impulsive(records)})
+    return whole, fit_calibration(probabilities, truth, by)._replace(impulsive=_impulsive(records))
 
 
 def _impulsive(records: Records) -> float | None:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import beta
+from sklearn.metrics import auc, roc_curve
 
 from features.baselines.records import FloatArray, IntArray
 from features.baselines.tracks import ranges
@@ -94,34 +95,26 @@ def roc(faulty: np.ndarray, score: FloatArray, specimen: IntArray, seed: int) ->
     """
     if faulty.all() or not faulty.any():
         return None
-    # equal scores are one point of the curve, at the last of them
-    order = np.argsort(-score, kind="stable")
-    last = np.flatnonzero(np.append(np.diff(score[order]) != 0, True))
 
-    def curve(weight: FloatArray) -> tuple[float, FloatArray]:
+    def curve(weight: FloatArray | None = None) -> FloatArray:
         """Area, and shares at `FALSE_ALARMS`, of weighted records."""
-        alarms, hits = (
-            np.append(0, summed[last]) / summed[-1]
-            for summed in (np.cumsum((weight * kind)[order]) for kind in (~faulty, faulty))
-        )
+        alarms, hits, _ = roc_curve(faulty, score, sample_weight=weight, drop_intermediate=False)
         # the curve is a staircase: at a share of false alarms, the hits reached so far
-        at = hits[np.searchsorted(alarms, FALSE_ALARMS, side="right") - 1]
-        return float(np.trapezoid(hits, alarms)), at
+        return np.append(auc(alarms, hits), hits[np.searchsorted(alarms, FALSE_ALARMS, side="right") - 1])
 
-    area, detected = curve(np.ones(len(score)))
-    found = Roc(area, None, tuple(FALSE_ALARMS.tolist()), tuple(detected.tolist()))
+    area, *detected = curve().tolist()
+    shares = tuple(FALSE_ALARMS.tolist())
     # records of one specimen are alike, so the bootstrap draws specimens
     rng, weight = np.random.default_rng(seed), np.empty(len(score))
     kinds = [(kind, *np.unique(specimen[kind], return_inverse=True)) for kind in (faulty, ~faulty)]
     # of one specimen every draw is the same, and there is no interval
     if min(len(units) for _, units, _ in kinds) < 2:
-        return found
-    areas, curves = np.empty(RESAMPLES), np.empty((RESAMPLES, len(FALSE_ALARMS)))
-    for k in range(RESAMPLES):
+        return Roc(area, None, shares, tuple(detected))
+    curves = np.empty((RESAMPLES, 1 + len(FALSE_ALARMS)))
+    for drawn in curves:
         for kind, units, number in kinds:
-            drawn = rng.integers(len(units), size=len(units))
-            weight[kind] = np.bincount(drawn, minlength=len(units))[number]
-        areas[k], curves[k] = curve(weight)
-    low, high = np.quantile(curves, INTERVAL, axis=0).tolist()
-    ends = np.quantile(areas, INTERVAL)
-    return Roc(area, (float(ends[0]), float(ends[1])), found.false_alarms, found.detected, tuple(low), tuple(high))
+            times = np.bincount(rng.integers(len(units), size=len(units)), minlength=len(units))
+            weight[kind] = times[number]
+        drawn[:] = curve(weight)
+    (least, *low), (most, *high) = np.quantile(curves, INTERVAL, axis=0).tolist()
+    return Roc(area, (least, most), shares, tuple(detected), tuple(low), tuple(high))

@@ -24,7 +24,7 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from features.baselines.own import Maker, OwnClassifier
+from features.baselines.own import Maker, OwnClassifier, of_margins
 from features.baselines.records import FloatArray, IntArray
 from features.table.class_features import COMBS, EVIDENCE, class_features
 from gen.corpus import FAULTS
@@ -262,7 +262,4 @@ def class_probabilities(estimator: Estimator, features: "DataFrame | Waveforms")
     """
     if hasattr(estimator, "predict_proba"):
         return np.asarray(estimator.predict_proba(features))
-    decision = np.asarray(estimator.decision_function(features))
-    if decision.ndim == 1:
-        decision = np.stack([-decision, decision], axis=1)
-    return softmax(decision, axis=1)
+    return of_margins(np.asarray(estimator.decision_function(features)))

@@ -327,7 +327,7 @@ def _fit(model: Model, data: xr.Dataset | Waveforms, workers: Workers, done: Cal
 def _content(model: Model) -> dict[str, Any]:
     """Fields of a model file."""
     parts = {name: None if (part := getattr(model, name)) is None else _content(part) for name in _PARTS}
-    return {name: getattr(model, name) for name in _STORED} | {"calibration": model.calibration.model_dump()} | parts
+    return {name: getattr(model, name) for name in _STORED} | {"calibration": model.calibration._asdict()} | parts
 
 
 def _holds_signals(data: Data) -> TypeGuard[Path | str | xr.Dataset]:

@@ -4,7 +4,6 @@ An own classifier is anything with ``fit(X, y)`` and ``predict(X)``. It is given
 because names need no table of codes and scikit-learn takes them. `OwnClassifier` translates between names and codes.
 """
 
-import copy
 import inspect
 import pkgutil
 import sys
@@ -15,11 +14,13 @@ from typing import Any, Protocol, Self
 import numpy as np
 import pandas as pd
 from scipy.special import softmax
-from sklearn.base import BaseEstimator, clone
+from sklearn.base import clone
 
 from features.baselines.records import FloatArray, IntArray
 from gen.corpus import FAULTS
 from gen.support.errors import RacewayError
+
+PROBABILITIES = ("predict_proba", "decision_function")
 
 
 class EstimatorError(RacewayError):
@@ -87,15 +88,12 @@ class OwnClassifier:
         EstimatorError
             If the classifier fails, or its result has another shape or is not finite.
         """
-        if not (hasattr(self.fitted, "predict_proba") or hasattr(self.fitted, "decision_function")):
+        method = next((name for name in PROBABILITIES if hasattr(self.fitted, name)), None)
+        if method is None:
             return self._certain(np.asarray(self._call("predict", X)), len(X))
-        method = "predict_proba" if hasattr(self.fitted, "predict_proba") else "decision_function"
         probabilities = np.asarray(self._call(method, X), dtype=float)
-        # margins become probabilities; with two classes there is one margin, that of the second
         if method == "decision_function":
-            probabilities = softmax(
-                np.stack([-probabilities, probabilities], axis=1) if probabilities.ndim == 1 else probabilities, axis=1
-            )
+            probabilities = of_margins(probabilities)
         wanted = (len(X), len(self.classes_))
         if probabilities.shape != wanted or not np.isfinite(probabilities).all():
             what = (
@@ -134,6 +132,11 @@ class OwnClassifier:
             ) from error
 
 
+def of_margins(decision: FloatArray) -> FloatArray:
+    """Probabilities of the margins of a classifier; with two classes there is one margin, that of the second."""
+    return softmax(np.stack([-decision, decision], axis=1) if decision.ndim == 1 else decision, axis=1)
+
+
 def maker_name(maker: Maker) -> str:
     """Name of a classifier or of its maker, for tables and errors."""
     return str(getattr(maker, "__name__", type(maker).__name__))
@@ -161,7 +164,7 @@ def new_classifier(maker: Maker, seed: int, name: str) -> Any:
             ) from error
     # a fitted object is copied, so that folds do not share what it learned
     else:
-        made = clone(maker) if isinstance(maker, BaseEstimator) else copy.deepcopy(maker)
+        made = clone(maker, safe=False)
     # told before the first fit, not by an AttributeError inside one
     lacking = [method for method in ("fit", "predict") if not callable(getattr(made, method, None))]
     if lacking:

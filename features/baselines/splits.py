@@ -13,8 +13,8 @@ from features.baselines.calibration import UNCALIBRATED, fit_calibration
 from features.baselines.fitting import fits
 from features.baselines.names import UNTRAINED, Track
 from features.baselines.own import Maker
-from features.baselines.predictions import Predictions, fault_names, predictions
-from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
+from features.baselines.predictions import fault_names, predictions
+from features.baselines.records import DEFAULT_GROUPS, IntArray, Records, records_of
 from features.baselines.scores import Scores, mean_recall, score
 from features.baselines.tracks import Split, check_taught, grouped_splits, track_splits
 from features.table.waveforms import Waveforms
@@ -130,18 +130,9 @@ def score_splits(
     # of all folds together: single folds may lack classes
     chosen = records._replace(fault=labels).at(tested)
     _, recording = np.unique(chosen.recording, return_inverse=True)
-    together = _pool(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)
+    # calibrated on these same predictions, so log-loss and calibration error are those of a model calibrated on the tested machines
+    pooled = probabilities[np.ix_(tested, classes)]
+    truth = np.searchsorted(classes, chosen.fault)
+    calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(pooled, truth)
+    together = predictions(pooled, fault_names(classes), recording, calibration)
     return score(chosen, together, seed, folds=tuple(folds))
-
-
-def _pool(
-    probabilities: FloatArray, classes: IntArray, labels: IntArray, recording: IntArray, estimator: str | Maker
-) -> Predictions:
-    """Predictions of all folds, calibrated together; an untrained baseline stays uncalibrated.
-
-    Temperature and threshold are fitted to these same predictions, so log-loss and calibration error are those of a model
-    that was calibrated on the tested machines.
-    """
-    truth = np.searchsorted(classes, labels)
-    calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(probabilities, truth)
-    return predictions(probabilities, fault_names(classes), recording, calibration)

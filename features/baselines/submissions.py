@@ -63,7 +63,10 @@ def write_submission(
     for name, estimator in estimators.items():
         given = table if waveforms is None or isinstance(estimator, str) else waveforms
         features = records_of(given, DEFAULT_GROUPS).features
-        frame[name] = _predicted(features, records, estimator, splits, seed)[frame.index]
+        for (_, test), (fitted, probabilities) in zip(
+            splits, fits(features, records.fault, estimator, splits, seed), strict=True
+        ):
+            frame.loc[test, name] = np.array(FAULTS)[fitted.classes_[probabilities.argmax(axis=1)]]
     write_text_durably(frame.to_csv(index=False), path)
 
 
@@ -87,7 +90,7 @@ def check_submission(
             f"{path}: is no table of predictions; give a file with the predictions of a submission."
         ) from None
     # numbers, identities and folds prove that the tested records are those of the protocol
-    if list(given.columns[:3]) != TESTED or not given[TESTED].equals(frame.astype(str).reset_index(drop=True)):
+    if not given.iloc[:, : len(TESTED)].equals(frame.astype(str).reset_index(drop=True)):
         raise CorpusError(
             f"{path}: does not have the {len(frame)} tested records of {folds} folds by {track} with seed {seed} of this corpus; "
             "give the options and the corpus that it was made with."
@@ -106,16 +109,6 @@ def _tested(table: xr.Dataset, splits: Sequence[Split]) -> pd.DataFrame:
         fold[test] = place
     columns = {"record": number, "identity": table[IDENTITY].values[number].astype(str), "fold": fold}
     return pd.DataFrame(columns)[fold >= 0]
-
-
-def _predicted(
-    features: pd.DataFrame, records: Records, estimator: str | Maker, splits: Sequence[Split], seed: int
-) -> np.ndarray:
-    names = np.full(len(records.fault), "", object)
-    fitted = fits(features, records.fault, estimator, splits, seed)
-    for (_, test), (one, probabilities) in zip(splits, fitted, strict=True):
-        names[test] = np.array(FAULTS)[one.classes_[probabilities.argmax(axis=1)]]
-    return names
 
 
 def _scores(tested: Records, predicted: pd.Series, where: str, seed: int) -> Scores:

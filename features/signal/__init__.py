@@ -10,7 +10,7 @@ rows         compilation of loops over records, sums in a fixed order, windows
 spectra      power spectra, cepstra, Fourier coefficients, whitening
 demodulation analytic signals of bands, envelope spectra and their floor
 orders       signals at equal angles of the shaft in place of equal times, their spectra and averages
-velocity     velocity and displacement, and their level
+velocity     rms velocity of ISO 20816-3
 lines        levels of fault lines and combs at orders of the shaft
 speed        shaft speed that fits fault lines and shaft harmonics together
 tracking     course of the shaft speed of a run-up, where it can be believed
@@ -19,7 +19,7 @@ colour       roll-off, centroid and tonality of a power spectrum
 shape        impulsiveness, slow fluctuation, statistics of the waveform
 cyclic       spectral coherence, enhanced envelope spectrum, and their thresholds
 envelopes    envelope spectrum of a band of records
-impulsive    kurtogram, spectral kurtosis, band in which a fault line stands out
+impulsive    kurtogram, band in which a fault line stands out
 ============ ========================================================================================
 """
 

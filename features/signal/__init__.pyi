@@ -1,8 +1,4 @@
-from .velocity import (
-    displacement as displacement,
-    velocity as velocity,
-    velocity_rms as velocity_rms,
-)
+from .velocity import velocity_rms as velocity_rms
 from .orders import (
     angles_from_speed as angles_from_speed,
     angles_from_tacho as angles_from_tacho,
@@ -21,6 +17,5 @@ from .impulsive import (
     BandTree as BandTree,
     comb_bands as comb_bands,
     kurtogram as kurtogram,
-    spectral_kurtosis as spectral_kurtosis,
 )
 from .spectra import cepstrum as cepstrum, psd as psd, whiten_cepstrally as whiten_cepstrally

@@ -1,20 +1,13 @@
-"""Bands in which a signal is impulsive: kurtogram, spectral kurtosis, and the band in which a fault line stands out.
+"""Bands in which a signal is impulsive: kurtogram, and the band in which a fault line stands out.
 
 The kurtogram divides the spectrum into 1, 2, 3, 4, 6, 8, 12, ... equal bands, the tree of [1]_. One Fourier transform of the
-record gives the analytic signals of all bands, in place of a cascade of filters. The spectral kurtosis takes it
-from short transforms instead [2]_: in stationary noise, that of K independent segments has the variance 4 / K [3]_, and
-its moments are known exactly [4]_. A fault line need not lie where the kurtosis is highest, so that `comb_bands` takes
-the level of its harmonics in the squared envelope spectrum, as the protrugram does [5]_.
+record gives the analytic signals of all bands, in place of a cascade of filters. A fault line need not lie where the
+kurtosis is highest, so that `comb_bands` takes the level of its harmonics in the squared envelope spectrum, as the
+protrugram does [2]_.
 
 .. [1] J. Antoni, "Fast computation of the kurtogram for the detection of transient faults", *Mech. Syst. Signal
        Process.* 21 (2007) 108-124.
-.. [2] J. Antoni, "The spectral kurtosis: a useful tool for characterising non-stationary signals", *Mech. Syst. Signal
-       Process.* 20 (2006) 282-307.
-.. [3] J. Antoni, R. B. Randall, "The spectral kurtosis: application to the vibratory surveillance and diagnostics of
-       rotating machines", *Mech. Syst. Signal Process.* 20 (2006) 308-331.
-.. [4] G. M. Nita, D. E. Gary, "Statistics of the spectral kurtosis estimator", *Publ. Astron. Soc. Pac.* 122 (2010)
-       595-607.
-.. [5] T. Barszcz, A. Jablonski, "A novel method for the optimal band selection for vibration signal demodulation and
+.. [2] T. Barszcz, A. Jablonski, "A novel method for the optimal band selection for vibration signal demodulation and
        comparison with the Kurtogram", *Mech. Syst. Signal Process.* 25 (2011) 431-451.
 """
 
@@ -24,14 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.fft import rfft
-from scipy.special import gammainccinv
 
-from features.signal.arguments import as_records, check_finite, check_positive, check_probability, like, of_each
+from features.signal.arguments import as_records, check_finite, check_positive, like, of_each
 from features.signal.demodulation import ZERO_PADDING, analytic_band, spectrum_over_floor
 from features.signal.lines import COMB_HARMONICS, combs
 from features.signal.rows import ComplexArray, FloatArray, IntArray, brief, squared_modulus
-from features.signal.spectra import fourier_coefficients, hann_segments
+from features.signal.spectra import fourier_coefficients
 
 FEWEST = 200  # independent complex samples of the narrowest bands: the kurtosis of noise then errs by 0.14 (rms)
 OVERLAP = 0.25  # share of its width by which a band extends beyond each edge; without, 15 of 100 resonances at -12 dB are missed
@@ -111,69 +102,6 @@ def comb_bands(x: ArrayLike, fs: float, rate: ArrayLike) -> BandTree:
     score = np.stack([_comb_level(analytic_band(coefficients, *band), duration, rates) for band in bands], axis=-1)
     too_narrow = COMB_WIDTH * rates[:, None] > np.diff(edges).T
     return BandTree(levels, edges, like(x, np.where(too_narrow, -np.inf, score)), "level of the fault line [nepers]")
-
-
-class SpectralKurtosis(NamedTuple):
-    """Spectral kurtosis from short transforms.
-
-    Attributes
-    ----------
-    frequencies
-        Shape (frequency,) [Hz].
-    kurtosis
-        Shape (record, frequency); 0 for stationary noise.
-    segments
-        Number of segments of each record.
-    """
-
-    frequencies: FloatArray
-    kurtosis: FloatArray
-    segments: int
-
-    def __repr__(self) -> str:
-        return brief(self)
-
-    def threshold(self, probability: float) -> float:
-        """Kurtosis that a bin of stationary Gaussian noise exceeds with a probability.
-
-        The gamma distribution with the exact variance and skewness [4]_; for many segments, the normal one with variance
-        4 / K. Segments under a Hann window that overlap by half count as independent: the correlation of their fourth
-        powers is 0.0008.
-        """
-        check_probability(probability)
-        k = self.segments
-        variance = 4 * k**2 / ((k - 1) * (k + 2) * (k + 3))
-        shape = (k - 1) * (k + 4) ** 2 * (k + 5) ** 2 / ((k + 2) * (k + 3) * (5 * k - 7) ** 2)
-        return float(np.sqrt(variance / shape) * (gammainccinv(shape, probability) - shape))
-
-
-def spectral_kurtosis(x: ArrayLike, fs: float, *, segment: float = 0.005) -> SpectralKurtosis:
-    """Kurtosis of the coefficients of Hann-windowed segments that overlap by half, without bias in stationary noise.
-
-    The two lowest and the two highest frequencies are left out, where a coefficient overlaps with its mirror image.
-
-    Parameters
-    ----------
-    x
-        Records, shape (record, time).
-    fs
-        Sample rate [Hz].
-    segment
-        Length of a segment [s]: longer than an impact rings, shorter than the time between impacts.
-    """
-    check_positive(fs=fs, segment=segment)
-    records, length = as_records(x), round(segment * fs)
-    if length < 8 or records.shape[-1] < 2 * length:
-        raise ValueError(
-            f"a segment of {segment:.6g} s has {length} samples: take 8 samples to half of the {records.shape[-1]}."
-        )
-    transforms = np.asarray(rfft(hann_segments(records, length), axis=-1))[..., 2:-2]
-    power = (transforms.real**2 + transforms.imag**2).astype(float)
-    count = power.shape[1]
-    ratio = count * np.sum(power**2, axis=1) / np.maximum(np.sum(power, axis=1), np.finfo(float).tiny) ** 2
-    frequencies = np.arange(2, 2 + power.shape[-1]) * (fs / length)
-    kurtosis = (count + 1) / (count - 1) * (ratio - 1) - 1
-    return SpectralKurtosis(frequencies, like(x, kurtosis), count)
 
 
 def _comb_level(z: ComplexArray, duration: float, rate: FloatArray) -> FloatArray:

@@ -61,22 +61,19 @@ def power_density(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[Floa
     """`psd` of records that are known to be such arrays."""
     n = x.shape[-1]
     length = min(n, max(2, round(segment * fs)))
-    transforms = np.asarray(rfft(hann_segments(x, length), axis=-1))
+    window = hann_window(length, x.dtype)
+    transforms = np.asarray(rfft(_segments(x, window), axis=-1))
     power = squared_modulus(transforms.reshape(len(x), -1)).reshape(transforms.shape)
-    density = power.mean(axis=1) * (2 / (fs * np.sum(hann_window(length, x.dtype) ** 2)))
+    density = power.mean(axis=1) * (2 / (fs * np.sum(window**2)))
     density[:, 0] *= 0.5
     if length % 2 == 0:
         density[:, -1] *= 0.5
     return np.arange(density.shape[-1]) * (fs / length), density
 
 
-def hann_segments(x: FloatArray, length: int) -> FloatArray:
-    """Segments of ``length`` samples that overlap by half, without their mean, under a Hann window, shape (record, segment, time)."""
-    return _segments(x, hann_window(length, x.dtype))
-
-
 @row_kernel
 def _segments(x: FloatArray, window: FloatArray) -> FloatArray:
+    """Segments that overlap by half, without their mean, times a window, shape (record, segment, time)."""
     length = len(window)
     step = length - length // 2
     out = np.empty((x.shape[0], (x.shape[1] - length) // step + 1, length), x.dtype)

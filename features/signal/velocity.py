@@ -1,13 +1,11 @@
-"""Velocity and displacement of an acceleration, and the rms velocity that ISO 20816-3 judges.
+"""The rms velocity that ISO 20816-3 judges, of an acceleration.
 
-A signal is integrated in the frequency domain: its Fourier coefficients are divided by ``2 pi i frequency``, once for
-each integration [1]_. Division raises slow drift without limit, so a high-pass is part of the operation. The rms of the
-velocity that ISO 20816 [2]_ judges is taken from the power spectral density through the filter of [3]_.
+It is the root of the integral of the power spectral density over ``(2 pi frequency)**2`` [1]_, through the filter of [2]_:
+division raises slow drift without limit.
 
-.. [1] R. B. Randall, *Vibration-based Condition Monitoring*, 2nd ed., Wiley, 2021, section 3.2.
-.. [2] ISO 20816-3, *Mechanical vibration - Measurement and evaluation of machine vibration - Part 3: Industrial machinery
+.. [1] ISO 20816-3, *Mechanical vibration - Measurement and evaluation of machine vibration - Part 3: Industrial machinery
        with a power rating above 15 kW and operating speeds between 120 r/min and 30 000 r/min*, 2022.
-.. [3] ISO 2954, *Mechanical vibration of rotating and reciprocating machinery - Requirements for instruments for measuring
+.. [2] ISO 2954, *Mechanical vibration of rotating and reciprocating machinery - Requirements for instruments for measuring
        vibration severity*, 2012: Butterworth filters of third order, 3 dB down at the ends of the band.
 """
 
@@ -15,59 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.fft import irfft, next_fast_len, rfft
 
 from features.signal.arguments import as_records, check_positive, like, of_each
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 
-HIGH_PASS = 10.0  # Hz
 SLOWEST, SLOW, FASTEST = 2.0, 10.0, 500.0  # Hz: 120, 600 and 30,000 r/min
 VELOCITY_BAND, SLOW_VELOCITY_BAND = (10.0, 1000.0), (2.0, 1000.0)  # Hz, the second below 600 r/min
 VELOCITY_PERIODS = 10.0  # of the lower end of the band, in a window of its spectrum and in the shortest signal
-
-
-def velocity(x: ArrayLike, fs: float, high_pass: float = HIGH_PASS) -> FloatArray:
-    """Velocity, from accelerations of shape (record, time), in their unit times seconds and of the same shape.
-
-    The gain of the high-pass is 1 from ``high_pass`` on, 0 up to half of it, and rises as half a cosine in between. The
-    signal counts as zero beyond its ends, which the high-pass spreads: of a sine that is cut there, the velocity errs by
-    up to 2 % of its amplitude at 2 / ``high_pass`` seconds from an end, and by up to 0.3 % at 5 / ``high_pass``.
-
-    Parameters
-    ----------
-    x
-        Accelerations, shape (record, time).
-    fs
-        Sample rate [Hz].
-    high_pass
-        Lowest frequency that is kept whole [Hz].
-
-    Raises
-    ------
-    ValueError
-        If the high-pass is not between 0 and half the sample rate.
-    """
-    check_positive(fs=fs, high_pass=high_pass)
-    return like(x, _integrate(as_records(x), fs, high_pass, 1))
-
-
-def displacement(x: ArrayLike, fs: float, high_pass: float = HIGH_PASS) -> FloatArray:
-    """Displacement, from accelerations of shape (record, time), in their unit times s²; as `velocity`."""
-    check_positive(fs=fs, high_pass=high_pass)
-    return like(x, _integrate(as_records(x), fs, high_pass, 2))
-
-
-def _integrate(x: FloatArray, fs: float, high_pass: float, times: int) -> FloatArray:
-    if not 0 < high_pass < fs / 2:
-        raise ValueError(f"high_pass: {high_pass:g} Hz is not between 0 and half the sample rate, {fs / 2:g} Hz.")
-    count = next_fast_len(x.shape[1] + round(fs / high_pass), real=True)  # zeros part the end from the start
-    coefficients = np.asarray(rfft(x - x.mean(axis=1, keepdims=True), count, axis=1))
-    frequency = np.arange(count // 2 + 1) * (fs / count)
-    gain = 0.5 - 0.5 * np.cos(np.pi * np.clip(2 * frequency / high_pass - 1, 0, 1))
-    response = gain / (2j * np.pi * np.maximum(frequency, fs / count)) ** times
-    coefficients *= response.astype(coefficients.dtype)
-    return np.asarray(irfft(coefficients, count, axis=1, overwrite_x=True))[:, : x.shape[1]]
 
 
 def velocity_band(shaft_rate: float) -> tuple[float, float]:

@@ -7,7 +7,7 @@ and sample rate, so a network needs to learn no geometry; filters shared by all 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,19 +25,7 @@ FAMILY_NAMES = (*FAMILIES, "2fr")  # harmonics of the shaft lie at multiples of 
 BANDS = 2 + len(DEFAULT_BAND.narrow)
 
 
-class Signals(Protocol):
-    """Rows of samples, shape (record, time), of which slices are arrays."""
-
-    def __len__(self) -> int:
-        """Count the records."""
-        ...
-
-    def __getitem__(self, rows: slice, /) -> FloatArray:
-        """Read some records."""
-        ...
-
-
-def envelope_orders(x: Signals, known: Mapping[str, ArrayLike]) -> FloatArray:
+def envelope_orders(x: Any, known: Mapping[str, ArrayLike]) -> FloatArray:
     """Levels of envelope spectra over their floors at multiples of the fault orders, in single precision.
 
     A level is the natural logarithm of the highest line in one cell of the grid `GRID`: 158 multiples from 1/48 to 3.3.

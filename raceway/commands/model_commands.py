@@ -76,7 +76,7 @@ def train(
     model.save(output)
     if as_json:
         names = ("records", "classes", "groups")
-        facts = {name: getattr(model, name) for name in names} | {"calibration": model.calibration.model_dump()}
+        facts = {name: getattr(model, name) for name in names} | {"calibration": model.calibration._asdict()}
         facts |= {"takes_reference": model.relative is not None}
         show.as_json(
             {"model": output, "estimator": estimator, **facts, "features": len(model.features), "test": scores}

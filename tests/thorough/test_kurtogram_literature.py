@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import firwin, hilbert, oaconvolve
 
 from features.signal import kurtogram
-from tests.features.signal.test_impulsive_laws import FS, assert_false_alarms_as_promised, impacts
+from tests.features.signal.test_impulsive_laws import FS, impacts
 
 
 def filter_bank(x, levels):
@@ -32,7 +32,3 @@ def test_the_kurtogram_picks_the_planted_band_wherever_a_filter_bank_does(resona
     defined = picked(np.stack([tree.edges[np.argmax(filter_bank(row, np.unique(tree.levels)))] for row in x]))
     assert defined.sum() > 60
     assert np.mean(picked(tree.best())[defined]) >= 0.95
-
-
-def test_the_spectral_kurtosis_of_long_noise_exceeds_its_threshold_as_often_as_promised():
-    assert_false_alarms_as_promised(20_000)

@@ -32,16 +32,13 @@ CALLS: dict[str, tuple[np.ndarray, Any]] = {
     "band_envelope_spectrum": (X, lambda x: signal.band_envelope_spectrum(x, FS, (300, 5000))),
     "cepstrum": (X, signal.cepstrum),
     "comb_bands": (X, lambda x: signal.comb_bands(x, FS, RATES[:1])),
-    "displacement": (X, lambda x: signal.displacement(x, FS)),
     "kurtogram": (X, lambda x: signal.kurtogram(x, FS)),
     "order_map": (X, lambda y: signal.order_map(y, PER_TURN)),
     "order_spectrum": (X, lambda y: signal.order_spectrum(y, PER_TURN)),
     "psd": (X, lambda x: signal.psd(x, FS)),
     "resample_to_angle": (X, lambda x: signal.resample_to_angle(x, 2 * np.pi * 20 * TIME, PER_TURN)),
     "spectral_coherence": (X, lambda x: signal.spectral_coherence(x, FS, 200.0)),
-    "spectral_kurtosis": (X, lambda x: signal.spectral_kurtosis(x, FS)),
     "track_speed": (X, lambda x: signal.track_speed(x, FS, 16.0, 25.0)),
-    "velocity": (X, lambda x: signal.velocity(x, FS)),
     "velocity_rms": (X, lambda x: signal.velocity_rms(x, FS, RATES[:1])),
 }
 """An array of each function, and a call of it."""

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from features.signal import comb_bands, kurtogram, spectral_kurtosis
+from features.signal import comb_bands, kurtogram
 
 FS = 20_000.0
 
@@ -52,29 +52,6 @@ def test_the_bands_of_each_level_cover_the_spectrum_once():
         np.testing.assert_allclose(edges[[0, -1], [0, 1]], [0, FS / 2])
     with pytest.raises(ValueError, match="longer records"):
         kurtogram(np.ones((1, 100)), FS)
-
-
-def assert_false_alarms_as_promised(samples):
-    """The spectral kurtosis of 1000 records of noise has no mean, its deviation, and exceeds its threshold as often as stated."""
-    x = np.random.default_rng(4).standard_normal((1000, samples))
-    found = spectral_kurtosis(x, FS, segment=0.005)
-    assert abs(found.kurtosis.mean()) < 0.005
-    np.testing.assert_allclose(found.kurtosis.std(), 2 / np.sqrt(found.segments), rtol=0.1)
-    for probability in (0.05, 0.01):
-        np.testing.assert_allclose(np.mean(found.kurtosis > found.threshold(probability)), probability, rtol=0.15)
-
-
-def test_the_spectral_kurtosis_of_noise_exceeds_its_threshold_as_often_as_promised():
-    """Of records ten times as long: tests/thorough/test_kurtogram_literature.py."""
-    assert_false_alarms_as_promised(2000)
-
-
-def test_the_spectral_kurtosis_is_high_at_the_planted_resonance_alone():
-    found = spectral_kurtosis(impacts(np.random.default_rng(5), 100_000, 4000.0, 60.0, -3)[None], FS)
-    limit = found.threshold(1e-6)
-    near = abs(found.frequencies - 4000) < 200
-    assert np.all(found.kurtosis[0, near] > limit)
-    assert np.all(found.kurtosis[0, abs(found.frequencies - 4000) > 2000] < limit)
 
 
 def test_the_comb_lies_in_the_band_of_its_fault_and_not_in_that_of_another():
