@@ -159,9 +159,8 @@ def benchmark(
         raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
     if analysis.groups and output is None:
         raise click.UsageError("--group is for -o OUTDIR")
-    from features.baselines import DEFAULT_GROUPS
+    from features.baselines import DEFAULT_GROUPS, check_submission, load_maker, write_submission
     from features.baselines import benchmark as run
-    from features.baselines import check_submission, load_maker, write_submission
     from gen.corpus import result_folder
     from raceway.kept_models import open_model
     from raceway.reports.report_page import write_report

@@ -131,6 +131,7 @@ def evaluate(
       raceway evaluate pump --model model.skops --channel x,y,z
       raceway evaluate pump --model model.skops --reference pump
     """
+    from features.baselines import count_unknown
     from features.baselines.reference_choice import check_durations
     from gen import open_corpus
     from raceway.kept_models import open_model

@@ -9,7 +9,7 @@ subject         what is drawn: a record, or a recording of the user
 maps            drawings of kurtograms, order maps and coherence
 views           one view of a record, over orders at any speed
 summaries       drawings of the contents of a corpus, and of scores
-curves          drawings of detection and reliability
+curves          drawings of detection, false alarms and reliability
 sides           drawings of several sets side by side: examples, and distributions
 examples        an example of each class as a picture
 templates       templates of pages
