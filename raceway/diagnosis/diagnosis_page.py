@@ -126,7 +126,8 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
     # the first harmonics of each family by its class; of those without a comb the first alone
     lines_of = {
         row.name: [
-            float(row.lines[0].order(diagnosis.orders)) * n for n in range(1, DRAWN_HARMONICS + 1 if row.name in COMBS else 2)
+            float(row.lines[0].order(diagnosis.orders)) * n
+            for n in range(1, DRAWN_HARMONICS + 1 if row.name in COMBS else 2)
         ]
         for row in families()
     }

@@ -93,6 +93,13 @@ def page(corpus, results, folder):
     return write_report(corpus, results, folder).read_text()
 
 
+def test_tracks_and_another_corpus_stand_on_one_page(corpus, results, tmp_path):
+    tested = {name: replace(scored, tests=(scored.grouped,)) for name, scored in results.baselines.items()}
+    further = {"rig": TrackResults(2, 1, 1, results.baselines)}
+    both = replace(results, baselines=tested, tests=(results.corpus,), further=further)
+    assert "on every track, with its controls" in write_report(corpus, both, tmp_path / "out").read_text()
+
+
 class Links(HTMLParser):
     """Addresses in a page, its unclosed elements, and its text."""
 
