@@ -5,12 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from features.baselines import TRACKS, benchmark, controls, cross_validate, learning_curve
-from features.baselines.inspection import _by_specimen
-from features.baselines.records import SHAPES, records_of
-from features.baselines.splits import grouped_case
+from features.baselines import TRACKS, benchmark, controls, cross_validate
+from features.baselines.records import records_of
 from features.baselines.tracks import ranges, track_splits
-from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 from tests.features.baselines.test_baselines_laws import make_table
 
@@ -19,20 +16,17 @@ pytestmark = pytest.mark.usefixtures("few_trees")
 
 
 def varied_table(specimens=48, records=3, *, ladder=False, seed=0, **made):
-    """A feature table with speeds, bearings, widths and shapes; with ``ladder``, every third record is healthy."""
+    """A feature table with speeds and bearings; with ``ladder``, every third record is healthy."""
     table = make_table(specimens, records, rigs=12, seed=seed, **made)
     rng = np.random.default_rng(seed)
     specimen = table.specimen.values
     fault = np.where((np.arange(len(specimen)) % 3 == 0) & ladder, 0, table.fault.values)
-    spalls = np.where(rng.uniform(size=specimens) < 0.3, 2, 1)[specimen]
     balls = 7 + np.arange(12) % 4
     columns = {
         "fault": fault.astype(np.int8),
         "shaft_rate": rng.uniform(10, 50, len(specimen)),
         "bpfo": 0.4 * balls[table.rig.values],
         "bpfi": 0.6 * balls[table.rig.values],
-        "n_spalls": np.where(fault > 0, spalls, 0),
-        "width": np.where(fault > 0, 1e-3 * np.exp(rng.uniform(-1.5, 1.5, specimens))[specimen], 0),
     }
     return table.assign({name: ("record", values) for name, values in columns.items()})
 
@@ -75,26 +69,12 @@ def test_no_specimen_is_on_both_sides_no_record_is_tested_twice_and_tested_group
             assert not asked & set(group[train])
 
 
-def test_the_shape_of_a_fault_is_told_by_its_spalls_and_their_width():
-    table = make_table(6, 1)
-    columns = {
-        "n_spalls": [0, 1, 1, 3, 0, 1],
-        "width": [0, 1.4e-3, 1.6e-3, 5e-3, 0, np.nan],
-        "wear": [0, 0, 0, 0, 1e-6, 0],
-    }
-    shape = records_of(table.assign({n: ("record", np.array(v)) for n, v in columns.items()}), GROUPS).conditions[
-        "shape"
-    ]
-    assert [SHAPES[n] if n >= 0 else None for n in shape] == [None, "pit", "extended", "several", "worn", None]
-
-
-def test_a_class_of_one_shape_is_trained_in_every_fold():
+def test_a_bearing_type_is_that_of_the_first_record_of_a_specimen():
     table = varied_table()
-    ball = table.fault.values == FAULTS.index("ball")
-    small = table.assign(width=table.width.where(~ball, 1e-3), n_spalls=table.n_spalls.where(~ball, 1))
-    found = records_of(small, GROUPS)
-    for train, _ in grouped_case(found, "shape", 3, 0)[1]:
-        assert set(found.fault[train]) == {0, 1, 2, 3}
+    first = records_of(table, GROUPS).bearing
+    assert len(np.unique(first)) == 4
+    table.bpfo.values[np.flatnonzero(table.specimen == 0)[1:]] += 1
+    np.testing.assert_array_equal(records_of(table, GROUPS).bearing, first)
 
 
 @given(seed=st.integers(0, 100))
@@ -130,8 +110,6 @@ def test_the_null_control_is_at_chance_although_the_labels_are_told_by_the_featu
     [
         ("bearing", {"bpfo": 3.0, "bpfi": 5.0}, "1 bearing type.s. cannot fill 5 folds; test on another corpus"),
         ("speed", {"shaft_rate": 30.0}, "there is only one labelled shaft rate, or none; choose another track"),
-        ("severity", {"width": np.nan}, "there is only one known fault width of a class, or none"),
-        ("shape", {"width": 1e-3, "n_spalls": 1}, "there is only one known fault shape, or none"),
     ],
 )
 def test_a_track_without_groups_is_refused_in_one_sentence(track, changed, sentence):
@@ -147,21 +125,3 @@ def test_tracks_without_groups_are_left_out():
     results = benchmark(one, tracks="all", estimators={"majority": "majority"}, folds=3)
     assert set(results.left_out) == {"bearing", "speed"}
     assert (results.track, set(results.further)) == ("specimen", {*TRACKS} - {"specimen", "bearing", "speed"})
-
-
-def test_the_learning_curve_ends_at_the_score_of_the_cross_validation():
-    table = varied_table(told=1.0)
-    points = learning_curve(table, "logistic_regression", folds=4)
-    assert [point.specimens for point in points] == [8, 17, 36]
-    assert [point.records for point in points] == [24, 51, 108]
-    whole = cross_validate(table, "logistic_regression", folds=4)
-    assert sorted(points[-1].folds) == pytest.approx(sorted(whole.folds))
-
-
-def test_any_first_part_of_the_nested_specimens_has_the_classes_as_often_as_all():
-    found = records(specimens=60, records=1)
-    found = found._replace(fault=np.repeat([0, 1, 2], [6, 18, 36]))
-    fault = found.fault[_by_specimen(found, np.arange(60), 0)]
-    for size in range(3, 61):
-        share = np.bincount(fault[:size], minlength=3)
-        np.testing.assert_allclose(share, size * np.array([0.1, 0.3, 0.6]), atol=2)
