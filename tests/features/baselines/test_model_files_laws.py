@@ -122,6 +122,11 @@ def test_a_model_of_another_version_of_scikit_learn_is_refused(files, tmp_path):
     assert "was trained with scikit-learn 0.1, and " in refusal(archive.write(tmp_path / "m"))
 
 
+def test_a_model_larger_than_the_limit_is_refused(files, monkeypatch):
+    monkeypatch.setenv("RACEWAY_LIMITS", "file_bytes=5000")
+    assert "raceway --limit file_bytes=NUMBER" in refusal(files["extra_trees"])
+
+
 def test_the_model_for_shorter_records_is_in_the_same_file(tmp_path):
     model = Model("logistic_regression").fit(make_table())
     model.shorter = Model("logistic_regression", seed=1).fit(make_table(seed=1))
