@@ -57,6 +57,14 @@ def test_two_classes_are_told_apart_whichever_method_gives_the_probabilities(mad
     np.testing.assert_array_equal(fitted.predict(X), codes)
 
 
+def test_an_own_model_is_evaluated_and_not_saved(tmp_path):
+    model = Model(Nearest).fit(make_table())
+    assert model.score(make_table(seed=1)).balanced_accuracy > 0.95
+    with pytest.raises(CorpusError, match="Nearest is no baseline; a model file holds only one of majority"):
+        model.save(tmp_path / "model.skops")
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_given_classifier_is_copied_before_each_fit():
     given, other = Nearest(), LogisticRegression()
     assert cross_validate(make_table(), given).balanced_accuracy > 0.95

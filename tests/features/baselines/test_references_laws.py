@@ -140,6 +140,14 @@ def test_records_are_compared_with_the_healthy_ones_nearest_in_speed(table):
         np.testing.assert_allclose(found[row], lines[row] - lines[near].mean(axis=0))
 
 
+def test_a_missing_feature_of_a_reference_record_is_taken_from_the_others(table):
+    gap = table.copy(deep=True)
+    gap["features"][0, 0] = np.nan
+    whole = table.isel(record=table["recording"].values != 0)
+    found, expected = (relative_to(table.isel(record=[9]), other, LINES)["features"].values for other in (gap, whole))
+    assert found[0, len(LINES)] == expected[0, len(LINES)]
+
+
 @pytest.mark.parametrize("unknown", [0.0, np.nan])
 def test_a_record_of_unknown_speed_is_compared_with_all_healthy_records_of_its_rig(table, unknown):
     speeds = table["shaft_rate"].values.copy()

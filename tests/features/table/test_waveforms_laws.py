@@ -15,6 +15,7 @@ from sklearn.preprocessing import FunctionTransformer
 from features import open_waveforms
 from features.baselines import controls, cross_validate
 from features.table.waveforms import _samples_in_turns
+from gen.corpus import UNKNOWN_CODE
 from gen.support.errors import CorpusError
 from tests.tone_corpora import FS, TONES, write_corpus
 
@@ -107,6 +108,15 @@ def test_samples_that_are_not_finite_are_zero(corpus):
     holed = replace(X, signal=signal)
     assert holed[5][7] == 0
     assert np.isfinite(holed[:]).all()
+
+
+def test_records_of_unknown_class_are_left_out(tmp_path):
+    fault = np.repeat(np.arange(16), 3) % 4
+    write_corpus(tmp_path / "corpus")
+    X = open_waveforms(tmp_path / "corpus", normalise=True)
+    labels = X.labels.assign(fault=("record", np.where(np.arange(48) < 3, UNKNOWN_CODE, fault)))
+    scores = cross_validate(replace(X, labels=labels), ON_THE_PSD, folds=3)
+    assert scores.records == 45
 
 
 def test_given_shaft_rates_replace_the_labelled_ones(corpus):

@@ -22,7 +22,7 @@ from gen.corpus import (
 from gen.support.errors import CorpusError
 from tests.corpora import SIZES, dataset, write_corpus, write_parts
 from tests.disks import full_disk
-from tests.tampering import edit_manifest, edited, seal
+from tests.tampering import edit_manifest, edited, manifest_content, seal
 
 FORMS = ("c", "c.nc")
 
@@ -132,6 +132,12 @@ def test_a_damaged_folder_is_refused_with_the_file_named_and_found_by_validation
 def test_a_text_that_is_no_manifest_is_refused(copied_folder, text):
     (copied_folder / "manifest.json").write_bytes(text)
     assert_refused(copied_folder, NO_MANIFEST)
+
+
+def test_a_manifest_without_its_hash_is_refused(copied_folder):
+    (copied_folder / "manifest.json").write_text(json.dumps(manifest_content(copied_folder)))
+    with pytest.raises(CorpusError, match=r"manifest\.json: is altered"):
+        open_corpus(copied_folder)
 
 
 @pytest.mark.parametrize("name", ["../x", "/etc/passwd", 7])

@@ -66,6 +66,13 @@ def test_copying_there_and_back_gives_the_same_bytes(source, tmp_path):
     assert read_manifest(tmp_path / "two.nc").publication.license == "CC-BY-4.0"
 
 
+def test_an_altered_corpus_is_not_copied(source, tmp_path):
+    part = source / "parts" / "part-00001.nc"
+    part.write_bytes(part.read_bytes()[:-1] + b"\x01")
+    with pytest.raises(CorpusError, match=r"part-00001\.nc: is altered"):
+        copy(source, tmp_path / "out")
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_condition_split_and_channels_apply_together_and_chosen_records_keep_all_numbers_and_labels(
     source, tmp_path, name

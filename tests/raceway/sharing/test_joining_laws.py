@@ -122,6 +122,18 @@ def test_corpora_that_do_not_fit_together_are_refused_with_the_difference(nine, 
         copy([nine / "c", tmp_path / "other"], tmp_path / "joined")
 
 
+def test_corpora_of_another_sample_rate_or_unit_are_refused(tmp_path, monkeypatch):
+    for rate, unit in ((1000.0, "g"), (2000.0, "g"), (1000.0, "oz")):
+        monkeypatch.setattr(corpora, "FS", rate)
+        weight = ("record", np.arange(3.0), {"units": unit, "long_name": "weight", "role": "latent"})
+        part = corpora.dataset(round(rate) + len(unit), 3)
+        corpora.write_parts(tmp_path / f"{rate:g}{unit}", [part.assign(weight=weight)])
+    with pytest.raises(CorpusError, match=r"has the sample rate 2000 Hz, and .* has 1000 Hz;"):
+        copy([tmp_path / "1000g", tmp_path / "2000g"], tmp_path / "joined")
+    with pytest.raises(CorpusError, match=r"1000oz: the unit of weight is oz, in .*1000g g; make both"):
+        copy([tmp_path / "1000g", tmp_path / "1000oz"], tmp_path / "joined")
+
+
 def test_counts_and_floating_point_join_in_floating_point_if_asked(nine, tmp_path):
     corpora.write_parts(tmp_path / "floats", [corpora.dataset(100, 3, kind="float32")])
     copy([nine / "c", tmp_path / "floats"], tmp_path / "joined", float32=True)

@@ -75,6 +75,18 @@ def test_the_facts_stand_in_the_attributes(corpus):
     assert found["date_created"] == "2026-03-31"
 
 
+def test_an_altered_corpus_is_not_published(corpus):
+    part = corpus if corpus.is_file() else next((corpus / "parts").iterdir())
+    content = part.read_bytes()
+    part.write_bytes(content[:-100] + bytes([content[-100] ^ 1]) + content[-99:])
+    before = files(corpus)
+    with pytest.raises(CorpusError, match="is altered"):
+        publish(corpus, WHOLE)
+    assert files(corpus) == before
+    with pytest.raises(CorpusError, match="no such folder or file"):
+        publish(corpus.with_name("nowhere"), WHOLE)
+
+
 STEPS = (
     "gen.corpus.finishing.write_index",
     "gen.corpus.finishing.write_manifest",
