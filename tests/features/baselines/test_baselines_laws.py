@@ -138,7 +138,7 @@ def test_permuted_labels_of_a_rare_class_are_scored_although_a_fold_trains_none_
             untrained += 1
             with pytest.raises(CorpusError, match="a fold has no compound record to train on"):
                 check_taught(labels, folds)
-            assert score_splits(records, labels, "envelope_rule", folds, seed).classes == FAULTS[:6]
+            assert score_splits(records, labels, folds, "envelope_rule", seed).classes == FAULTS[:6]
     assert untrained > 0
 
 
