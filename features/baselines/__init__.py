@@ -24,7 +24,6 @@ cross_calibration calibration on rigs or specimens outside the training
 model_file        the only module that reads and writes archives of skops
 classifying       predictions of a fitted model for feature tables and waveforms
 models            training, evaluation, saving, loading
-score_sources     hash of the sources that make features and scores
 results           scores of every baseline with controls, and on other corpora
 submissions       predictions of a cross-validation in a file, and their scores
 ================= ========================================================================================

@@ -17,6 +17,7 @@ from gen.corpus.index import open_corpus
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
 from gen.corpus.publication import Publication
 from gen.corpus.schema import SIGNAL, class_names, listed_flags
+from gen.corpus.slices import read_classes
 from raceway.sharing.card.card_page import card_folder
 from raceway.sharing.card.citation import citation
 
@@ -104,7 +105,9 @@ def croissant(path: Path) -> dict[str, Any]:
             ],
             "recordSet": [
                 _records(
-                    corpus, {"fileObject": {"@id": path.name}} if path.is_file() else {"fileSet": {"@id": "parts"}}
+                    corpus,
+                    read_classes(corpus_files(path, "size")[-1]),
+                    {"fileObject": {"@id": path.name}} if path.is_file() else {"fileSet": {"@id": "parts"}},
                 ),
             ],
         }
@@ -153,8 +156,8 @@ def _file(name: str, file: Path, kind: str, digest: str | None) -> dict[str, Any
     }
 
 
-def _records(corpus: xr.Dataset, source: Mapping[str, Any]) -> dict[str, Any]:
-    """Set of the records with a field for each variable; the signal is one array of channels and samples."""
+def _records(corpus: xr.Dataset, faults: Mapping[int, str], source: Mapping[str, Any]) -> dict[str, Any]:
+    """Set of the records with a field for each variable, and the codes of ``faults`` in their files; the signal is one array."""
     names = [str(name) for name, variable in corpus.variables.items() if "role" in variable.attrs]
     channels = ", ".join(str(name) for name in corpus["channel"].values)
     return {
@@ -162,13 +165,13 @@ def _records(corpus: xr.Dataset, source: Mapping[str, Any]) -> dict[str, Any]:
         "@id": "records",
         "name": "records",
         "description": f"Records of the corpus, one value of each variable for each; channels of the signal: {channels}.",
-        "field": [_field(name, corpus.variables[name], source) for name in names],
+        "field": [_field(name, corpus.variables[name], faults, source) for name in names],
     }
 
 
-def _field(name: str, variable: xr.Variable, source: Mapping[str, Any]) -> dict[str, Any]:
+def _field(name: str, variable: xr.Variable, faults: Mapping[int, str], source: Mapping[str, Any]) -> dict[str, Any]:
     attributes, text = variable.attrs, variable.dtype.kind not in "iuf"
-    unit, codes = attributes.get("units", "1"), listed_flags(class_names(attributes))
+    unit, codes = attributes.get("units", "1"), listed_flags(faults if name == "fault" else class_names(attributes))
     meaning = str(attributes.get("long_name", name)) + (f" [{unit}]" if unit != "1" else "")
     stored = "sc:Text" if text else f"cr:{variable.dtype.name.title().replace('Ui', 'UI')}"
     field: dict[str, Any] = {
