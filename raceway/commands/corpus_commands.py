@@ -191,13 +191,15 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
 
     Next: raceway info DIR, raceway benchmark DIR -o REPORT
     """
+    from gen.recipe import read_recipe
+
+    # a misspelt name is reported before the simulator is imported
+    wanted = read_recipe(recipe, seed=options["seed"], records=options["records"])
     from gen import generate as generate_corpus
     from gen.corpus import complaint
-    from gen.recipe import read_recipe
     from gen.support.executor import cores
     from raceway.sharing import describe
 
-    wanted = read_recipe(recipe, seed=options["seed"], records=options["records"])
     start = time.monotonic()
     usual = min(cores(), wanted.n_parts) if wanted.n_records > WORTH_WORKERS else 1
     options |= {"workers": team.workers or usual, "scheduler": team.scheduler}

@@ -41,7 +41,7 @@ def test_raceway_alone_shows_the_road_and_every_command_of_it_exists(run):
     assert set(steps) < set(cli.commands)
 
 
-@pytest.mark.parametrize("words", ["plan", "generate", "train"])
+@pytest.mark.parametrize("words", ["plan", "generate"])
 def test_a_shell_completes_names_of_recipes_and_else_files(words):
     parts = ["raceway", *words.split()]
 
