@@ -127,7 +127,7 @@ def _is_table(path: Path) -> bool:
     import h5py  # not at the top: a command that is refused needs no HDF5
 
     with h5py.File(path, "r", locking=False) as content:
-        return {"features", "feature"} <= content.keys() and "sha256" in content.attrs
+        return "features" in content and "records_with_missing_features" in content.attrs
 
 
 def _is_model(path: Path) -> bool:
