@@ -20,13 +20,13 @@ import numpy as np
 import xarray as xr
 from ruamel.yaml import YAML
 
-from benchmarks.realism import UESTC, UESTC_LABELLED
+from benchmarks.realism import UESTC
 from features import feature_table
 from features.baselines import DEFAULT_ESTIMATOR, Model, Scores
 from gen import generate
 from gen.recipe import find_recipe
 from gen.recipe.fault_entries import fault_entries
-from raceway.importing import import_cwru, import_generic, import_mfpt
+from raceway.importing import import_generic, import_set
 
 MECHANISMS = Path(__file__).with_suffix(".yaml")
 GROUPS = ("lines", "shape")
@@ -102,13 +102,13 @@ def real_tables(real: Path, folder: Path) -> dict[str, xr.Dataset]:
     """Feature tables of the sets in ``real``; UESTC with its labelled speeds and with the true ones."""
     found = {}
     if (real / "cwru").is_dir():
-        found["wang"] = import_cwru(real / "cwru", folder / "wang", subset="wang").path
-        found["cwru"] = import_cwru(real / "cwru", folder / "cwru").path
+        found["wang"] = import_set("cwru", real / "cwru", folder / "wang", subset="wang").path
+        found["cwru"] = import_set("cwru", real / "cwru", folder / "cwru").path
     if (real / "mfpt").is_dir():
-        found["mfpt"] = import_mfpt(real / "mfpt", folder / "mfpt").path
+        found["mfpt"] = import_set("mfpt", real / "mfpt", folder / "mfpt").path
     if (real / "uestc").is_dir():
-        for name, labels in (("uestc", UESTC_LABELLED), ("uestc, true speeds", UESTC)):
-            found[name] = import_generic(labels, folder / labels.stem, folder=real / "uestc").path
+        found["uestc"] = import_set("uestc", real / "uestc", folder / "uestc").path
+        found["uestc, true speeds"] = import_generic(UESTC, folder / "true", folder=real / "uestc").path
     return {name: feature_table(path, groups=GROUPS) for name, path in found.items()}
 
 

@@ -16,12 +16,10 @@ from pathlib import Path
 from gen import generate
 from raceway.comparing import Comparison, compare
 from raceway.comparing.measures import MEASURES
-from raceway.importing import import_cwru, import_generic, import_mfpt
+from raceway.importing import import_generic, import_set
 
 UESTC = Path(__file__).with_name("uestc.csv")
 """Labels of the recordings, with speeds as measured on the first three harmonics of the line of the fault."""
-UESTC_LABELLED = UESTC.with_name("uestc_labelled.csv")
-"""The same with speeds as labelled."""
 
 RACES = ("inner", "outer")
 COLOUR = ("energy_above_3500_hz", "roll_off", "centroid")
@@ -38,9 +36,9 @@ def real_corpora(real: Path, folder: Path) -> list[Path]:
     """Import the sets that are in ``real``."""
     found = []
     if (real / "cwru").is_dir():
-        found.append(import_cwru(real / "cwru", folder / "cwru").path)
+        found.append(import_set("cwru", real / "cwru", folder / "cwru").path)
     if (real / "mfpt").is_dir():
-        found.append(import_mfpt(real / "mfpt", folder / "mfpt").path)
+        found.append(import_set("mfpt", real / "mfpt", folder / "mfpt").path)
     if (real / "uestc").is_dir():
         found.append(import_generic(UESTC, folder / "uestc", folder=real / "uestc").path)
     return found

@@ -14,14 +14,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from benchmarks.realism import UESTC_LABELLED
 from features import shaft_speed
 from features.signal.lines import Orders
 from features.signal.speed import ShaftSpeed
 from features.table.recording_speeds import recording_numbers
 from gen import generate
 from gen.corpus import FAULTS, SIGNAL, open_corpus
-from raceway.importing import import_cwru, import_generic, import_mfpt
+from raceway.importing import import_set
 
 UESTC_ERROR_PERCENT = {
     "I_800": -2.9,
@@ -64,9 +63,9 @@ class Trial(NamedTuple):
 def real_corpora(real: Path, folder: Path) -> dict[str, Path]:
     """Corpora of the three sets, by their name, with their labelled speeds."""
     return {
-        "UESTC": import_generic(UESTC_LABELLED, folder / "uestc", folder=real / "uestc").path,
-        "CWRU": import_cwru(real / "cwru", folder / "cwru").path,
-        "MFPT": import_mfpt(real / "mfpt", folder / "mfpt").path,
+        "UESTC": import_set("uestc", real / "uestc", folder / "uestc").path,
+        "CWRU": import_set("cwru", real / "cwru", folder / "cwru").path,
+        "MFPT": import_set("mfpt", real / "mfpt", folder / "mfpt").path,
     }
 
 

@@ -19,7 +19,6 @@ import numpy as np
 import xarray as xr
 
 import gen
-from benchmarks.realism import UESTC_LABELLED
 from features import Model, envelope_orders, feature_table, open_waveforms
 from features.baselines import DEFAULT_GROUPS
 from features.baselines.calibration import UNCALIBRATED
@@ -27,7 +26,7 @@ from features.baselines.predictions import predictions
 from features.baselines.records import all_records
 from features.baselines.scores import Scores, score
 from features.table.table_files import read_table, write_table
-from raceway.importing import import_cwru, import_generic
+from raceway.importing import import_set
 
 RECIPE, SEEDS, UNSEEN = "domain_randomised", (20260, 20261), 20299
 WINDOWS = {3000: 4500, 6000: 3000, 12_000: 0}  # records: distance of the windows of two seeds in both streams
@@ -103,8 +102,8 @@ def main() -> None:
     except ModuleNotFoundError as error:
         print(f"No module {error.name}: the network is left out; it is in docs/classifiers.md and needs PyTorch.")
     with tempfile.TemporaryDirectory() as name:
-        cwru = import_cwru(real / "cwru", Path(name) / "cwru").path
-        uestc = import_generic(UESTC_LABELLED, Path(name) / "uestc", folder=real / "uestc").path
+        cwru = import_set("cwru", real / "cwru", Path(name) / "cwru").path
+        uestc = import_set("uestc", real / "uestc", Path(name) / "uestc").path
         tests = {path.name: known(path) for path in (cwru, uestc)}
     tests["unseen rigs"] = streamed(UNSEEN, 3000, folder / str(UNSEEN))
     streams = [streamed(seed, 6000, folder / str(seed)) for seed in SEEDS]

@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from benchmarks.realism import UESTC_LABELLED
 from benchmarks.reference_table import lasting
 from benchmarks.results import machine
 from benchmarks.transfer_pages import RESULTS, write_pages
@@ -26,7 +25,7 @@ from features.baselines import Model, Scores, cross_validate
 from gen import generate
 from gen.corpus import FAULTS
 from gen.recipe import read_recipe
-from raceway.importing import import_cwru, import_generic, import_mfpt
+from raceway.importing import import_set
 from raceway.kept_models import LONG
 
 RECIPE = "domain_randomised"
@@ -51,10 +50,10 @@ def real_tables(real: Path, folder: Path, window: float) -> tuple[Tables, Tables
 
     ``wang`` is the subset of CWRU of Wang, Taal and Fink (2021).
     """
-    import_cwru(real / "cwru", folder / "wang", subset="wang", window=window)
-    import_cwru(real / "cwru", folder / "cwru", window=window)
-    import_mfpt(real / "mfpt", folder / "mfpt", window=window)
-    import_generic(UESTC_LABELLED, folder / "uestc", folder=real / "uestc", window=window)
+    import_set("cwru", real / "cwru", folder / "wang", subset="wang", window=window)
+    import_set("cwru", real / "cwru", folder / "cwru", window=window)
+    import_set("mfpt", real / "mfpt", folder / "mfpt", window=window)
+    import_set("uestc", real / "uestc", folder / "uestc", window=window)
     names = ("wang", "cwru", "mfpt", "uestc")
     labelled = {name: feature_table(folder / name, GROUPS) for name in names}
     return labelled, {name: feature_table(folder / name, GROUPS, speed="correct") for name in names}

@@ -55,7 +55,7 @@ def all_requirements():
     """Requirements of Raceway and of what users can add."""
     optional = PROJECT["project"]["optional-dependencies"]
     return PROJECT["project"]["dependencies"] + [
-        line for name in ("parquet", "excel", "torch") for line in optional[name]
+        line for name in ("parquet", "files", "torch") for line in optional[name]
     ]
 
 

@@ -63,9 +63,6 @@ READABLE: Mapping[str, Mapping[str, float]] = {
 """Units in which a stored quantity can be given and shown, with their factors, by its stored unit."""
 
 STANDARD_GRAVITY = 9.80665  # m s-2, by definition
-POUND_FORCE = 4.4482216152605  # N, by definition
-HORSEPOWER = 745.69987  # W
-MIL = 25.4e-6  # m
 
 
 def unit_suffix(key: str) -> str:

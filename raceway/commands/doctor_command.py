@@ -11,7 +11,7 @@ from raceway.console import show
 from raceway.console.ending import DONE, FOUND_WANTING
 from raceway.console.options import json_option
 
-EXTRAS = ("excel", "parquet")
+EXTRAS = ("files", "parquet")
 """Optional requirements for users; the others are for developers."""
 
 

@@ -3,13 +3,10 @@
 =============== ===========================================================
 module          responsibility
 =============== ===========================================================
-cwru            Case Western Reserve University set, drive end, 12 kHz
-mfpt            MFPT fault data set of Bechhoefer
-femto           PRONOSTIA, run to failure, of the IEEE PHM 2012 challenge
-generic         recordings of the user, described by a table of labels
+published       published sets, of patterns of paths and tables of labels
+generic         recordings described by a table of labels
 label_tables    tables of labels, and the keys that all rows share
 label_keys      keys of one file of recordings
-label_values    types of the values of keys
 assumptions     sentences on what labels and units rest on
 resampling      recordings brought to another sample rate
 acceleration    one recording of the user, in m/s^2
@@ -17,15 +14,16 @@ recorded        a recording in memory
 user_folder     recordings of the user: files of a folder, channels of each
 reading_options options of commands that say how recordings are read
 conversion      from the unit of a file to m/s^2
-matlab          one variable of a MATLAB file
+matlab          one variable of a MATLAB file or a NumPy archive
 text_files      texts: encoding, lines, mark between columns, fields
-sheets          sheets of Excel files, as tables in text
+sheets          sheets of spreadsheets, as tables in text
 table           header, rows and notes of a table, parsed once by pandas
 header          names, units and sample rate in the header of a table
 numerals        numbers in text, and the decimal mark that suits them
 axes            columns that hold the axes of one sensor
 columns         choice of a column, and the sample rate that times tell
-array_files     NumPy and WAV files; errors of libraries as sentences
+array_files     NumPy, WAV, Parquet, TDMS and universal files
+refused_files   reasons why a file cannot be used; errors of libraries
 recordings      recordings, their checks, their division into records
 assemble        recordings written as a corpus
 import_commands commands that convert recordings

@@ -10,13 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.support.errors import CorpusError
-from raceway.importing.array_files import (
-    FloatArray,
-    UnusableError,
-    read_numpy,
-    read_wav,
-    reason_of,
-)
+from raceway.importing.array_files import read_numpy, read_parquet, read_tdms, read_uff, read_wav
 from raceway.importing.columns import Values, signal_of
 from raceway.importing.conversion import (
     Scale,
@@ -27,20 +21,34 @@ from raceway.importing.conversion import (
     volts_per_acceleration,
 )
 from raceway.importing.header import known_unit
-from raceway.importing.matlab import read_matlab_table
+from raceway.importing.matlab import read_variable
+from raceway.importing.refused_files import FloatArray, UnusableError, reason_of
 from raceway.importing.sheets import read_sheet
-from raceway.importing.table import NumberTable, read_text, table_of
+from raceway.importing.table import NumberTable, read_text
 
-WITHOUT_UNITS = (".mat", ".npy", ".wav")
-_BINARY = (*WITHOUT_UNITS, ".xlsx")
-SUFFIXES = (*WITHOUT_UNITS, ".csv", ".txt", ".tsv", ".dat", ".lvm", ".asc", ".prn", ".xls", ".xlsx")
-_SIGNATURES = {
-    ".npy": rb"\x93NUMPY",
-    ".mat": rb"MATLAB|\x89HDF",
-    ".wav": rb"RIFF.{4}WAVE",
-    ".xlsx": rb"PK\x03\x04",
-    ".old": rb"\xd0\xcf\x11\xe0",
+WITHOUT_UNITS = (".mat", ".npz", ".npy", ".wav")
+_SHEETS = (".xlsx", ".xls", ".ods")
+_TEXTS = (".csv", ".txt", ".tsv", ".dat", ".lvm", ".asc", ".prn")
+_ARRAYS = {
+    ".npy": read_numpy,
+    ".wav": read_wav,
+    ".parquet": read_parquet,
+    ".tdms": read_tdms,
+    ".uff": read_uff,
+    ".unv": read_uff,
 }
+_OF_PARTS = {".mat": read_variable, ".npz": read_variable, **dict.fromkeys(_SHEETS, read_sheet)}
+SUFFIXES = (*_TEXTS, *_OF_PARTS, *_ARRAYS)
+_SIGNATURES = {
+    rb"\x93NUMPY": ".npy",
+    rb"MATLAB|\x89HDF": ".mat",
+    rb"RIFF.{4}WAVE": ".wav",
+    rb"PK\x03\x04": ".xlsx",
+    rb"\xd0\xcf\x11\xe0": ".xls",
+    rb"PAR1": ".parquet",
+    rb"TDSm": ".tdms",
+}
+_ZIPPED = (".npz", ".ods")
 _AS_HERE: Mapping[str, str] = MappingProxyType({})
 
 
@@ -201,33 +209,21 @@ def reader(path: Path) -> Reader:
 
 
 def _table(path: Path, place: Place) -> NumberTable:
-    match _kind(path):
-        case ".npy":
-            return table_of(read_numpy(path))
-        case ".mat":
-            return read_matlab_table(path, place.variable)
-        case ".xlsx":
-            return read_sheet(path, place.variable)
-        case ".wav":
-            samples, full_scale, fs = read_wav(path)
-            table = table_of(samples)
-            scaled = {n: values / full_scale for n, values in table.columns.items()}
-            return table._replace(columns=scaled, playback=fs or None, absolute=full_scale == 1)
-    return read_text(path, place.delimiter, place.decimal)
-
-
-def _kind(path: Path) -> str:
-    """Suffix of the kind of a file, by its first bytes, or else by its name; that of all texts is .txt."""
     suffix = path.suffix.lower()
     if path.is_file():
         with path.open("rb") as stream:
             start = stream.read(12)
-        suffix = next((kind for kind, begin in _SIGNATURES.items() if re.match(begin, start, re.DOTALL)), suffix)
-    if suffix == ".old":
-        raise UnusableError("is an Excel file of the form before 2007; save it as .xlsx")
+        kinds = (kind for begin, kind in _SIGNATURES.items() if re.match(begin, start, re.DOTALL))
+        # content goes before the suffix, but an archive does not tell its kind, and a text may have any
+        kind = next(kinds, ".txt" if suffix == ".xls" or suffix[1:].isdecimal() else suffix)
+        suffix = suffix if kind == ".xlsx" and suffix in _ZIPPED else kind
+    if suffix in _ARRAYS:
+        return _ARRAYS[suffix](path)
+    if suffix in _OF_PARTS:
+        return _OF_PARTS[suffix](path, place.variable)
     if not is_known(suffix):
         raise UnusableError(f"is of no known type; known are {', '.join(SUFFIXES)}")
-    return suffix if suffix in _BINARY else ".txt"
+    return read_text(path, place.delimiter, place.decimal)
 
 
 def is_known(suffix: str) -> bool:

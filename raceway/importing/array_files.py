@@ -1,62 +1,37 @@
-"""NumPy and WAV files, and the one place where an error of a library becomes a sentence.
+"""Tables in files of arrays: NumPy, WAV, Parquet, TDMS of LabVIEW and universal file format 58."""
 
-Every error becomes an :class:`UnusableError` with a reason and without the name of the file: the caller adds the name.
-"""
-
-import errno
-import os
 import warnings
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gen.support.limits import check_limit
+from raceway.importing.header import Header, rate_of_step, rounded_rate, unit_said
+from raceway.importing.refused_files import UnusableError, guarded, optional
+from raceway.importing.table import NumberTable, table_of
 
-FloatArray = NDArray[np.floating]
-
-_WITH_REASON = (ValueError, OSError, EOFError, Warning)  # of a library; the text of others is about its code
-
-
-class UnusableError(Exception):
-    """Reason why a file cannot be used; its text has no full stop, because a sentence about the file goes on after it.
-
-    ``key`` names what the caller has to give, such as ``column``; the reason then goes on with "with column". ``axes`` are the signals
-    of one sensor, as the key takes them, where none of several is chosen. ``contradicted`` is the rate, unit or sensitivity that is given,
-    while the file states another.
-    """
-
-    def __init__(self, reason: str, key: str = "", *, axes: tuple[str, ...] = (), contradicted: str = "") -> None:
-        super().__init__(reason, key)
-        self.axes, self.contradicted = axes, contradicted
-
-    def told(self, options: Mapping[str, str]) -> str:
-        """Reason with the name of the option that gives the key."""
-        reason, key = self.args
-        return f"{reason} with {options.get(key, key)}" if key else reason.removesuffix(".")
-
-    def __str__(self) -> str:
-        return self.told({})
+_ACCELERATION = 12  # kind of the values in format 58; 0 is unknown and 1 general
+_KINDS_WITHOUT_A_NAME = (0, 1, _ACCELERATION)
+_TIME_RESPONSE = 1  # kind of the function in format 58
 
 
-def read_numpy(path: Path) -> NDArray[Any]:
+def read_numpy(path: Path) -> NumberTable:
     """Array in a NumPy ``.npy`` file; pickled objects are refused.
 
     Raises
     ------
     UnusableError
-        If the file is not a NumPy file.
+        If the file is not a NumPy file, or holds no table.
     """
     with guarded(path, "NumPy"):
         # a memory map compares the size in the header with the file before anything is allocated
-        return np.array(np.lib.format.open_memmap(path, mode="r"))
+        return table_of(np.array(np.lib.format.open_memmap(path, mode="r")))
 
 
-def read_wav(path: Path) -> tuple[NDArray[Any], float, float]:
-    """Samples of a WAV file as stored, shape (time, channel), their full scale (1 for floating point), and the sample rate [Hz].
+def read_wav(path: Path) -> NumberTable:
+    """Channels of a WAV file, integers as shares of their full scale.
 
     Raises
     ------
@@ -68,47 +43,84 @@ def read_wav(path: Path) -> tuple[NDArray[Any], float, float]:
     with guarded(path, "WAV"):
         warnings.filterwarnings("error", "Reached EOF prematurely")
         rate, samples = wavfile.read(path)
-        if samples.dtype.kind == "f":
-            return samples, 1.0, float(rate)
-        full_scale = 2.0 ** (8 * samples.itemsize - 1)
-        return samples if samples.dtype.kind == "i" else samples.astype(np.int16) - 128, full_scale, float(rate)
+        full_scale = 1.0 if samples.dtype.kind == "f" else 2.0 ** (8 * samples.itemsize - 1)
+        table = table_of(samples.astype(np.int16) - 128 if samples.dtype.kind == "u" else samples)
+        scaled = {n: values / full_scale for n, values in table.columns.items()}
+        return table._replace(columns=scaled, playback=float(rate) or None, absolute=full_scale == 1)
 
 
-@contextmanager
-def guarded(path: Path, kind: str) -> Iterator[None]:
-    """Check the size of a file before a library reads it, and turn each of the library's errors into an :class:`UnusableError`.
+def read_parquet(path: Path) -> NumberTable:
+    """Columns of numbers of a Parquet file.
 
     Raises
     ------
     UnusableError
-        If the file is empty or above the limit ``file_bytes``, or the library fails.
-    OSError
-        If the file is missing, not readable, or a folder, a pipe or a device.
-    MemoryError
-        If its values do not fit in memory.
+        If pyarrow is missing, or the file is damaged or too large.
     """
-    if path.exists() and not path.is_file():
-        raise OSError(errno.EINVAL, "is a folder, a pipe or a device", str(path))
-    with path.open("rb") as stream:
-        size = os.fstat(stream.fileno()).st_size
-    if size == 0:
-        raise UnusableError("is empty (0 bytes); copy it again")
-    # before the library takes memory for it
-    check_limit("file_bytes", size, "is", UnusableError)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            yield
-    except (UnusableError, MemoryError):
-        raise
-    except Exception as error:  # SciPy, h5py and NumPy raise a dozen unrelated types on damaged bytes
-        reason = f" ({str(error).splitlines()[0][:120]})" if isinstance(error, _WITH_REASON) and str(error) else ""
-        message = f"is truncated, damaged or not a {kind} file{reason}"
-        raise UnusableError(message) from error
+    parquet = optional("pyarrow.parquet")
+    with guarded(path, "Parquet"):
+        facts = parquet.read_metadata(path)
+        check_limit("file_bytes", 8 * facts.num_rows * facts.num_columns, "is unpacked", UnusableError)
+        columns = parquet.read_table(path).to_pandas().select_dtypes("number").items()
+        return _columns(
+            (str(name), unit_said(str(name)), None, values.to_numpy(np.float64)) for name, values in columns
+        )
 
 
-def reason_of(error: OSError | MemoryError) -> str:
-    """Reason why a file could not be read, and advice."""
-    if isinstance(error, MemoryError):
-        return "holds more values than fit in memory; cut it into shorter files"
-    return f"could not be read ({error.strerror or error}); check the path"
+def read_tdms(path: Path) -> NumberTable:
+    """Scaled channels of a TDMS file, with their units and steps.
+
+    Raises
+    ------
+    UnusableError
+        If npTDMS is missing, or the file is damaged.
+    """
+    library = optional("nptdms")
+    with guarded(path, "TDMS"), path.open("rb") as stream, library.TdmsFile.open(stream) as file:
+        channels = [channel for group in file.groups() for channel in group.channels() if len(channel)]
+        check_limit("file_bytes", sum(8 * len(channel) for channel in channels), "is unpacked", UnusableError)
+        every = []
+        for channel in channels:
+            step, unit = channel.properties.get("wf_increment"), channel.properties.get("unit_string")
+            rate = rounded_rate(1 / step, 1e-9) if step else None
+            every.append((channel.name, unit or unit_said(channel.name), rate, channel[:]))
+        return _columns(every)
+
+
+def read_uff(path: Path) -> NumberTable:
+    """Time responses of a universal file, text or binary.
+
+    Raises
+    ------
+    UnusableError
+        If pyuff is missing, the file is damaged, or it holds something else than time responses.
+    """
+    library = optional("pyuff")
+    with guarded(path, "universal"):
+        file = library.UFF(str(path))
+        sets = [file.read_sets(number) for number, kind in enumerate(file.get_set_types()) if kind == 58]
+    other = next((one for one in sets if one["func_type"] != _TIME_RESPONSE or np.iscomplexobj(one["data"])), None)
+    if not sets or other is not None:
+        what = "no data set 58" if other is None else f"a function of kind {other['func_type']} ({other['id1']:.60})"
+        raise UnusableError(f"holds {what}, and no signal over time; export the waveform")
+    # the step has six digits
+    return _columns(
+        (one["id1"], _unit_of_58(one), rate_of_step(f"{one['abscissa_inc']:.5e}"), one["data"]) for one in sets
+    )
+
+
+def _unit_of_58(one: dict[str, Any]) -> str:
+    """Unit that a data set states, or the quantity if it is no acceleration."""
+    unit, quantity = (one[f"ordinate_axis{name}"].replace("NONE", "").strip() for name in ("_units_lab", "_lab"))
+    is_other = one["ordinate_spec_data_type"] not in _KINDS_WITHOUT_A_NAME
+    return unit or (quantity or f"kind {one['ordinate_spec_data_type']}" if is_other else "")
+
+
+def _columns(columns: Iterable[tuple[str, str, float | None, Any]]) -> NumberTable:
+    """Table of the name, unit, sample rate [Hz] if it is known, and values of each column."""
+    every = [*columns]
+    if not every:
+        raise UnusableError("holds no column of numbers; export the samples")
+    names, units, rates, values = zip(*every, strict=True)
+    header = Header(names, units, rates_of={n: rate for n, rate in enumerate(rates) if rate})
+    return NumberTable({n: np.asarray(one, np.float64) for n, one in enumerate(values)}, header)

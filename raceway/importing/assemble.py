@@ -19,8 +19,8 @@ from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 from gen.support.plugins import plugin_versions
 from gen.support.progress import Progress, counter
-from raceway.importing.array_files import UnusableError
 from raceway.importing.recordings import Candidate, Record, cut, read_recording
+from raceway.importing.refused_files import UnusableError
 from raceway.sharing import describe
 
 _PART_RECORDS = 256
@@ -58,7 +58,7 @@ class Importer(NamedTuple):
     help: str
     """Of its command ``raceway import NAME``."""
     convert: Callable[..., Import]
-    """Called with the folder of the recordings, the new corpus, and by keyword ``window`` [s] and ``progress``, as `import_mfpt` is."""
+    """Called with the folder of the recordings, the new corpus, and by keyword ``window`` [s] and ``progress``, as `import_set` is."""
 
 
 class _Log(NamedTuple):
@@ -125,7 +125,7 @@ def import_recordings(
         # recordings are read, cut and written one after the other
         _write_parts(_records(candidates, collection, length, log, progress), collection, candidates, corpus)
         if not corpus.rows:
-            raise CorpusError(_nothing_usable(collection.importer, log.skipped))
+            raise CorpusError(nothing_usable(collection.importer, log.skipped))
         recordings, left_out, changes = log.recordings.total(), tuple(log.skipped), tuple(log.warnings)
         versions = plugin_versions("importers", (collection.importer,)) | plugin_versions("classes", log.recordings)
         corpus.facts |= {
@@ -190,7 +190,8 @@ def _write_parts(
         corpus.write(dataset)
 
 
-def _nothing_usable(importer: str, skipped: list[str]) -> str:
+def nothing_usable(importer: str, skipped: Sequence[str]) -> str:
+    """Sentence on an import of which no recording is left."""
     if not skipped:
         return f"import {importer}: no recording of the set was found; give the folder that holds them."
     return f"import {importer}: no recording can be used; the first of {len(skipped)} skipped: {skipped[0]}"

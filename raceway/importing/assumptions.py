@@ -10,15 +10,23 @@ from gen.physics.bearing_text import geometry_text
 from gen.physics.catalogue import CATALOGUE
 from raceway.importing.label_keys import Labels
 
-_TOPICS = {"fault": "Class", "specimen": "Specimen", "shaft_rpm": "Shaft speed (rpm)", "load_n": "Load (N)"}
+_TOPICS = {
+    "fault": ("Class", ""),
+    "specimen": ("Specimen", ""),
+    "shaft_rpm": ("Shaft speed (rpm)", "stated in the files, or else nominal"),
+    "load_n": ("Load (N)", "not known"),
+    "sample_rate_hz": ("Sample rate", "stated in the files"),
+}
+"""Keys with their topic, and the source of a fact that no file has a key for."""
 _MOST_PATHS = 3  # shown of the files that a sentence holds for
 
 
 def assumptions(files: Sequence[Labels], fs: float) -> tuple[str, ...]:
     """One sentence for each fact and its source; for each unit and bearing, with its files if not all have it."""
-    told = [f"{topic}: {_source(files, key)}" for key, topic in _TOPICS.items()]
-    rate = _source(files, "sample_rate_hz")
-    told.append(f"Sample rate: {rate if rate != 'not known' else 'stated in the files'}, stored at {fs:g} Hz")
+    stored = {"sample_rate_hz": f", stored at {fs:g} Hz"}
+    told = [
+        f"{topic}: {_source(files, key, otherwise)}{stored.get(key, '')}" for key, (topic, otherwise) in _TOPICS.items()
+    ]
     paths_of: dict[str, list[str]] = {}
     for labels in files:
         for sentence in _of_file(labels):
@@ -42,10 +50,10 @@ def _of_file(labels: Labels) -> Iterator[str]:
     )
 
 
-def _source(files: Sequence[Labels], key: str) -> str:
+def _source(files: Sequence[Labels], key: str, otherwise: str) -> str:
     """Where a fact comes from, in words."""
     values = {getattr(labels, key) for labels in files}
     if len(values) > 1:
         return "given for each file"
     (value,) = values
-    return "not known" if value is None else f"given as {f'{value:.10g}' if isinstance(value, float) else value}"
+    return otherwise if value is None else f"given as {f'{value:.10g}' if isinstance(value, float) else value}"

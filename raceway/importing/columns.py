@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from raceway.importing.array_files import FloatArray, UnusableError
 from raceway.importing.axes import axes_of
 from raceway.importing.conversion import Unit
 from raceway.importing.header import SECONDS, Header, key_of, known_unit, rounded_rate
+from raceway.importing.refused_files import FloatArray, UnusableError
 from raceway.importing.table import NumberTable
 
 SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
@@ -119,7 +119,8 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
     if {table.marks[n] for n in used if n in table.marks} == {".,"}:
         message = "has numbers that can be read in two ways, such as 1.234; give the decimal mark"
         raise UnusableError(message, "decimal")
-    rates = [(rate, "header") for rate in header.rates]
+    own_rate = header.rates_of.get(signals[0])
+    rates = [(rate, "header") for rate in (header.rates if own_rate is None else (own_rate,))]
     for place in times:
         name = header.name(place)
         if header.is_of_spectrum(place):
@@ -130,7 +131,8 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
         rate = unit and _rate_of(columns[place] * unit)
         rates += [(rate, f"times in column {name}")] if rate else []
     own = header.unit_of(signals[0])
-    named = f"column {header.name(signals[0])}" if own else header.unit
+    name = header.name(signals[0])
+    named = f"column {name if own in name else f'{name} in {own}'}" if own else header.unit
     return Values(columns[signals[0]], tuple(rates), own or header.unit, named, table)
 
 

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 
 from gen.support.units import STANDARD_GRAVITY
-from raceway.importing.array_files import FloatArray
+from raceway.importing.refused_files import FloatArray
 
 Unit = Literal["g", "mg", "m/s2", "mm/s2", "V", "mV"]
 UNITS: dict[str, Unit] = {**{unit: unit for unit in get_args(Unit)}, "ms-2": "m/s2", "m/s/s": "m/s2"}

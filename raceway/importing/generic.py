@@ -1,32 +1,40 @@
-"""Recordings of the user, described by a table of labels: paths, variables, units, bearing, speed and fault.
+"""Recordings described by a table of labels: paths, variables, units, bearing, speed and fault.
 
 ``table -> labels of each file -> recordings of one or more files -> corpus``
 """
 
 import math
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from gen.corpus import LIFE, Variable
 from gen.corpus.fault_classes import fault_class
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from gen.support.units import rpm_to_hertz, to_si
 from raceway.importing.acceleration import acceleration, reader
-from raceway.importing.array_files import FloatArray, UnusableError
 from raceway.importing.assemble import Collection, Import, import_recordings
 from raceway.importing.assumptions import assumptions
 from raceway.importing.label_keys import Labels, SensorKeys
 from raceway.importing.label_tables import read_table_of_labels
 from raceway.importing.recordings import Candidate, Recording
+from raceway.importing.refused_files import FloatArray, UnusableError
 from raceway.importing.resampling import resample
 
 _NO_RATE = 10_000.0  # Hz, if no file states one: each is then skipped with its own reason
-_OF_A_FILE = {"path", "delimiter", "decimal", "channels", *SensorKeys.model_fields}
+_OF_A_FILE = {"path", "delimiter", "decimal", "channels", "note", *SensorKeys.model_fields}
+_EVENTS = {"censored": 0, "failed": 1}
+_MOTOR_LOAD = Variable("motor_load", "f8", "W", "operating", "labelled power of the motor")
+
+LabelledFile = tuple[str, Path, Labels]
+"""Place of a file in its table, its path, and its labels."""
 
 
 def import_generic(
@@ -40,7 +48,7 @@ def import_generic(
 ) -> Import:
     """Bring the recordings that a table of labels names into a corpus.
 
-    Rigs and specimens are numbered in the order in which they are found.
+    Rigs, specimens and recordings whose names are whole numbers keep them; others are numbered in the order in which they are found.
 
     Parameters
     ----------
@@ -66,25 +74,54 @@ def import_generic(
         what = "is a folder" if source.is_dir() else "no such file"
         raise CorpusError(f"{source}: {what}; give the table of labels, such as labels.csv.")
     root = source.parent if folder is None else folder
-    found = read_table_of_labels(source, common or {})
-    recordings, skipped = _recordings(found, root)
-    every = [labels for _, labels in found]
-    fs = every[0].resample_hz or _common_rate(recordings, root)
-    rigs = _numbers(files[0].rig for files in recordings)
-    specimens = _numbers((files[0].rig, files[0].specimen) for files in recordings)
+    files: list[LabelledFile] = []
+    for place, labels in read_table_of_labels(source, common or {}):
+        path = (root / labels.path).resolve()
+        if not path.is_relative_to(root.resolve()):
+            raise CorpusError(f"{place}: {labels.path} is a link that leads out of the folder; copy the file into it.")
+        files.append((place, path, labels))
+    return import_labelled("generic", files, output, window=window, progress=progress)
+
+
+def import_labelled(
+    importer: str,
+    files: Sequence[LabelledFile],
+    output: Path,
+    *,
+    window: float,
+    skipped: Sequence[str] = (),
+    warnings: Sequence[str] = (),
+    facts: Sequence[str] = (),
+    progress: Progress | None = None,
+) -> Import:
+    """Bring labelled files into a corpus; otherwise as :func:`~raceway.importing.assemble.import_recordings`."""
+    recordings, again = _recordings(files)
+    every = [labels for _, _, labels in files]
+    fs = every[0].resample_hz or _common_rate([*recordings.values()])
+    rigs = _numbers((labels.rig,) for labels in every)
+    specimens = _numbers((labels.rig, labels.specimen) for labels in every)
+    ends = defaultdict[tuple[str, str], float](float)
+    for labels in every:
+        ends[labels.rig, labels.specimen] = max(ends[labels.rig, labels.specimen], labels.age_s or 0.0)
     candidates = []
-    for number, files in enumerate(recordings):
-        first, last = files[0], files[-1]
-        places = number, rigs[first.rig], specimens[first.rig, first.specimen]
+    for (_, number), parts in zip(_numbers(recordings).items(), recordings.values(), strict=True):
+        (_, first), (_, last) = parts[0], parts[-1]
+        specimen = first.rig, first.specimen
+        places = number, rigs[first.rig,], specimens[specimen]
         name = first.name if last is first else f"{first.name}..{last.name.rpartition('/')[2]}"
-        candidates.append(Candidate(name, partial(_read, files, root, fs, *places)))
-    collection = Collection(
-        "generic", every[0].title, every[0].origin, fs, every[0].channel_names, facts=assumptions(every, fs)
+        candidates.append(Candidate(name, partial(_read, parts, fs, places, ends[specimen])))
+    extra = LIFE if every[0].age_s is not None else ()
+    extra += () if every[0].motor_load_w is None else (_MOTOR_LOAD,)
+    told = (*facts, *assumptions(every, fs))
+    collection = Collection(importer, every[0].title, every[0].origin, fs, every[0].channel_names, told, extra)
+    return import_recordings(
+        collection, candidates, output, window=window, skipped=(*skipped, *again), warnings=warnings, progress=progress
     )
-    return import_recordings(collection, candidates, output, window=window, skipped=skipped, progress=progress)
 
 
-def _recordings(found: Sequence[tuple[str, Labels]], folder: Path) -> tuple[list[list[Labels]], list[str]]:
+def _recordings(
+    files: Sequence[LabelledFile],
+) -> tuple[dict[tuple[str, ...], list[tuple[Path, Labels]]], list[str]]:
     """Files of each recording, and a sentence for each skipped file.
 
     Files with the same rig, specimen and ``recording`` are one recording, in their order.
@@ -92,28 +129,29 @@ def _recordings(found: Sequence[tuple[str, Labels]], folder: Path) -> tuple[list
     Raises
     ------
     CorpusError
-        If a link leads out of the folder, or files that are to be joined have different labels.
+        If files that are to be joined have different labels.
     """
     skipped: list[str] = []
-    recordings: dict[tuple[str, ...], list[Labels]] = {}
-    files: dict[tuple[Any, ...], tuple[str, Labels]] = {}
-    root = folder.resolve()
-    for place, labels in found:
-        path = (folder / labels.path).resolve()
-        if not path.is_relative_to(root):
-            raise CorpusError(f"{place}: {labels.path} is a link that leads out of the folder; copy the file into it.")
-        first_place, first = files.setdefault((path, tuple(sensor.place for sensor in labels.sensors)), (place, labels))
+    recordings: dict[tuple[str, ...], list[tuple[Path, Labels]]] = {}
+    listed: dict[tuple[Any, ...], tuple[str, Labels]] = {}
+    for place, path, labels in files:
+        first_place, first = listed.setdefault(
+            (path, tuple(sensor.place for sensor in labels.sensors)), (place, labels)
+        )
         if first is not labels:
             _check_alike(place, labels, first, f"is the file of {first_place}; remove one of the two rows")
             skipped.append(f"{labels.name}: is listed again in {place}; skipped.")
             continue
-        key = ("", labels.rig, labels.specimen, labels.recording) if labels.recording else (labels.name,)
+        key = (labels.rig, labels.specimen, labels.recording) if labels.recording else (labels.name,)
         parts = recordings.setdefault(key, [])
         if parts:
-            told = f"belongs to recording {labels.recording} as {parts[0].name} does; give each recording a name of its own"
-            _check_alike(place, labels, parts[0], told)
-        parts.append(labels)
-    return [*recordings.values()], skipped
+            first = parts[0][1]
+            told = (
+                f"belongs to recording {labels.recording} as {first.name} does; give each recording a name of its own"
+            )
+            _check_alike(place, labels, first, told)
+        parts.append((path, labels))
+    return recordings, skipped
 
 
 def _check_alike(place: str, labels: Labels, first: Labels, told: str) -> None:
@@ -132,27 +170,36 @@ def _shared(labels: Labels) -> dict[str, Any]:
     return {**labels.model_dump(exclude=_OF_A_FILE), "unit": units}
 
 
-def _numbers(keys: Iterable[Hashable]) -> dict[Hashable, int]:
-    """Number of each distinct key, in order of appearance."""
-    return {key: number for number, key in enumerate(dict.fromkeys(keys))}
+def _numbers(keys: Iterable[tuple[str, ...]]) -> dict[tuple[str, ...], int]:
+    """Number of each distinct key: that which is its last name if all are whole numbers, or else in order of appearance.
+
+    >>> _numbers([("0", "105"), ("0", "97"), ("0", "105")]), _numbers([("new",), ("7",)])
+    ({('0', '105'): 105, ('0', '97'): 97}, {('new',): 0, ('7',): 1})
+    """
+    distinct = [*dict.fromkeys(keys)]
+    if all(key[-1].isdecimal() and len(key[-1]) < 10 for key in distinct):
+        written = {key: int(key[-1]) for key in distinct}
+        if len({(*key[:-1], number) for key, number in written.items()}) == len(distinct):
+            return written
+    return {key: number for number, key in enumerate(distinct)}
 
 
-def _common_rate(recordings: Sequence[Sequence[Labels]], folder: Path) -> float:
+def _common_rate(recordings: Sequence[Sequence[tuple[Path, Labels]]]) -> float:
     """Sample rate [Hz] of the first recording that tells it; 10 kHz if none does, and every file is then skipped."""
-    given = next((labels.sample_rate_hz for files in recordings for labels in files if labels.sample_rate_hz), None)
-    for files in recordings if given is None else ():
+    every = [labels for parts in recordings for _, labels in parts]
+    given = next((labels.sample_rate_hz for labels in every if labels.sample_rate_hz and not labels.long_rate_hz), None)
+    for parts in recordings if given is None else ():
         with suppress(UnusableError, OSError, MemoryError):
-            return _join(files, folder)[1]
+            return _join(parts)[1]
     return given or _NO_RATE
 
 
-def _read(files: Sequence[Labels], folder: Path, fs: float, number: int, rig: int, specimen: int) -> Recording:
-    signals, rate, notes = _join(files, folder)
-    labels = files[0]
+def _read(parts: Sequence[tuple[Path, Labels]], fs: float, places: tuple[int, int, int], end: float) -> Recording:
+    signals, rate, stated, notes = _join(parts)
+    labels = parts[0][1]
     if len({signal.size for signal in signals}) > 1:
         sizes = " and ".join(str(signal.size) for signal in signals)
-        message = f"has channels of {sizes} samples; give channels of one length"
-        raise UnusableError(message)
+        raise UnusableError(f"has channels of {sizes} samples; give channels of one length")
     signal = np.stack(signals)
     if rate != fs:
         if labels.resample_hz is None:
@@ -160,48 +207,73 @@ def _read(files: Sequence[Labels], folder: Path, fs: float, number: int, rig: in
             raise UnusableError(message)
         signal, sentence = resample(signal, rate, fs)
         notes.append(sentence)
-    return _recording(labels, signal, number, rig, specimen)._replace(warnings=tuple(notes))
+    rpm, told = labels.speed(stated)
+    return _recording(labels, signal, rpm_to_hertz(rpm), places, end)._replace(warnings=(*notes, *told))
 
 
-def _join(files: Sequence[Labels], folder: Path) -> tuple[list[FloatArray], float, list[str]]:
-    """Each channel in m s-2, shape (time,), the sample rate [Hz], and notes, which are sentences without their end."""
-    parts: list[list[FloatArray]] = []
+def _join(parts: Sequence[tuple[Path, Labels]]) -> tuple[list[FloatArray], float, float | None, list[str]]:
+    """Each channel in m s-2, shape (time,), sample rate [Hz], speed that the first file states [rpm], and sentences without their end."""
+    read_parts: list[list[FloatArray]] = []
     rates: set[float] = set()
+    speeds: list[float | None] = []
     notes: dict[str, None] = {}
-    for labels in files:
-        read = reader(folder / labels.path)
-        parts.append([])
+    for path, labels in parts:
+        read = reader(path)
+        read_parts.append([])
+        notes |= {labels.note: None} if labels.note else {}
         for sensor in labels.sensors:
             content = read(sensor.place)
             if sensor.scale.unit is None and not content.unit:
                 raise UnusableError("states no unit; give it", "unit")
-            signal = acceleration(content, *sensor.scale, labels.sample_rate_hz, "sample_rate_hz")
+            given = labels.rate(content.values.size)
+            signal = acceleration(content, *sensor.scale, given, "sample_rate_hz")
             if signal.fs is None:
                 raise UnusableError("states no sample rate; give it", "sample_rate_hz")
-            parts[-1].append(signal.values)
+            if labels.long_rate_hz:
+                notes[f"its {content.values.size} samples are taken as recorded at {signal.fs:g} Hz"] = None
+            read_parts[-1].append(signal.values)
             rates.add(signal.fs)
+            speeds.append(signal.rpm)
             notes |= dict.fromkeys(
                 f"channel {sensor.name}: {note}" if labels.channels else note for note in signal.warnings
             )
     if len(rates) > 1:
         raise UnusableError("is joined of files at different sample rates; give each recording a name of its own")
-    return [np.concatenate(channel) for channel in zip(*parts, strict=True)], rates.pop(), [*notes]
+    return [np.concatenate(channel) for channel in zip(*read_parts, strict=True)], rates.pop(), speeds[0], [*notes]
 
 
-def _recording(labels: Labels, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:
+def _recording(
+    labels: Labels, signal: FloatArray, shaft_rate: float, places: tuple[int, int, int], end: float
+) -> Recording:
+    """Facts of a recording in SI units; the course of its specimen ends at an age [s]."""
     spalls = fault_class(labels.fault).n_spalls
     unknown = math.nan if spalls else 0.0
+    bearing, load = labels.bearing, math.nan if labels.load_n is None else labels.load_n
+    extra = {} if labels.motor_load_w is None else {"motor_load": labels.motor_load_w}
+    if labels.age_s is not None:
+        left = end - labels.age_s if labels.rul_s is None and labels.event == "failed" else labels.rul_s
+        left = math.nan if left is None else left
+        rated = bearing.dynamic_rating if math.isfinite(load) else None
+        extra |= dict.fromkeys((variable.name for variable in LIFE), math.nan) | {
+            "age": labels.age_s,
+            "rul": left,
+            "rul_revolutions": left * shaft_rate,
+            "event": _EVENTS.get(labels.event, 2),
+            "stage": 3,
+            "overloaded": 2 if rated is None else int(load > rated / 2),
+        }
+        # lives are told apart by the name of their bearing
+        bearing = replace(bearing, designation=f"{bearing.designation} {labels.specimen}")
     return Recording(
-        number=number,
-        rig=rig,
-        specimen=specimen,
-        bearing=labels.bearing,
-        shaft_rate=rpm_to_hertz(labels.shaft_rpm),
+        *places,
+        bearing=bearing,
+        shaft_rate=shaft_rate,
         fault=labels.fault,
         signal=signal,
-        load=math.nan if labels.load_n is None else labels.load_n,
+        load=load,
         n_spalls=labels.n_spalls or spalls,
         width=unknown if labels.width_mm is None else to_si(labels.width_mm, "mm"),
         depth=unknown if labels.depth_um is None else to_si(labels.depth_um, "um"),
         angle=math.nan if labels.angle_deg is None else to_si(labels.angle_deg, "deg"),
+        extra=extra,
     )

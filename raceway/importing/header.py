@@ -6,7 +6,7 @@ A unit in another form, or another unit, is kept as it is written: it is then no
 import math
 import re
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -27,24 +27,24 @@ _IN_BRACKETS = re.compile(r"\[([^\]]*)\][^\[\]()]*$|\(((?:[^()]|\([^()]*\))*)\)[
 _CHANNEL = re.compile(r"[a-z]+_?\d+", re.IGNORECASE)  # cDAQ1Mod1/ai0
 _TIMES = re.compile(r"(?i:(?:x_value|time(?:stamp)?|zeit|temps|tiempo|tempo)(?![a-z]))|t\b")
 _SPECTRUM = re.compile(r"(?:fr[eé][qc]|order|ordnung)", re.IGNORECASE)
-_COMMON = re.compile(r"(?:y_unit_label|units?)\b[\s:=]*(.+)", re.IGNORECASE)
+_COMMON = re.compile(r"units?\b[\s:=]*(.+)", re.IGNORECASE)
 _RATE_WORDS = r"(?:(?i:sampl(?:e|ing)[ _-]rate|sampling[ _-]frequency)|[fF]s)"
 _HERTZ = r"([kK]?[hH][zZ]|MHz|[kKM]?S/s|[kKM]?Sa/s|[kKM]?SPS)"
 _RATE = re.compile(rf"{_RATE_WORDS}\s*(?:[\[(]\s*{_HERTZ}\s*[\])])?[\s:=;,]*([\d.,eE+-]+)\s*{_HERTZ}?[\s;,]*")
-_STEP = re.compile(r"Delta_X((?: [\d.,eE+-]+)+)")
 
 
 class Header(NamedTuple):
     """What the lines before the numbers state.
 
     ``names`` are those of all columns, and ``units`` their units as written, empty if they are not stated; both are empty without names.
-    ``unit`` is that of all columns; ``rates`` are sample rates [Hz].
+    ``unit`` is that of all columns; ``rates`` are sample rates [Hz], and ``rates_of`` those of single columns.
     """
 
     names: tuple[str, ...] = ()
     units: tuple[str, ...] = ()
     unit: str = ""
     rates: tuple[float, ...] = ()
+    rates_of: Mapping[int, float] = {}
 
     def name(self, column: int) -> str:
         """Number and name of a column."""
@@ -86,13 +86,24 @@ def header_of(rows: Sequence[Sequence[str]], least: int, most: int) -> Header:
     """Header in rows of texts before rows of ``least`` to ``most`` fields."""
     lines = [*filter(None, map(_uncommented, rows))]
     names, units = _names(lines, least, most)
-    of_labview = (
-        bool(lines) and lines[0][0].startswith("LabVIEW") and ["X_Dimension", "Time"] in [line[:2] for line in lines]
-    )
-    if of_labview:
-        units = tuple("s" if name == "X_Value" else unit for name, unit in zip(names, units, strict=True))
-    rates = dict.fromkeys(rate for fields in lines for rate in _rates(" ".join(fields), steps=of_labview))
+    if lines and lines[0][0].startswith("LabVIEW"):
+        return _of_labview(lines, names, units)
+    rates = dict.fromkeys(rate for fields in lines for rate in _rates(" ".join(fields)))
     return Header(names, units, _common_unit(lines, names), tuple(rates))
+
+
+def _of_labview(lines: Sequence[list[str]], names: tuple[str, ...], units: tuple[str, ...]) -> Header:
+    """Header whose lines state unit and step of each column, in the place of the column."""
+    said = {fields[0]: fields for fields in lines}
+    if "Time" not in said.get("X_Dimension", ()):
+        return Header(names, units)
+    labels = [*said.get("Y_Unit_Label", ()), *[""] * len(names)]
+    units = tuple(
+        "s" if name == "X_Value" else unit if not label or known_unit(unit) else label
+        for name, unit, label in zip(names, units, labels, strict=False)
+    )
+    steps = enumerate(said.get("Delta_X", ())[1:], 1)
+    return Header(names, units, rates_of={n: rate for n, step in steps if (rate := rate_of_step(step))})
 
 
 def _uncommented(fields: Sequence[str]) -> list[str]:
@@ -184,29 +195,27 @@ def _says_unit(text: str) -> bool:
     return any(known_unit(word) or word.casefold() in ("volt", "volts", "counts") for word in words)
 
 
-def _rates(line: str, *, steps: bool) -> Iterator[float]:
-    """Sample rates [Hz] that a line states; the step of time only if ``steps``, as in files of LabVIEW."""
-    found, step = _RATE.fullmatch(line), _STEP.fullmatch(line)
+def _rates(line: str) -> Iterator[float]:
+    """Sample rates [Hz] that a line states."""
+    found = _RATE.fullmatch(line)
     if found:
         before, number, after = found.groups()
         value, unit = number_in(number), before or after
         if value is not None and unit and (before or after) == (after or before):
             yield value * {"k": 1e3, "K": 1e3, "M": 1e6}.get(unit[0], 1.0)
-    elif step and steps:
-        yield from filter(None, map(_rate_of_step, step[1].split()))
 
 
-def _rate_of_step(text: str) -> float | None:
+def rate_of_step(text: str) -> float | None:
     """Sample rate [Hz] of a step [s], None if its decimals do not tell it.
 
-    >>> _rate_of_step("0.000977"), _rate_of_step("7,8125E-5"), _rate_of_step("0.000156")
+    >>> rate_of_step("0.000977"), rate_of_step("7,8125E-5"), rate_of_step("0.000156")
     (1024.0, 12800.0, None)
     """
     step = number_in(text)
     if not step:
         return None
     exponent = Decimal(text.replace(",", ".")).as_tuple().exponent
-    return rounded_rate(1 / step, 0.5 * 10.0 ** int(exponent) / step)
+    return rounded_rate(1 / step, max(0.5 * 10.0 ** int(exponent) / step, 1e-9))
 
 
 def rounded_rate(rate: float, doubt: float) -> float | None:

@@ -17,9 +17,12 @@ if TYPE_CHECKING:
 
 _source: Any = click.argument("source", metavar="SRC", type=A_PATH)
 _output: Any = target_option("The new corpus: a file if the name ends in .nc, else a folder.")
-_window: Any = click.option(
-    "--window", type=float, default=0.5, show_default=True, metavar="S", help="Length of a record [s]."
-)
+
+
+def _window(default: float) -> Any:
+    return click.option(
+        "--window", type=float, default=default, show_default=True, metavar="S", help="Length of a record [s]."
+    )
 
 
 def _keys(_context: click.Context, _option: click.Parameter, texts: tuple[str, ...]) -> dict[str, str]:
@@ -30,8 +33,46 @@ def _keys(_context: click.Context, _option: click.Parameter, texts: tuple[str, .
     return dict(text.split("=", 1) for text in texts)
 
 
+_set: Any = click.option(
+    "--set", "settings", multiple=True, metavar="KEY=VALUE", callback=_keys, help="Key of all files; can be repeated."
+)
+
+
+def _make(name: str) -> click.Command:
+    """Command of a published set, or of the importer of a plug-in."""
+    from raceway.importing.published import published_sets
+
+    return _of_set(name) if name in published_sets() else _of_plugin(name)
+
+
+def _of_set(name: str) -> click.Command:
+    from raceway.importing.published import ALL, UNTRIED, import_set, published_sets
+
+    published = published_sets()[name]
+    state = "" if published.tried else f" Its table of labels is {UNTRIED}."
+    layout = "SRC is the folder of the published files; they may be in subfolders."
+    layout += "" if "unit" in published.common else " The description states no unit: give --set unit=g or another."
+    told = f"{published.help}{state}\n\n{layout}\n\n  raceway import {name} SRC -o {name}"
+
+    @click.command(name, help=told)
+    @_source
+    @_output
+    @_window(published.window_s)
+    @_set
+    @json_option
+    def convert(source: Path, output: Path, as_json: bool, settings: dict[str, str], **options: Any) -> None:
+        _run(lambda report: import_set(name, source, output, common=settings, progress=report, **options), as_json)
+
+    if published.subsets:
+        choices = f"All recordings, or {', '.join(f'{key}: {words}' for key, words in published.subsets.items())}."
+        subset: Any = click.option(
+            "--subset", type=click.Choice([ALL, *published.subsets]), default=ALL, show_default=True, help=choices
+        )
+        subset(convert)
+    return convert
+
+
 def _of_plugin(name: str) -> click.Command:
-    """Command of the importer of a plug-in."""
     from gen.support.plugins import plugin  # not at the top: help needs nothing of gen
     from raceway.importing.assemble import Importer
 
@@ -40,7 +81,7 @@ def _of_plugin(name: str) -> click.Command:
     @click.command(name, help=importer.help)
     @_source
     @_output
-    @_window
+    @_window(0.5)
     @json_option
     def convert(source: Path, output: Path, window: float, as_json: bool) -> None:
         _run(lambda report: importer.convert(source, output, window=window, progress=report), as_json)
@@ -48,7 +89,20 @@ def _of_plugin(name: str) -> click.Command:
     return convert
 
 
-@click.group("import", cls=PluginGroup, plugins="raceway.importers", make=_of_plugin)
+class _Importers(PluginGroup):
+    """Commands of published sets and of plug-ins beside ``generic``."""
+
+    def added(self) -> list[str]:
+        from raceway.importing.published import published_sets
+
+        return [*dict.fromkeys((*published_sets(), *super().added()))]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        # without the sets, whose table takes 0.2 s to read
+        return self.commands.get(cmd_name) or super().get_command(ctx, cmd_name)
+
+
+@click.group("import", cls=_Importers, plugins="raceway.importers", make=_make)
 def import_() -> None:
     """Convert real recordings into the corpus format.
 
@@ -63,68 +117,9 @@ def import_() -> None:
 @import_.command()
 @_source
 @_output
-@_window
-@click.option(
-    "--subset",
-    type=click.Choice(["all", "wang"]),
-    default="all",
-    show_default=True,
-    help="All 64 recordings, or the 40 of Wang, Taal and Fink (2021).",
-)
-@json_option
-def cwru(source: Path, output: Path, window: float, subset: Any, as_json: bool) -> None:
-    """Case Western Reserve University, drive end, 12 kHz.
-
-    SRC is the folder of the published MATLAB files; they may be in subfolders.
-
-      raceway import cwru SRC -o cwru --subset wang
-    """
-    from raceway.importing import import_cwru
-
-    _run(lambda report: import_cwru(source, output, window=window, subset=subset, progress=report), as_json)
-
-
-@import_.command()
-@_source
-@_output
-@_window
-@json_option
-def mfpt(source: Path, output: Path, window: float, as_json: bool) -> None:
-    """MFPT fault data set of Bechhoefer, 48,828 Hz.
-
-    SRC is the folder of the published MATLAB files; they may be in subfolders.
-
-      raceway import mfpt SRC -o mfpt
-    """
-    from raceway.importing import import_mfpt
-
-    _run(lambda report: import_mfpt(source, output, window=window, progress=report), as_json)
-
-
-@import_.command()
-@_source
-@_output
-@json_option
-def femto(source: Path, output: Path, as_json: bool) -> None:
-    """PRONOSTIA run-to-failure tests of FEMTO-ST, IEEE PHM 2012.
-
-    SRC is the folder of the published folders Bearing1_1, ...; they may be in subfolders. Each file is one record of a life.
-
-      raceway import femto Learning_set -o pronostia
-    """
-    from raceway.importing import import_femto
-
-    _run(lambda report: import_femto(source, output, progress=report), as_json)
-
-
-@import_.command()
-@_source
-@_output
-@_window
+@_window(0.5)
 @click.option("--folder", type=A_PATH, metavar="DIR", help="Folder of the recordings; by default that of SRC.")
-@click.option(
-    "--set", "settings", multiple=True, metavar="KEY=VALUE", callback=_keys, help="Key of all files; can be repeated."
-)
+@_set
 @json_option
 def generic(
     source: Path, output: Path, window: float, folder: Path | None, settings: dict[str, str], as_json: bool

@@ -20,15 +20,16 @@ from gen.support.limits import check_limit, limit
 from gen.support.sentences import sentences
 from gen.support.units import unit_suffix
 from gen.support.yaml_files import parse_yaml, read_yaml
-from raceway.importing.array_files import UnusableError, guarded, reason_of
 from raceway.importing.label_keys import Labels
 from raceway.importing.numerals import decimal_marks, is_number, number_in
+from raceway.importing.refused_files import UnusableError, guarded, reason_of
 from raceway.importing.text_files import text_of
 
 _TABLES = (".csv", ".txt", ".tsv")
 _MARKS = "\t;,"
 _NUMBERS = {key for key in Labels.model_fields if unit_suffix(key) or key == "n_spalls"}
 _ALIKE = ("title", "origin", "resample_hz", "channel_names")
+_OF_ALL = ("age_s", "motor_load_w")
 _MOST_SENTENCES = 20
 
 
@@ -64,21 +65,27 @@ def read_table_of_labels(path: Path, common: Mapping[str, Any]) -> list[tuple[st
         text for _, keys in texts for key, text in keys.items() if key in _NUMBERS and is_number(text)
     )
     rows = [
-        (place, {key: _value(f"{place}, column {key}", key, text, marks) for key, text in keys.items()})
+        (place, {key: value_of(f"{place}, column {key}", key, text, marks) for key, text in keys.items()})
         for place, keys in texts
     ]
     beside = path.with_suffix(".yaml")
-    return _labels_of(rows, keys_of_yaml(beside) if beside.is_file() else {}, common, beside)
+    shared = keys_of_yaml(beside) if beside.is_file() else {}
+    return labels_of(rows, shared, common, str(beside), f"there, or for all files in {beside.name}")
 
 
-def _labels_of(
-    rows: Sequence[_Row], shared: Mapping[str, Any], common: Mapping[str, Any], beside: Path
+def labels_of(
+    rows: Sequence[_Row], shared: Mapping[str, Any], common: Mapping[str, Any], source: str, advice: str
 ) -> list[tuple[str, Labels]]:
-    """Place and labels of each row; ``shared`` keys are from the file ``beside``. A flaw of several rows is told of the first one."""
-    given = {
-        key: _value(f"common key {key}", key, value) if isinstance(value, str) else value
-        for key, value in common.items()
-    }
+    """Place and labels of each row; ``shared`` keys are from a ``source``, and ``advice`` says where a missing one is given.
+
+    A flaw of several rows is told of the first one.
+
+    Raises
+    ------
+    CorpusError
+        If keys or values are wrong; one sentence for each.
+    """
+    given = {key: value_of(f"common key {key}", key, value) for key, value in common.items()}
     found: list[tuple[str, Labels]] = []
     problems: dict[str, str] = {}
     for place, own in rows:
@@ -91,8 +98,8 @@ def _labels_of(
                 key = re.split(r"\W", sentence)[0]
                 start = place + (", column " if key in {*keys, *Labels.model_fields} else ": ")
                 if key in keys and key not in own:
-                    start = "common key " if key in given else f"{beside}: "
-                told = sentence.replace("; give it.", f"; give it there, or for all files in {beside.name}.")
+                    start = "common key " if key in given else f"{source}: "
+                told = sentence.replace("; give it.", f"; give it {advice}.")
                 # the same flaw in every row is one sentence
                 problems.setdefault(told, start)
     if problems:
@@ -100,7 +107,12 @@ def _labels_of(
     # facts of the corpus cannot differ between its files
     for key in _ALIKE:
         _check_alike(key, [(place, getattr(labels, key)) for place, labels in found], "give all files the same")
-    rates = [(place, labels.sample_rate_hz) for place, labels in found if labels.sample_rate_hz]
+    for key in _OF_ALL:
+        given = [(place, "none" if getattr(labels, key) is None else "one") for place, labels in found]
+        _check_alike(key, given, "give all files one")
+    rates = [
+        (place, labels.sample_rate_hz) for place, labels in found if labels.sample_rate_hz and not labels.long_rate_hz
+    ]
     if found[0][1].resample_hz is None:
         _check_alike("sample_rate_hz", rates, "give resample_hz")
     return found
@@ -119,7 +131,7 @@ def keys_of_yaml(path: Path) -> dict[str, Any]:
     """Keys in a YAML file."""
     keys = read_yaml(path, CorpusError)
     for key, text in re.findall(r"""(\w+)["']?:[ ]+["']?([\d.]+)""", path.read_text("utf-8", "ignore")):
-        _value(f"{path}: {key}", key, text)
+        value_of(f"{path}: {key}", key, text)
     if not isinstance(keys, dict) or not all(isinstance(key, str) for key in keys):
         raise CorpusError(f"{path}: holds no keys; write those that all files share, such as unit: g.")
     return keys
@@ -152,22 +164,17 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
     return lines
 
 
-def _value(where: str, key: str, text: str, marks: str = "") -> Any:
-    """Value of a cell; a number has the one decimal mark of the table, or else one reading."""
+def value_of(where: str, key: str, text: Any, marks: str = "") -> Any:
+    """Value of a cell; a number has the one decimal mark of the table, or else one reading, and channels are written as in YAML."""
+    if not isinstance(text, str):
+        return text
+    if key == "channels":
+        return parse_yaml(text, where, CorpusError)
     if key not in _NUMBERS or not is_number(text):
-        return _parsed(where, key, text)
+        return int(text) if key == "column" and text.isdecimal() else text
     number = number_in(text, marks if len(marks) == 1 else "")
     if number is None:
         raise CorpusError(
             f"{where}: {text} may be in thousands; write it without marks between them, or with four decimals."
         )
     return number
-
-
-def _parsed(where: str, key: str, value: Any) -> Any:
-    """Value of a key that may be written as text; channels are written as in YAML."""
-    if not isinstance(value, str):
-        return value
-    if key == "channels":
-        return parse_yaml(value, where, CorpusError)
-    return int(value) if key == "column" and value.isdecimal() else value

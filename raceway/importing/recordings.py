@@ -6,6 +6,7 @@ into consecutive windows of equal length; the last incomplete one is dropped.
 
 import unicodedata
 from collections.abc import Callable, Mapping
+from fnmatch import fnmatchcase
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,7 +18,7 @@ from gen.corpus import FAULTS, SPLITS, UNKNOWN, UNKNOWN_CODE
 from gen.physics.bearing import Bearing, orders
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit, limit
-from raceway.importing.array_files import FloatArray, UnusableError, reason_of
+from raceway.importing.refused_files import FloatArray, UnusableError, reason_of
 
 _LARGEST_ACCELERATION = 1e7  # m s-2, ten times the range of shock accelerometers
 _AS_RECORDED = ("rig", "specimen", "shaft_rate", "load", "n_spalls", "width", "depth", "angle")
@@ -112,31 +113,30 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
 
 
 def name_of(path: Path, folder: Path) -> str:
-    r"""Name of a file relative to a folder, as text that can be stored: bytes that are not UTF-8 are escaped.
+    r"""Name of a file relative to a folder, as text that can be stored, with ? for other characters.
 
     >>> name_of(Path("set/Pr\udcfcfstand/1.mat"), Path("set"))
-    'Pr\\xfcfstand/1.mat'
+    'Pr?fstand/1.mat'
     """
     name = path.relative_to(folder).as_posix()
-    name = name.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
-    return "".join(letter if unicodedata.category(letter) != "Cc" else "?" for letter in name)
+    return "".join(letter if unicodedata.category(letter) not in ("Cc", "Cs") else "?" for letter in name)
 
 
-def files_below(folder: Path, suffix: str) -> list[Path]:
-    """Files with a suffix in a folder and its subfolders, sorted by path.
+def files_below(folder: Path, pattern: str) -> list[Path]:
+    """Files with names such as ``*.mat`` in a folder and its subfolders, sorted by path.
 
     Raises
     ------
     CorpusError
         If there is no such folder or no such file, or there are more files than the limit.
     """
+    what = pattern.removeprefix("*")
     if not folder.is_dir():
-        message = f"{folder}: {'is not a folder' if folder.exists() else 'no such folder'}; give the folder that holds the {suffix} files."
-        raise CorpusError(message)
-    files = (path for path in folder.rglob("*") if path.suffix.lower() == suffix and path.is_file())
+        reason = "is not a folder" if folder.exists() else "no such folder"
+        raise CorpusError(f"{folder}: {reason}; give the folder that holds the {what} files.")
+    files = (path for path in folder.rglob("*") if fnmatchcase(path.name.lower(), pattern) and path.is_file())
     paths = sorted(islice(files, limit("recording_files") + 1))
     check_limit("recording_files", len(paths), f"{folder}: holds", CorpusError)
     if not paths:
-        message = f"{folder}: has no {suffix} file in it or below; give the folder that holds the recordings."
-        raise CorpusError(message)
+        raise CorpusError(f"{folder}: has no {what} file in it or below; give the folder that holds the recordings.")
     return paths

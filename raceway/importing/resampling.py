@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from gen.support.limits import check_limit
-from raceway.importing.array_files import FloatArray, UnusableError
+from raceway.importing.refused_files import FloatArray, UnusableError
 
 FLAT = 0.84  # of the lower Nyquist frequency: the filter passes more than 99 % of the amplitude below
 _FINEST = 10_000  # largest denominator of the ratio of two rates; its rounding is below 6e-5 of the rate

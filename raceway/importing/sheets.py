@@ -1,26 +1,29 @@
-"""Sheets of Excel files, read with python-calamine, which is an extra: ``size -> sheet -> lines of fields -> table``."""
+"""Sheets of spreadsheets (.xlsx, .xls, .ods), read with python-calamine: ``size -> sheet -> lines of fields -> table``."""
 
 import csv
 import io
 import re
 import zipfile
+from collections.abc import Iterator
 from datetime import date, datetime
 from pathlib import Path
 from typing import Any
 
 from gen.support.limits import check_limit
-from raceway.importing.array_files import UnusableError, guarded
 from raceway.importing.numerals import is_number
+from raceway.importing.refused_files import UnusableError, guarded, optional
 from raceway.importing.table import NumberTable, read_table
 
 _CELL = re.compile(rb"r\s*=\s*[\"']([A-Za-z]{1,3})(\d{1,7})[\"']")
+_ODS_TAG = re.compile(rb"<table:table-(row|cell)\b([^>]*)>")
+_REPEATED = re.compile(rb"number-(?:row|column)s-repeated\s*=\s*[\"'](\d+)[\"']")
 _CELL_BYTES = 32  # that the library takes for each cell of the rectangle around all cells
 _MOST_ROWS = 1_048_576
-_CHUNK, _OVERLAP = 4_000_000, 20  # bytes
+_CHUNK = 4_000_000  # bytes
 
 
 def read_sheet(path: Path, sheet: str | None) -> NumberTable:
-    """Table in a sheet of an Excel file, by default the visible one that is active, or else the first visible one.
+    """Table in a sheet of a spreadsheet, by default the visible one that is active, or else the first visible one.
 
     Raises
     ------
@@ -28,14 +31,12 @@ def read_sheet(path: Path, sheet: str | None) -> NumberTable:
         If python-calamine is missing, the file is no such file or asks for too much memory, it does not have the sheet, or as in
         :func:`~raceway.importing.table.read_table`.
     """
-    try:
-        from python_calamine import CalamineWorkbook, SheetTypeEnum, SheetVisibleEnum
-    except ImportError:
-        raise UnusableError("is an Excel file, which needs python-calamine; pip install python-calamine") from None
+    library = optional("python_calamine")
     with guarded(path, "spreadsheet"):
-        active = _check_size(path)
-        with CalamineWorkbook.from_path(str(path)) as book:
-            shown = SheetVisibleEnum.Visible, SheetTypeEnum.WorkSheet
+        # old Excel files have at most 65,536 rows of 256 columns
+        active = _check_size(path) if zipfile.is_zipfile(path) else 0
+        with library.CalamineWorkbook.from_path(str(path)) as book:
+            shown = library.SheetVisibleEnum.Visible, library.SheetTypeEnum.WorkSheet
             visible = [one.name for one in book.sheets_metadata if (one.visible, one.typ) == shown]
             name, notes = _chosen(book.sheet_names, visible, active, sheet)
             rows = book.get_sheet_by_name(name).to_python(skip_empty_area=False)
@@ -50,13 +51,17 @@ def _check_size(path: Path) -> int:
     with zipfile.ZipFile(path) as archive:
         check_limit("file_bytes", sum(part.file_size for part in archive.infolist()), "is unpacked", UnusableError)
         for part in archive.infolist():
-            columns, rows, tags, rest = 0, 0, 0, b""
-            with archive.open(part) as stream:
-                while block := stream.read(_CHUNK):
-                    for letters, row in _CELL.findall(rest + block):
-                        columns, rows = max(columns, _number(letters.upper())), max(rows, int(row))
-                    tags += block.count(b"<row")
-                    rest = block[-_OVERLAP:]
+            columns = rows = tags = cells = repeated = 0
+            for block in _blocks(archive, part):
+                for letters, row in _CELL.findall(block):
+                    columns, rows = max(columns, _number(letters.upper())), max(rows, int(row))
+                tags += block.count(b"<row")
+                for kind, attributes in _ODS_TAG.findall(block):
+                    times = int(count[1]) if (count := _REPEATED.search(attributes)) else 1
+                    if kind == b"row":
+                        repeated = times
+                    elif b"office:value" in attributes:
+                        cells += repeated * times
             if max(rows, tags) > _MOST_ROWS:
                 message = (
                     f"has a sheet of {max(rows, tags)} rows, and one of Excel has at most {_MOST_ROWS}; export it again"
@@ -64,8 +69,21 @@ def _check_size(path: Path) -> int:
                 raise UnusableError(message)
             what = f"has a sheet of {columns} columns and {rows} rows, which takes"
             check_limit("file_bytes", columns * rows * _CELL_BYTES, what, UnusableError)
+            check_limit("file_bytes", cells * _CELL_BYTES, f"has a sheet of {cells} cells, which takes", UnusableError)
+        if "xl/workbook.xml" not in archive.namelist():
+            return 0
         found = re.search(rb"\bactiveTab\s*=\s*[\"'](\d{1,5})[\"']", archive.read("xl/workbook.xml"))
         return int(found[1]) if found else 0
+
+
+def _blocks(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterator[bytes]:
+    """Content of a part in blocks that end with a tag."""
+    rest = b""
+    with archive.open(part) as stream:
+        while block := stream.read(_CHUNK):
+            whole, end, rest = (rest + block).rpartition(b">")
+            yield whole + end
+    yield rest
 
 
 def _number(letters: bytes) -> int:

@@ -16,9 +16,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from raceway.importing.array_files import FloatArray, UnusableError, guarded
 from raceway.importing.header import Header, header_of
 from raceway.importing.numerals import AS_PYTHON, PATTERNS, decimal_marks, is_number
+from raceway.importing.refused_files import FloatArray, UnusableError, guarded
 from raceway.importing.text_files import BLANK, TextLine, first_lines, is_value, mark_between, split, text_of
 
 _MOST_COLUMNS, _AXES = 64, 3  # of a table without names; beyond three axes of a sensor they may be windows

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from raceway.importing.array_files import UnusableError, guarded
 from raceway.importing.numerals import is_number
+from raceway.importing.refused_files import UnusableError, guarded
 
 START = 400  # lines that tell the columns
 BLANK = " "  # stands for any number of blanks and tabs

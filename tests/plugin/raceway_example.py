@@ -97,7 +97,7 @@ def import_plain(source: Path, output: Path, *, window: float = 0.5, progress: A
     facts = Collection("plain", "Plain recordings", "someone", 12_000.0, ("sensor",))
     files = [
         Candidate(path.name, lambda path=path, number=number: _read(path, number))
-        for number, path in enumerate(files_below(source, ".npy"))
+        for number, path in enumerate(files_below(source, "*.npy"))
     ]
     return import_recordings(facts, files, output, window=window, progress=progress)
 

@@ -18,6 +18,7 @@ from gen.corpus.disk import _HOST
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
 from raceway import copy
+from raceway.importing.published import published_sets
 from raceway.sharing.card.card_page import card_folder
 from tests.command_tree import COMMANDS
 from tests.conftest import small_with
@@ -38,9 +39,7 @@ RESULTS = {
     "compare {corpus} {corpus}": "report",
     "generate {recipe}": "new",
     "import generic {raw}": "new",
-    "import cwru {raw}": "new",
-    "import mfpt {raw}": "new",
-    "import femto {raw}": "new",
+    **{f"import {name} {{raw}}": "new" for name in published_sets()},
     "copy {corpus}": "new",
 }
 

@@ -14,24 +14,24 @@ from features.table.corpus_features import feature_table
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
-from raceway.importing import import_cwru, import_mfpt
+from raceway.importing import import_set
 from tests.paths import REAL
 
 
-def real_table(name, importer, folder):
+def real_table(name, folder):
     if not (REAL / name).is_dir():
         pytest.skip(f"no real recordings: set RACEWAY_REAL to the folder that holds {name}")
-    return feature_table(importer(REAL / name, folder / name).path, ("lines", "shape"))
+    return feature_table(import_set(name, REAL / name, folder / name).path, ("lines", "shape"))
 
 
 @pytest.fixture(scope="module")
 def cwru(tmp_path_factory):
-    return real_table("cwru", import_cwru, tmp_path_factory.mktemp("real"))
+    return real_table("cwru", tmp_path_factory.mktemp("real"))
 
 
 @pytest.fixture(scope="module")
 def mfpt(tmp_path_factory):
-    return real_table("mfpt", import_mfpt, tmp_path_factory.mktemp("real"))
+    return real_table("mfpt", tmp_path_factory.mktemp("real"))
 
 
 def test_white_noise_exceeds_the_threshold_of_the_rule_in_fewer_than_one_record_in_a_hundred():

@@ -11,8 +11,8 @@ import scipy.signal
 
 from gen.corpus import FAULTS, open_corpus, validate_corpus
 from gen.support.errors import CorpusError
-from raceway.importing import import_cwru
-from raceway.importing.cwru import SPECIMENS
+from raceway.importing import import_set
+from raceway.importing.published import published_sets
 from raceway.sharing.card.card_page import data_card
 
 G = 9.80665
@@ -45,7 +45,7 @@ def output(tmp_path):
 
 
 def imported(source, output, **options):
-    done = import_cwru(source, output, **options)
+    done = import_set("cwru", source, output, **options)
     assert validate_corpus(output) == []
     with open_corpus(output) as corpus:
         return done, corpus.load()
@@ -59,7 +59,7 @@ def test_a_recording_becomes_half_second_records_in_metres_per_second_squared(so
     np.testing.assert_array_equal(
         corpus.acceleration.values[1, 0], (noise(13_000, 105)[6000:12_000, 0] * G).astype(np.float32)
     )
-    assert corpus.source.values.tolist() == ["IR/007/105_0.mat#0", "IR/007/105_0.mat#6000"]
+    assert corpus.source.values.tolist() == ["IR/007/105_0.mat:X105_DE_time#0", "IR/007/105_0.mat:X105_DE_time#6000"]
     assert corpus.sample_rate.values.tolist() == [12_000, 12_000]
     assert corpus.recording.values.tolist() == [105, 105]
 
@@ -113,6 +113,9 @@ outer   21  12 258  259  260  261
 """
 
 
+CLOCK = {None: None, 0: 3, -90: 6, 90: 12}  # by the angle in degrees
+
+
 def test_every_recording_has_the_fault_and_the_load_of_the_published_tables():
     published = {}
     for row in PUBLISHED.split("\n")[1:-1]:
@@ -121,9 +124,9 @@ def test_every_recording_has_the_fault_and_the_load_of_the_published_tables():
             place = None if clock == "-" else int(clock)
             published[int(number)] = (fault.replace("normal", "healthy"), int(diameter), place, load)
     found = {
-        number: (specimen.fault, specimen.diameter, specimen.clock, load)
-        for specimen in SPECIMENS
-        for load, number in enumerate(specimen.numbers)
+        number: (row["fault"], round(row.get("width_mm", 0) / 0.0254), CLOCK[row.get("angle_deg")], load)
+        for row in published_sets()["cwru"].rows
+        for load, number in enumerate(row["number"])
     }
     assert found == published
     assert len(published) == 64
@@ -145,8 +148,8 @@ def test_specimens_have_the_same_number_in_both_subsets(tmp_path, source):
 
 
 def test_the_wang_subset_is_forty_recordings_of_four_classes(source, output):
-    for specimen in SPECIMENS:
-        for number in specimen.numbers:
+    for row in published_sets()["cwru"].rows:
+        for number in row["number"]:
             published(source, number, samples=6000, held={3001: 56, 3005: 48}.get(number))
     done, corpus = imported(source, output, subset="wang")
     assert done.recordings == done.records == 40
@@ -171,9 +174,8 @@ def test_28_mil_files_hold_other_numbers_and_no_speed_and_both_are_told(source, 
     done, corpus = imported(source, output)
     assert corpus.shaft_rate.values[0] == pytest.approx(1772 / 60)
     told = " ".join(done.warnings)
-    assert "3002_0.mat: holds the variable X057_DE_time, as published for recording 3002." in told
-    assert "has no X057RPM: the nominal 1772 rpm of its motor load are used." in told
-    assert "3001-3004: a bearing of another maker" in told
+    assert "3002_0.mat:X057_DE_time: is of a bearing of another maker, with lines at 3.68 and 5.32 orders" in told
+    assert "3002_0.mat:X057_DE_time: states no speed: the nominal 1772 rpm are used." in told
 
 
 def test_variables_of_another_number_beside_the_wanted_ones_do_not_matter(source, output):
@@ -191,7 +193,7 @@ def test_a_speed_that_cannot_be_meant_gives_way_to_the_nominal_one(source, outpu
     published(source, 106, rpm=0)
     done, corpus = imported(source, output)
     assert corpus.shaft_rate.values[0] == pytest.approx(1772 / 60)
-    assert any("has 0 rpm in X106RPM: the nominal 1772 rpm" in text for text in done.warnings)
+    assert any("states 0 rpm: the nominal 1772 rpm" in text for text in done.warnings)
 
 
 @pytest.mark.parametrize(("share", "kept"), [(0.949, False), (0.951, True), (1.049, True), (1.051, False)])
@@ -206,7 +208,7 @@ def test_158_keeps_its_doubtful_speed_with_a_warning(source, output):
     published(source, 158, rpm=1773)
     done, corpus = imported(source, output)
     assert corpus.shaft_rate.values[0] == pytest.approx(1773 / 60)
-    assert done.warnings[0].startswith("158: the labelled speed differs by about 2 %")
+    assert any("158_0.mat:X158_DE_time: the speed in it differs by about 2 %" in text for text in done.warnings)
 
 
 def test_a_healthy_recording_at_48_khz_is_resampled_as_the_12_khz_copies_were(source, output):
@@ -216,8 +218,10 @@ def test_a_healthy_recording_at_48_khz_is_resampled_as_the_12_khz_copies_were(so
     expected = scipy.signal.resample_poly(noise(240_000, 97)[:, 0] * G, 1, 4)
     np.testing.assert_array_equal(corpus.acceleration.values[0, 0], expected[:6000].astype(np.float32))
     assert np.bincount(corpus.recording)[[97, 98]].tolist() == [10, 20]
-    assert any("97_0.mat: its 240000 samples are taken as recorded at 48 kHz" in text for text in done.warnings)
-    assert any("98_0.mat: its 121000 samples are taken as resampled" in text for text in done.warnings)
+    told = " ".join(done.warnings)
+    assert "97_0.mat:X097_DE_time: its 240000 samples are taken as recorded at 48000 Hz." in told
+    assert "97_0.mat:X097_DE_time: resampled from 48000 to 12000 Hz" in told
+    assert "98_0.mat:X098_DE_time: its 121000 samples are taken as recorded at 12000 Hz." in told
 
 
 def test_the_corpus_tells_what_was_skipped_and_done(source, output):
@@ -240,8 +244,8 @@ def test_files_that_hold_no_such_recording_are_named_and_the_others_are_imported
     done, corpus = imported(source, output)
     assert (done.recordings, set(corpus.recording.values.tolist())) == (1, {105})
     assert [sentence.partition(", nor")[0] for sentence in done.skipped] == [
-        "106.mat: holds X222_DE_time, X222RPM, not X106_DE_time; skipped.",
-        "107.mat: holds bearing.gs, bearing.sr, not X107_DE_time; skipped.",
+        "106.mat:X106_DE_time: holds X222_DE_time, X222RPM, not X106_DE_time; skipped.",
+        "107.mat:X107_DE_time: holds bearing.gs, bearing.sr, not X107_DE_time; skipped.",
     ]
 
 
@@ -253,9 +257,9 @@ def test_files_that_are_no_drive_end_recordings_or_come_twice_are_named(source, 
     done, _ = imported(source, output)
     assert done.recordings == 1
     assert done.skipped == (
-        "278_0.mat: the name has no number of a drive-end recording at 12 kHz; skipped.",
-        "b/105_0.mat: is recording 105 again, which a/105_0.mat holds; skipped.",
-        "notes.mat: the name has no number of a drive-end recording at 12 kHz; skipped.",
+        "278_0.mat: has no number of a drive-end recording at 12 kHz in its path; skipped.",
+        "b/105_0.mat: is 105 again, which a/105_0.mat holds; skipped.",
+        "notes.mat: has no number of a drive-end recording at 12 kHz in its path; skipped.",
     )
 
 
@@ -267,27 +271,27 @@ def test_an_interrupted_import_leaves_nothing_behind(source, output):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        import_cwru(source, output, progress=interrupt)
+        import_set("cwru", source, output, progress=interrupt)
     assert [path.name for path in output.parent.iterdir()] == ["set"]
 
 
 def test_the_same_files_give_the_same_bytes(tmp_path, source):
     published(source, 105)
-    first, second = (import_cwru(source, tmp_path / name).path for name in ("one", "two"))
+    first, second = (import_set("cwru", source, tmp_path / name).path for name in ("one", "two"))
     for path in sorted(path.relative_to(first) for path in first.rglob("*") if path.is_file()):
         assert (first / path).read_bytes() == (second / path).read_bytes(), path
 
 
 def test_an_unknown_subset_is_refused_with_a_sentence(source, output):
     with pytest.raises(CorpusError, match="subset: 'loparo' is not known; choose all or wang"):
-        import_cwru(source, output, subset="loparo")
+        import_set("cwru", source, output, subset="loparo")
     assert not output.exists()
 
 
 def test_a_source_without_matlab_files_is_refused(source, output):
     with pytest.raises(CorpusError, match="no such folder"):
-        import_cwru(source, output)
+        import_set("cwru", source, output)
     source.mkdir()
     with pytest.raises(CorpusError, match=r"no \.mat file in it or below"):
-        import_cwru(source, output)
+        import_set("cwru", source, output)
     shutil.rmtree(source)

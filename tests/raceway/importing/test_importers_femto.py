@@ -7,7 +7,7 @@ import pytest
 
 from gen.corpus import LIFE, open_corpus, validate_corpus
 from gen.support.errors import CorpusError
-from raceway.importing import import_femto
+from raceway.importing import import_set
 
 
 def write(folder, number, *, mark=",", samples=2560, start=9 * 3600 + 39 * 60):
@@ -21,7 +21,7 @@ def write(folder, number, *, mark=",", samples=2560, start=9 * 3600 + 39 * 60):
 
 
 def imported(source, output):
-    done = import_femto(source, output)
+    done = import_set("femto", source, output)
     assert validate_corpus(output) == []
     with open_corpus(output) as corpus:
         return done, corpus.load()
@@ -63,31 +63,24 @@ def test_truncated_lives_are_censored_from_wherever_the_importer_is_called(tmp_p
     assert np.isnan(corpus.rul.values).all()
 
 
-def test_missing_and_damaged_snapshots_and_wrong_clocks_are_named(tmp_path):
+def test_missing_and_damaged_snapshots_are_named(tmp_path):
     folder = tmp_path / "set" / "Bearing2_1"
     for number in (1, 2, 6, 7):
         write(folder, number)
     write(folder, 8, samples=900)
-    write(folder, 9, start=10 * 3600)
+    write(folder, 9)
     (folder / "acc_00006.csv").write_text("9,39,49,65664,0.1,x\n")
     (folder / "acc_00007.csv").write_text("9,39,49,65664,0.1\n")
     done, corpus = imported(tmp_path / "set", tmp_path / "corpus")
     assert corpus.age.values.tolist() == [0, 10, 80]
     assert corpus.rul.values.tolist() == [80, 70, 0]
-    assert done.warnings[0] == "Bearing2_1: 3 snapshots are missing, the first is acc_00003."
-    assert "acc_00009.csv: its clock is +1260 s from its number" in done.warnings[1]
+    assert done.warnings[0] == "Bearing2_1: 3 snapshots are missing, the first is number 3."
     assert [sentence.partition(":")[0] for sentence in done.skipped] == [
         f"Bearing2_1/acc_0000{number}.csv" for number in (6, 7, 8)
     ]
 
 
-def test_a_life_past_midnight_keeps_its_clock(tmp_path):
-    for number in (1, 2, 3):
-        write(tmp_path / "set" / "Bearing1_1", number, start=24 * 3600 - 15)
-    assert imported(tmp_path / "set", tmp_path / "corpus")[0].warnings == ()
-
-
 def test_a_folder_without_lives_is_refused(tmp_path):
     write(tmp_path / "set" / "Other", 1)
     with pytest.raises(CorpusError, match="has no folder such as Bearing1_1"):
-        import_femto(tmp_path / "set", tmp_path / "corpus")
+        import_set("femto", tmp_path / "set", tmp_path / "corpus")

@@ -11,9 +11,10 @@ import scipy.io
 from gen.corpus import validate_corpus
 from gen.support.errors import CorpusError
 from gen.support.limits import VARIABLE
-from raceway.importing import import_cwru
-from raceway.importing.array_files import UnusableError, read_numpy
-from raceway.importing.matlab import read_matlab
+from raceway.importing import import_set
+from raceway.importing.array_files import read_numpy
+from raceway.importing.matlab import read_variable
+from raceway.importing.refused_files import UnusableError
 from raceway.importing.table import read_text
 from raceway.sharing.card.card_page import data_card
 from tests.labels import import_labelled
@@ -23,7 +24,7 @@ SIGNAL = np.random.default_rng(1).normal(size=(1, 3000))
 
 def refused(path, variable="x"):
     with pytest.raises(UnusableError) as caught:
-        read_matlab(path, variable)
+        read_variable(path, variable)
     assert "\n" not in str(caught.value)
     return str(caught.value)
 
@@ -84,13 +85,13 @@ def test_a_matlab_file_gives_no_values_of_another_file(tmp_path, write, reason):
 def test_a_dataset_that_holds_no_real_numbers_is_refused(tmp_path, values):
     with h5py.File(tmp_path / "odd.mat", "w") as file:
         file.create_dataset("x", data=values)
-    assert refused(tmp_path / "odd.mat") == "holds x, but it is not real numbers"
+    assert refused(tmp_path / "odd.mat") == "holds x, but neither real numbers nor text in it"
 
 
 def test_pipes_and_devices_are_refused_and_never_waited_for(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", tmp_path, type(tmp_path)("/dev/zero")):
-        for read in (read_text, read_numpy, lambda path: read_matlab(path, "x")):
+        for read in (read_text, read_numpy, lambda path: read_variable(path, "x")):
             with pytest.raises(OSError, match="is a folder, a pipe or a device"):
                 read(path)
 
@@ -113,7 +114,7 @@ def test_names_that_are_no_utf_8_are_imported_with_their_bytes_written_out(tmp_p
     os.mkdir(folder)  # noqa: PTH102 - a name in bytes
     source = tmp_path / os.fsdecode(b"Pr\xfcfstand\n")
     scipy.io.savemat(source / "105_0.mat", {"X105_DE_time": SIGNAL.T, "X105RPM": 1797})
-    done = import_cwru(tmp_path, tmp_path / "cwru", window=0.1)
+    done = import_set("cwru", tmp_path, tmp_path / "cwru", window=0.1)
     assert done.records == 2
     assert validate_corpus(done.path) == []
     data_card(done.path)
@@ -124,7 +125,7 @@ def test_a_folder_of_too_many_files_is_refused(tmp_path, monkeypatch):
     for number in range(10):
         (tmp_path / f"{number}.mat").write_bytes(b"x")
     with pytest.raises(CorpusError, match="holds 10 files, and the limit is 9;"):
-        import_cwru(tmp_path, tmp_path / "corpus")
+        import_set("cwru", tmp_path, tmp_path / "corpus")
 
 
 HOSTILE = (

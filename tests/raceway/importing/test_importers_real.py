@@ -10,7 +10,7 @@ import pytest
 import scipy.signal
 
 from gen.corpus import open_corpus, validate_corpus
-from raceway.importing import import_cwru, import_mfpt
+from raceway.importing import import_set
 from tests.paths import REAL
 
 
@@ -23,14 +23,14 @@ def folder_of(name):
 
 @pytest.fixture(scope="module")
 def cwru(tmp_path_factory):
-    done = import_cwru(folder_of("cwru"), tmp_path_factory.mktemp("real") / "cwru")
+    done = import_set("cwru", folder_of("cwru"), tmp_path_factory.mktemp("real") / "cwru")
     with open_corpus(done.path) as corpus:
         return done, corpus.load()
 
 
 @pytest.fixture(scope="module")
 def mfpt(tmp_path_factory):
-    done = import_mfpt(folder_of("mfpt"), tmp_path_factory.mktemp("real") / "mfpt")
+    done = import_set("mfpt", folder_of("mfpt"), tmp_path_factory.mktemp("real") / "mfpt")
     with open_corpus(done.path) as corpus:
         return done, corpus.load()
 
@@ -62,7 +62,7 @@ def test_the_cwru_copies_give_64_recordings_of_16_bearings(cwru):
 
 
 def test_the_wang_subset_of_the_cwru_copies_is_40_recordings_of_10_bearings(tmp_path):
-    done = import_cwru(folder_of("cwru"), tmp_path / "wang", subset="wang")
+    done = import_set("cwru", folder_of("cwru"), tmp_path / "wang", subset="wang")
     with open_corpus(done.path) as corpus:
         assert (done.recordings, done.records, len(set(corpus.specimen.values.tolist()))) == (40, 790, 10)
 
@@ -71,8 +71,10 @@ def test_every_oddity_of_the_cwru_copies_is_told(cwru):
     told = "\n".join(cwru[0].warnings)
     for number in range(3001, 3009):
         assert f"{number}_" in told
-    for sentence in ("158: ", "197-200: ", "3001-3004: ", "3005-3008: ", "97_Normal_0.mat: its 243938 samples"):
+    for sentence in ("158_1.mat:X158_DE_time: the speed", "its 243938 samples are taken as recorded at 48000 Hz"):
         assert sentence in told
+    assert told.count("shows no outer-race line and looks healthy") == 4
+    assert told.count("is of a bearing of another maker") == 8
 
 
 def test_the_fault_lines_of_clear_cwru_recordings_are_at_the_nominal_orders(cwru):
@@ -89,7 +91,7 @@ def test_the_mfpt_copies_give_14_recordings_whose_lines_are_a_little_below_nomin
     assert (done.recordings, done.records, done.skipped) == (14, 84, ())
     assert validate_corpus(done.path) == []
     assert sorted(set((corpus["load"].values / 4.4482216).round().tolist())) == [0, 25, 50, 100, 150, 200, 250, 300]
-    recording = int(corpus.recording.values[corpus.source.values == "OuterRaceFault_vload_7.mat#0"][0])
+    recording = int(corpus.recording.values[corpus.source.values == "OuterRaceFault_vload_7.mat:bearing.gs#0"][0])
     found, height = envelope_line(corpus, recording, 3.245)
     assert 0.985 < found / 3.245 < 0.997
     assert height > 30
@@ -103,8 +105,8 @@ def test_damaged_copies_of_real_files_are_named_and_the_rest_is_imported(tmp_pat
     (source / "105_0.mat").write_bytes(whole[: len(whole) // 4])
     (source / "106_1.mat").write_bytes(b"")
     shutil.copy(inner / "108_3.mat", source / "107_2.mat")
-    done = import_cwru(source, tmp_path / "corpus")
-    told = dict(sentence.split(": ", 1) for sentence in done.skipped)
+    done = import_set("cwru", source, tmp_path / "corpus")
+    told = {sentence.partition(":")[0]: sentence.partition(": ")[2] for sentence in done.skipped}
     assert done.recordings == 1
     assert set(told) == {"105_0.mat", "106_1.mat", "107_2.mat"}
     assert told["105_0.mat"].startswith("is truncated, damaged or not a MATLAB file")

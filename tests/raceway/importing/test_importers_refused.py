@@ -97,7 +97,7 @@ UNUSABLE = {
     "two.csv": (csv("1.5,2.5\n" * 2000), {}, "has 2 columns (0, 1) and none is chosen"),
     "objects.npy": (lambda path: np.save(path, np.array([{}]), allow_pickle=True), {}, "is truncated, damaged or not a NumPy file"),
     "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), {}, "is truncated, damaged or not a NumPy file"),
-    "notes.doc": (csv("RIFF"), {}, "is of no known type; known are .mat, .npy, .wav"),
+    "notes.doc": (csv("RIFF"), {}, "is of no known type; known are .csv, .txt, .tsv"),
     "folder": (lambda path: path.mkdir(), {}, "is of no known type"),
     "stereo.wav": (
         lambda path: wavfile.write(path, FS, np.c_[SIGNAL, SIGNAL]), {"column": 2},

@@ -21,7 +21,9 @@ BASE = {"path": "a.npy", "fault": "outer", "specimen": "A", "bearing": "6205", "
         "sensitivity_mv_per_g": 100}  # fmt: skip
 VALUES = {
     "path": "b/c d.mat", "fault": "ball", "specimen": "007", "rig": "2", "recording": "r", "bearing": "NU206", "shaft_rpm": 1480.5,
-    "load_n": 0.25, "width_mm": 1.25, "depth_um": 20, "angle_deg": -90, "n_spalls": 2, "sample_rate_hz": 12800, "resample_hz": 6400,
+    "nominal_rpm": 1500, "load_n": 0.25, "motor_load_w": 750, "age_s": 10, "rul_s": 20, "event": "censored", "note": "worn",
+    "long_samples": 9,
+    "long_rate_hz": 48000, "width_mm": 1.25, "depth_um": 20, "angle_deg": -90, "n_spalls": 2, "sample_rate_hz": 12800, "resample_hz": 6400,
     "delimiter": "\t", "channel": "drive end", "decimal": ",",
     "title": "Pump; 7", "origin": "Plant, spring", "variable": "X*_DE", "column": "ax",
     "unit": "mV", "sensitivity_mv_per_g": 50.5, "sensitivity_mv_per_m_s2": 10.2,
@@ -45,6 +47,7 @@ def refusal(folder, *rows, **options):
 def test_every_key_is_a_column_and_a_key_of_all_rows(tmp_path, key):
     value = VALUES[key]
     rest = {name: one for name, one in BASE.items() if name != key}
+    rest |= {"age_s": 5} if key in ("rul_s", "event") else {}
     if key == "sensitivity_mv_per_m_s2":
         del rest["sensitivity_mv_per_g"]
     (column,) = read(tmp_path, rest | {key: value}, mark=";")
@@ -131,6 +134,7 @@ REFUSED = {
     "column channels: two are called x; give each a name of its own.": {"channels": "[{name: x, column: 0}, {name: x}]"},
     "column channels[0].colunm: no such key; did you mean column?": {"channels": "[{name: x, colunm: 0}]"},
     "row 2: sensor x: the unit is V and the sensitivity": {"unit": "g", "sensitivity_mv_per_g": "", "channels": "[{name: x, unit: V}]"},
+    "column age_s: is missing, which event and rul_s go with; give it there": {"event": "failed"},
     "row 2: 'x' is in a column without a key in row 1; give the key, or quote a text with commas.": {"": "x"},
 }  # fmt: skip
 
@@ -158,6 +162,13 @@ def test_files_of_a_corpus_share_title_rates_and_channels(tmp_path, key):
     told = refusal(tmp_path, *rows)
     assert told.startswith(f"labels.csv, row 3: has {key if 'channel' not in key else 'channel_names'} ")
     assert told.endswith("or make a corpus of each.")
+
+
+def test_an_age_is_given_for_all_files_or_for_none(tmp_path):
+    told = refusal(tmp_path, BASE | {"age_s": 5}, BASE | {"path": "b.npy"})
+    assert told == (
+        "labels.csv, row 3: has age_s none, and labels.csv, row 2 has one; give all files one, or make a corpus of each."
+    )
 
 
 TABLES = {

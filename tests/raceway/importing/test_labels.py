@@ -254,4 +254,6 @@ def test_labels_and_recipes_spell_a_quantity_alike():
     keys = {*Labels.model_fields, *Geometry.model_fields}
     quantities = {key for key in keys if unit_suffix(key) or key.startswith("n_")}
     assert quantities > {"shaft_rpm", "depth_um", "n_spalls", "ball_diameter_mm"}
-    assert quantities - in_recipes == {"sensitivity_mv_per_m_s2", "resample_hz"}
+    assert quantities - in_recipes == {
+        "sensitivity_mv_per_m_s2", "resample_hz", "nominal_rpm", "age_s", "rul_s", "long_rate_hz"
+    }  # fmt: skip

@@ -68,7 +68,7 @@ def test_notes_and_the_sheet_that_was_chosen_are_told(tmp_path):
 def test_without_its_extra_an_excel_file_tells_what_to_install(tmp_path, monkeypatch):
     excel(["x [g]"], X)(tmp_path / "a.xlsx")
     monkeypatch.setitem(sys.modules, "python_calamine", None)
-    with pytest.raises(CorpusError, match=r"needs python-calamine; pip install python-calamine\."):
+    with pytest.raises(CorpusError, match=r"needs python-calamine; pip install raceway\[files\]\."):
         read_signal(tmp_path / "a.xlsx")
 
 
