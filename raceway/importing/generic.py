@@ -258,7 +258,7 @@ def _recording(
             "age": labels.age_s,
             "rul": left,
             "rul_revolutions": left * shaft_rate,
-            "event": _EVENTS.get(labels.event, 2),
+            "event": _EVENTS.get(labels.event or "", 2),
             "stage": 3,
             "overloaded": 2 if rated is None else int(load > rated / 2),
         }

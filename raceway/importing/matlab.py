@@ -151,11 +151,9 @@ def _datasets(file: h5py.File, variable: str | None) -> dict[str, h5py.Dataset]:
     file.visititems(note)
     # a link is not visited, and told if it is asked for
     asked = "" if variable is None else variable.replace(".", "/")
+    names += [asked] if asked in file and asked not in names else []
     try:
-        return {
-            name.replace("/", "."): own_dataset(file, name)
-            for name in dict.fromkeys([*names, *([asked] if asked in file else [])])
-        }
+        return {name.replace("/", "."): own_dataset(file, name) for name in names}
     except ForeignStorageError as error:
         raise UnusableError(f"refers to values outside the file: {error}") from None
 

@@ -92,8 +92,8 @@ def import_set(
     courses: Mapping[Path, Mapping[str, Any]] = {path: {} for path in files}
     warnings: list[str] = []
     if published.life:
-        courses, warnings = _courses(files, published.life, source)
-    chosen = [row for row in rows if subset in (ALL, row.get("subset"))]
+        courses, warnings = _courses(files, published.life, source, subset)
+    chosen = [row for row in rows if subset in (ALL, row.get("subset", subset if published.life else ALL))]
     keys = [
         (path, {**course, **_keys(published, row, files[path])})
         for path, course in courses.items()
@@ -176,12 +176,19 @@ def _keys(published: PublishedSet, row: Mapping[str, Any], groups: Mapping[str, 
 
 
 def _courses(
-    files: Mapping[Path, Mapping[str, str]], life: Mapping[str, Any], source: Path
+    files: Mapping[Path, Mapping[str, str]], life: Mapping[str, Any], source: Path, subset: str
 ) -> tuple[dict[Path, dict[str, Any]], list[str]]:
-    """Age and end of the life of each file; of a life in two folders those of the longer one, with a sentence for the other."""
+    """Age and end of the life of each file, and sentences.
+
+    Of a life in two folders those of the longer one, or in a subset those of the shorter one, whose remaining life the longer one tells.
+    """
     folders = defaultdict[Path, list[Path]](list)
     for path in files:
         folders[path.parent].append(path)
+    numbers = {
+        folder: [int(files[path].get("number", place)) for place, path in enumerate(paths, 1)]
+        for folder, paths in folders.items()
+    }
     censored = {path: re.search(life.get("censored", "$^"), f"{path}/", re.IGNORECASE) is not None for path in folders}
     longest = {
         path.name.lower(): path for path in sorted(folders, key=lambda path: (len(folders[path]), not censored[path]))
@@ -189,17 +196,17 @@ def _courses(
     courses: dict[Path, dict[str, Any]] = {}
     warnings: list[str] = []
     for folder, paths in folders.items():
-        name, other = name_of(folder, source), longest[folder.name.lower()]
-        if folder != other:
-            warnings.append(f"{name}: is left out, since {name_of(other, source)} holds more of the same life.")
+        name, whole = name_of(folder, source), longest[folder.name.lower()]
+        if subset == ALL and folder != whole:
+            warnings.append(f"{name}: is left out, since {name_of(whole, source)} holds more of the same life.")
+        if (folder == whole) != (subset == ALL):
             continue
-        numbers = [int(files[path].get("number", place)) for place, path in enumerate(paths, 1)]
-        missing = sorted({*range(min(numbers), max(numbers))} - {*numbers})
+        missing = sorted({*range(min(numbers[folder]), max(numbers[folder]))} - {*numbers[folder]})
         if missing:
             warnings.append(f"{name}: {len(missing)} snapshots are missing, the first is number {missing[0]}.")
         event = "censored" if censored[folder] else "failed"
-        courses |= {
-            path: {"age_s": life["every_s"] * (number - 1), "event": event}
-            for path, number in zip(paths, numbers, strict=True)
-        }
+        for path, number in zip(paths, numbers[folder], strict=True):
+            courses[path] = {"age_s": life["every_s"] * (number - 1), "event": event}
+            if folder != whole:
+                courses[path]["rul_s"] = life["every_s"] * (max(numbers[whole]) - number)
     return courses, warnings

@@ -35,6 +35,7 @@ SHARES = (0.5, 0.75, 0.9)
 """Of a life, where estimates are scored."""
 WITHIN = 0.2
 _DRAWS = 20
+_NONE_FAILED = "no bearing of the feature table failed; make longer tests, or more bearings."
 _NEEDED = ("age", "rul", "event", "bearing", "stage")
 
 
@@ -85,7 +86,7 @@ def lives_of(table: xr.Dataset) -> Lives:
     Raises
     ------
     CorpusError
-        If a variable of lives is missing, or no bearing failed.
+        If a variable of lives is missing, or no remaining life is known.
     """
     check_lives(table, "the feature table")
     order = np.lexsort((table["age"].values, table["bearing"].values.astype(str)))
@@ -93,10 +94,9 @@ def lives_of(table: xr.Dataset) -> Lives:
     _, bearing = np.unique(of["bearing"].values.astype(str), return_inverse=True)
     features = of["features"].transpose("record", "feature").values.astype(np.float64)
     failed, damaged = of["event"].values == 1, of["stage"].values > 0
-    lives = Lives(features, of["age"].values, of["rul"].values, failed, bearing, damaged)
-    if not lives.failed.any():
-        raise CorpusError("no bearing of the feature table failed; make longer tests, or more bearings.")
-    return lives
+    if not np.isfinite(of["rul"].values).any():
+        raise CorpusError(_NONE_FAILED)
+    return Lives(features, of["age"].values, of["rul"].values, failed, bearing, damaged)
 
 
 def by_age(lives: Lives) -> Estimate:
@@ -173,7 +173,8 @@ def score_lives(table: xr.Dataset, tested: xr.Dataset | None = None, *, folds: i
     -------
     DataFrame
         One row for each of `METHODS`. ``mae_50``, ``mae_75`` and ``mae_90`` are the mean absolute errors at these percents of life [s],
-        ``phm_2012`` and ``alpha_lambda`` scores at them (1 is best), ``concordance`` the share of pairs of bearings in the right order, and
+        ``phm_2012`` and ``alpha_lambda`` scores at them (1 is best), or at the last snapshots if no tested bearing failed,
+        ``concordance`` the share of pairs of bearings in the right order, and
         ``mae_before`` the error before spalls begin [s].
 
     Raises
@@ -182,6 +183,8 @@ def score_lives(table: xr.Dataset, tested: xr.Dataset | None = None, *, folds: i
         If the tables are not of lives, have a bearing in common, or have fewer bearings than folds.
     """
     lives = lives_of(table)
+    if not lives.failed.any():
+        raise CorpusError(_NONE_FAILED)
     if tested is not None:
         # estimates are of bearings that were not trained
         common = sorted({*table["identity"].values.tolist()} & {*tested["identity"].values.tolist()})
@@ -216,13 +219,13 @@ def score_methods(lives: Lives, tested: Lives) -> pd.DataFrame:
 def scores_of(lives: Lives, estimates: Mapping[str, FloatArray]) -> pd.DataFrame:
     """Scores of estimates of the remaining lives, as of `score_lives`."""
     at = {f"mae_{100 * share:.0f}": _places(lives, share) for share in SHARES}
-    # all places at which lives are scored
-    every = np.concatenate([*at.values()])
+    # all places at which lives are scored; tests that end before any failure are scored at their ends, as in the challenge
+    every = np.concatenate([*at.values()]) if lives.failed.any() else _last_places(lives)
     before, truth = ~lives.damaged & np.isfinite(lives.rul), lives.rul[every]
     rows = {}
     for name, estimate in estimates.items():
         error = estimate - lives.rul
-        row = {score: float(np.abs(error[places]).mean()) for score, places in at.items()}
+        row = {score: float(np.abs(error[places]).mean()) if len(places) else np.nan for score, places in at.items()}
         # long estimates count worse than short ones
         row["phm_2012"] = float(phm_2012(truth, estimate[every]).mean())
         row["alpha_lambda"] = float((np.abs(error[every]) <= WITHIN * truth).mean())
@@ -259,6 +262,15 @@ def _places(lives: Lives, share: float) -> NDArray[np.intp]:
     """Snapshot of each failed bearing that is nearest to a share of its life, before its end."""
     away = np.abs(lives.age / (lives.age + lives.rul) - share)
     usable = lives.failed & (lives.rul > 0)
-    return np.array([
-        own[np.argmin(away[own])] for one in np.unique(lives.bearing[usable]) if len(own := np.flatnonzero(usable & (lives.bearing == one)))
-    ])  # fmt: skip
+    nearest = [
+        own[np.argmin(away[own])]
+        for one in np.unique(lives.bearing[usable])
+        if len(own := np.flatnonzero(usable & (lives.bearing == one)))
+    ]
+    return np.array(nearest, dtype=np.intp)
+
+
+def _last_places(lives: Lives) -> NDArray[np.intp]:
+    """Last snapshot of each bearing whose remaining life is known there."""
+    last = np.append(np.flatnonzero(np.diff(lives.bearing)), len(lives.bearing) - 1)
+    return last[lives.rul[last] > 0]

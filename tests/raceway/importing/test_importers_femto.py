@@ -5,9 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from features import feature_table
 from gen.corpus import LIFE, open_corpus, validate_corpus
 from gen.support.errors import CorpusError
 from raceway.importing import import_set
+from raceway.lives.prognosis import score_lives
+from tests.labels import import_labelled
 
 
 def write(folder, number, *, mark=",", samples=2560, start=9 * 3600 + 39 * 60):
@@ -84,3 +87,57 @@ def test_a_folder_without_lives_is_refused(tmp_path):
     write(tmp_path / "set" / "Other", 1)
     with pytest.raises(CorpusError, match="has no folder such as Bearing1_1"):
         import_set("femto", tmp_path / "set", tmp_path / "corpus")
+
+
+def test_truncated_lives_are_scored_by_what_their_full_course_tells(tmp_path):
+    """The protocol of the challenge: learn from whole lives, estimate the rest of cut ones at their last snapshot."""
+    lives = (
+        ("Learning_set", "1_1", 30),
+        ("Learning_set", "1_2", 36),
+        ("Test_set", "1_3", 20),
+        ("Full_Test_Set", "1_3", 32),
+    )
+    for place, bearing, last in lives:
+        for number in range(1, last + 1):
+            write(tmp_path / "set" / place / f"Bearing{bearing}", number)
+    learned = import_set("femto", tmp_path / "set" / "Learning_set", tmp_path / "learned")
+    cut = import_set("femto", tmp_path / "set", tmp_path / "cut", subset="truncated")
+    with open_corpus(cut.path) as corpus:
+        assert corpus.bearing.values.tolist() == ["6804 Bearing1_3"] * 20
+        assert corpus.event.values.tolist() == [0] * 20
+        assert corpus.rul.values.tolist() == [10 * (32 - number) for number in range(1, 21)]
+    tables = [feature_table(done.path, ("shape",)) for done in (learned, cut)]
+    scores = score_lives(*tables)
+    assert np.isfinite(scores.phm_2012).all()
+    assert np.isnan(scores.mae_50).all()
+    # half of the two lives is over at 290 s, so 100 s are left at 190 s and 120 s are true
+    assert scores.phm_2012["age"] == pytest.approx(0.5 ** (100 * (120 - 100) / 120 / 20))
+    with pytest.raises(CorpusError, match="no bearing of the feature table failed"):
+        score_lives(tables[1], tables[0])
+
+
+def test_lives_of_ones_own_have_the_variables_of_lives(tmp_path):
+    rng = np.random.default_rng(0)
+    rows = []
+    for specimen, last, event in (("a", 3, "failed"), ("b", 2, "censored")):
+        for age in range(last):
+            np.save(tmp_path / f"{specimen}{age}.npy", rng.normal(size=1000))
+            rows.append({"path": f"{specimen}{age}.npy", "specimen": specimen, "age_s": 100 * age, "event": event})
+    rows[-1] |= {"rul_s": 50}
+    facts = {
+        "fault": "unknown",
+        "bearing": "6205",
+        "shaft_rpm": 1200,
+        "unit": "g",
+        "sample_rate_hz": 2000,
+        "load_n": 8000,
+    }
+    done = import_labelled(tmp_path, rows, **facts)
+    assert validate_corpus(done.path) == []
+    with open_corpus(done.path) as corpus:
+        assert corpus.bearing.values.tolist() == ["6205 a"] * 3 + ["6205 b"] * 2
+        assert corpus.age.values.tolist() == [0, 100, 200, 0, 100]
+        np.testing.assert_array_equal(corpus.rul.values, [200, 100, 0, np.nan, 50])
+        assert corpus.rul_revolutions.values[0] == 4000
+        assert corpus.event.values.tolist() == [1, 1, 1, 0, 0]
+        assert corpus.overloaded.values.tolist() == [1] * 5
