@@ -1,8 +1,7 @@
 """One recording of the user: a column of a text, Excel, MATLAB, NumPy or WAV file, in m/s^2."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
@@ -141,9 +140,13 @@ def read_signal(
         If the file cannot be read or holds no such signal, or unit and sensitivity do not belong together; a :class:`RefusedError`, which
         is one, if the file states another rate, unit or kind of unit than is given, or none of its signals is chosen.
     """
-    with as_sentences(path, options):
+    try:
         values = (read or reader(path))(Place(variable, column, delimiter, decimal))
         signal = acceleration(values, unit, volts_per_acceleration(sensitivity, None), rate)
+    except UnusableError as reason:
+        raise RefusedError(f"{path}: {reason.told(options)}.", reason) from None
+    except (OSError, MemoryError) as error:
+        raise CorpusError(f"{path}: {reason_of(error)}.") from None
     return signal._replace(warnings=tuple(f"{path.name}: {note}." for note in signal.warnings))
 
 
@@ -154,35 +157,14 @@ def acceleration(
     fs, notes = content.rate(rate, key)
     used, of_unit = content.stated_unit(unit)
     problem = unit_problem(used, sensitivity)
-    if problem is not None and unit is None and known_unit(content.unit) is not None and sensitivity is not None:
-        raise UnusableError(problem, contradicted="sensitivity")
     if problem is not None:
-        raise UnusableError(problem)
+        of_file = unit is None and sensitivity is not None and known_unit(content.unit) is not None
+        raise UnusableError(problem, contradicted="sensitivity" if of_file else "")
     scale = Scale(used, sensitivity)
     signal = accelerations(content.values, scale)
     table = content.table
     told = *table.notes, *notes, *of_unit, *doubts(content.values, signal, scale, absolute=table.absolute)
     return Signal(signal, fs, told, used, table.rpm)
-
-
-def read_shape(path: Path, place: Place, rate: float | None, options: Mapping[str, str] = _AS_HERE) -> Signal:
-    """Recording in the unit of its file, for uses in which the unit does not matter; otherwise as :func:`read_signal`."""
-    with as_sentences(path, options):
-        content = reader(path)(place)
-        fs, notes = content.rate(rate, "rate")
-    return Signal(content.values, fs, tuple(f"{path.name}: {note}." for note in (*content.table.notes, *notes)), "m/s2")
-
-
-@contextmanager
-def as_sentences(path: Path, options: Mapping[str, str]) -> Iterator[None]:
-    """Turn the reason why a file cannot be used into a sentence."""
-    try:
-        yield
-    except UnusableError as reason:
-        raise RefusedError(f"{path}: {reason.told(options)}.", reason) from None
-    except (OSError, MemoryError) as error:
-        message = f"{path}: {reason_of(error)}."
-        raise CorpusError(message) from None
 
 
 def reader(path: Path) -> Reader:

@@ -61,15 +61,6 @@ class Importer(NamedTuple):
     """Called with the folder of the recordings, the new corpus, and by keyword ``window`` [s] and ``progress``, as `import_set` is."""
 
 
-class _Log(NamedTuple):
-    """Counts of recordings and records by fault, and sentences, collected while files are read."""
-
-    recordings: Counter[str]
-    records: Counter[str]
-    skipped: list[str]
-    warnings: list[str]
-
-
 def import_recordings(
     collection: Collection,
     candidates: Sequence[Candidate],
@@ -113,7 +104,23 @@ def import_recordings(
         )
         raise CorpusError(message)
     check_limit("record_samples", length * len(collection.channels), f"window: {window:g} s are", CorpusError)
-    log = _Log(Counter(), Counter(), list(skipped), list(warnings))
+    recordings = Counter[str]()
+    left_out, told = [*skipped], [*warnings]
+    tell = counter(progress, len(candidates))
+
+    def records() -> Iterator[Record]:
+        # recordings are read, cut and written one after the other
+        for candidate in candidates:
+            try:
+                recording = read_recording(candidate, length, collection.fs, collection.channels)
+            except UnusableError as reason:
+                left_out.append(f"{candidate.source}: {reason}; skipped.")
+            else:
+                recordings[recording.fault] += 1
+                told.extend(f"{candidate.source}: {warning}." for warning in recording.warnings)
+                yield from cut(recording, candidate.source, length, collection.fs)
+            tell(1)
+
     with new_corpus(
         output,
         describe=describe,
@@ -122,37 +129,19 @@ def import_recordings(
         importer=collection.importer,
         basis=collection.facts,
     ) as corpus:
-        # recordings are read, cut and written one after the other
-        _write_parts(_records(candidates, collection, length, log, progress), collection, candidates, corpus)
+        _write_parts(records(), collection, candidates, corpus)
         if not corpus.rows:
-            raise CorpusError(nothing_usable(collection.importer, log.skipped))
-        recordings, left_out, changes = log.recordings.total(), tuple(log.skipped), tuple(log.warnings)
-        versions = plugin_versions("importers", (collection.importer,)) | plugin_versions("classes", log.recordings)
+            raise CorpusError(nothing_usable(collection.importer, left_out))
+        count = sum(row.records for row in corpus.rows)
+        versions = plugin_versions("importers", (collection.importer,)) | plugin_versions("classes", recordings)
+        done = Import(output, recordings.total(), count, tuple(left_out), tuple(told))
         corpus.facts |= {
             "versions": versions or None,
-            "recordings": recordings,
-            "skipped": left_out,
-            "warnings": changes,
+            "recordings": done.recordings,
+            "skipped": done.skipped,
+            "warnings": done.warnings,
         }
-    return Import(output, recordings, log.records.total(), left_out, changes)
-
-
-def _records(
-    candidates: Sequence[Candidate], collection: Collection, length: int, log: _Log, progress: Progress | None
-) -> Iterator[Record]:
-    done = counter(progress, len(candidates))
-    for candidate in candidates:
-        try:
-            recording = read_recording(candidate, length, collection.fs, collection.channels)
-        except UnusableError as reason:
-            log.skipped.append(f"{candidate.source}: {reason}; skipped.")
-        else:
-            records = cut(recording, candidate.source, length, collection.fs)
-            log.recordings[recording.fault] += 1
-            log.records[recording.fault] += len(records)
-            log.warnings.extend(f"{candidate.source}: {warning}." for warning in recording.warnings)
-            yield from records
-        done(1)
+    return done
 
 
 def _corpus_identity(importer: str, candidates: Sequence[Candidate], first: NDArray[np.float32]) -> str:

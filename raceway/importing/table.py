@@ -66,12 +66,7 @@ def read_text(path: Path, mark: str | None = None, decimal: str | None = None) -
 
 
 def table_of(values: NDArray[Any]) -> NumberTable:
-    """Table without names, whose longer axis is time."""
-    return NumberTable(dict(enumerate(as_columns(values).astype(np.float64, copy=False))))
-
-
-def as_columns(values: NDArray[Any]) -> NDArray[Any]:
-    """Table with its longer axis last.
+    """Table without names, whose longer axis is time.
 
     Raises
     ------
@@ -84,8 +79,8 @@ def as_columns(values: NDArray[Any]) -> NDArray[Any]:
     if values.dtype.kind not in "iuf" or values.size == 0 or not plain:
         what = "not one column of real numbers, or a few long ones; windows cannot be told from channels"
         raise UnusableError(f"holds {values.dtype} of shape {values.shape}, {what}")
-    columns = np.atleast_2d(values)
-    return columns.T if columns.shape[0] > columns.shape[1] else columns
+    columns = np.atleast_2d(values).astype(np.float64, copy=False)
+    return NumberTable(dict(enumerate(columns if len(columns) == shorter else columns.T)))
 
 
 def is_row(fields: Iterable[str]) -> bool:

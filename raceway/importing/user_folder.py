@@ -76,42 +76,39 @@ def set_aside(path: Path, unusable: dict[Path, str] | None) -> Iterator[None]:
 
 def read_as_stated(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, tuple[str, ...]]":
     """Read one of several recordings: as `read_recording`, without the options that the file contradicts."""
-    read, notes = reader(path), list[str]()
-    while True:
-        try:
-            recorded, used, told = _channels(path, reading, read)
-            return recorded, used, (*told, *reversed(notes))
-        except RefusedError as error:
-            option = error.reason.contradicted
-            if not option:
-                raise
-            value = getattr(reading, option)
-            said = value if isinstance(value, str) else f"{value:g}"
-            notes.append(f"{path.name}: it states otherwise than --{option} {said}, and is read as it states.")
-            reading = reading._replace(**{option: None})
+    return read_recording(path, reading, ("rate", "unit", "sensitivity"))
 
 
-def read_recording(path: Path, reading: "Reading") -> "tuple[Recorded, Reading, tuple[str, ...]]":
+def read_recording(
+    path: Path, reading: "Reading", given_up: Sequence[str] = ()
+) -> "tuple[Recorded, Reading, tuple[str, ...]]":
     """Channels of a file, how they were read, with the unit, and sentences on what was assumed.
 
-    Without a choice the axes of one sensor are all read. The diagnosis itself warns of an implausible rms.
+    Without a choice the axes of one sensor are all read. Options that are ``given_up`` are left out if the file contradicts them. The
+    diagnosis itself warns of an implausible rms.
     """
-    return _channels(path, reading, reader(path))
-
-
-def _channels(path: Path, reading: "Reading", read: Reader) -> "tuple[Recorded, Reading, tuple[str, ...]]":
-    try:
-        return _read(path, reading, read)
-    except RefusedError as error:
-        axes = error.reason.axes
-        if reading.channels or not axes:
-            raise
-    recorded, used, notes = _read(path, reading._replace(channels=axes), read)
-    name, *others = axes
-    if others:
-        return recorded, used, notes
-    note = f"{path.name}: {name} is read, which alone may be acceleration."
-    return recorded._replace(signals={"": recorded.signals[name]}), used, (note, *notes)
+    read, notes = reader(path), list[str]()
+    asked = reading.channels
+    while True:
+        try:
+            recorded, used, told = _read(path, reading, read)
+        except RefusedError as error:
+            axes, option = error.reason.axes, error.reason.contradicted
+            if axes and not reading.channels:
+                reading = reading._replace(channels=axes)
+            elif option in given_up:
+                value = getattr(reading, option)
+                said = value if isinstance(value, str) else f"{value:g}"
+                notes.append(f"{path.name}: it states otherwise than --{option} {said}, and is read as it states.")
+                reading = reading._replace(**{option: None})
+            else:
+                raise
+        else:
+            if not asked and len(reading.channels) == 1:
+                (name,) = reading.channels
+                notes.append(f"{path.name}: {name} is read, which alone may be acceleration.")
+                recorded = recorded._replace(signals={"": recorded.signals[name]})
+            return recorded, used, (*told, *reversed(notes))
 
 
 def _read(path: Path, reading: "Reading", read: Reader) -> "tuple[Recorded, Reading, tuple[str, ...]]":
