@@ -22,7 +22,7 @@ def _patterns(point: str) -> tuple[str, str]:
 
 PATTERNS: Mapping[str, tuple[str, str]] = {point: _patterns(point) for point in ".,"}
 """Regular expressions of numbers without and with marks between thousands, by their decimal mark."""
-_COMPILED = {point: [re.compile(pattern, re.ASCII) for pattern in PATTERNS[point]] for point in ".,"}
+_NUMBERS = {point: re.compile("|".join(PATTERNS[point]), re.ASCII) for point in ".,"}
 AS_PYTHON: Mapping[str, Mapping[int, str | None]] = {
     point: str.maketrans({**dict.fromkeys(_THOUSANDS[point]), point: ".", "d": "e", "D": "e"}) for point in ".,"
 }
@@ -35,7 +35,7 @@ def is_number(text: str) -> bool:
     >>> [is_number(text) for text in ("0,5", "1'000.5", "1.2D-01", "1,2,3", "nan", "")]
     [True, True, True, False, False, False]
     """
-    return any(number.fullmatch(text) for form in _COMPILED.values() for number in form)
+    return (_NUMBERS["."].fullmatch(text) or _NUMBERS[","].fullmatch(text)) is not None
 
 
 def decimal_marks(numbers: Iterable[str]) -> str:
@@ -45,7 +45,11 @@ def decimal_marks(numbers: Iterable[str]) -> str:
     [',', '.', '.,', '', '.']
     """
     texts = [*numbers]
-    fitting = [point for point, form in _COMPILED.items() if any(all(map(number.fullmatch, texts)) for number in form)]
+    fitting = [
+        point
+        for point, forms in PATTERNS.items()
+        if any(all(re.fullmatch(form, text, re.ASCII) for text in texts) for form in forms)
+    ]
     return "".join(fitting) if any("." in text or "," in text for text in texts) else "."
 
 
@@ -56,6 +60,6 @@ def number_in(text: str, marks: str = "") -> float | None:
     (12.8, 12800.0, None, 12800.0, None)
     """
     marks = marks or decimal_marks([text])
-    if len(marks) != 1 or not any(number.fullmatch(text) for number in _COMPILED[marks]):
+    if len(marks) != 1 or not _NUMBERS[marks].fullmatch(text):
         return None
     return float(text.translate(AS_PYTHON[marks]))

@@ -107,11 +107,9 @@ def is_flawed_row(fields: Iterable[str]) -> bool:
 
 
 class Body(NamedTuple):
-    """Rows of a text: bytes from ``start`` to ``end``, ``height`` lines from the line with a ``number``, and notes after them."""
+    """Rows of a text from the line with a ``number`` on, and a sentence on what is left out after them."""
 
     content: bytes
-    start: int
-    end: int
     number: int
     mark: str
     place: Where
@@ -120,16 +118,14 @@ class Body(NamedTuple):
     @property
     def height(self) -> int:
         """Number of lines."""
-        return self.content.count(b"\n", self.start, self.end)
+        return self.content.count(b"\n")
 
     def parsed(self, width: int, point: str) -> pd.DataFrame:
         """Columns of numbers, and of texts where not all rows have plain numbers."""
-        stream = io.BytesIO(self.content)
-        stream.seek(self.start)
         try:
             return pd.read_csv(
-                stream, sep=r"\s+" if self.mark == BLANK else self.mark, decimal=point, header=None, names=range(width),
-                nrows=self.height, skipinitialspace=True, skip_blank_lines=False, na_filter=False, low_memory=False,
+                io.BytesIO(self.content), sep=r"\s+" if self.mark == BLANK else self.mark, decimal=point, header=None,
+                names=range(width), skipinitialspace=True, skip_blank_lines=False, na_filter=False, low_memory=False,
                 float_precision="round_trip",
             )  # fmt: skip
         except pd.errors.ParserError as error:
@@ -140,7 +136,7 @@ class Body(NamedTuple):
 
     def flaw(self, row: int, column: int) -> UnusableError:
         """Reason why a row, counted from 0, cannot be used."""
-        line = self.content[self.start : self.end].split(b"\n", row + 1)[row].decode()
+        line = self.content.split(b"\n", row + 1)[row].decode()
         text = " ".join(next(split([f"{line}\n"], self.mark)).fields)
         where = (
             f"in {self.place(self.number + row, column)} ({text!r:.60}), where {self.height - row} lines would be lost"
@@ -192,25 +188,23 @@ def read_table(content: bytes, mark: str, decimal: str | None, place: Where) -> 
 
 def _body(content: bytes, number: int, mark: str, place: Where) -> Body:
     """Rows from the line with a number on, without notes and empty lines at the end."""
-    start = 0
-    for _ in range(number - 1):
-        start = content.index(b"\n", start) + 1
+    content = content.split(b"\n", number - 1)[-1]
     end, notes = len(content), list[str]()
-    while end > start:
+    while end:
         line = content.rfind(b"\n", 0, end - 1) + 1
         fields = next(split([content[line:end].decode()], mark)).fields
         if is_row(fields) or is_flawed_row(fields):
             break
         notes += [" ".join(fields)] if any(fields) else []
         end = line
-    body = Body(content, start, end, number, mark, place)
+    told = f"text after the numbers is left out: {notes[-1]!r:.60}, lines: {len(notes)}" if notes else ""
+    body = Body(content[:end], number, mark, place, (told,) if told else ())
     if len(notes) > _MOST_NOTES:
         where = place(number + body.height, 0)
         raise UnusableError(
             f"has more than {_MOST_NOTES} lines of text from {where} on; correct the file, or cut it there"
         )
-    told = f"text after the numbers is left out: {notes[-1]!r:.60}, lines: {len(notes)}" if notes else ""
-    return body._replace(notes=(told,) if told else ())
+    return body
 
 
 def _check_beginning(
