@@ -83,7 +83,9 @@ def import_set(
     CorpusError
         If nothing can be imported, the output is taken, or an argument is out of range.
     """
-    published = published_sets()[name]
+    published = published_sets().get(name)
+    if published is None:
+        raise CorpusError(f"import {name}: no such set; choose one of {', '.join(published_sets())}.")
     if subset not in (ALL, *published.subsets):
         raise CorpusError(f"subset: {subset!r} is not known; choose {' or '.join((ALL, *published.subsets))}.")
     source = source.resolve()  # the names of its folders may tell labels
