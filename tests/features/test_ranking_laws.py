@@ -59,7 +59,7 @@ def test_a_noise_feature_has_no_importance_and_features_exchanged_together_have_
     rows = pd.DataFrame(np.column_stack([values[:, 3], values[:, 3], values[:, 0]]))
     unused = np.zeros(240)
     fault, specimen = classes["fault"].values, classes["specimen"].values
-    records = Records("made up", rows, fault, unused, specimen, np.arange(240), unused)
+    records = Records("made up", rows, fault, unused, specimen, np.arange(240), unused, unused, unused)
     splits = track_splits(records, fault, "specimen", 5, seed=0)
     one, both, noise = permutation_losses(records, [[0], [0, 1], [2]], "extra_trees", splits, seed=0).mean(axis=0)
     assert abs(noise) < 0.05

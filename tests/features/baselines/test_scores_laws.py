@@ -40,7 +40,8 @@ def labelled(draw):
 
 def made_records(fault, specimen, recording):
     unused = np.zeros(len(fault), dtype=int)
-    return Records("made up", pd.DataFrame(index=range(len(fault))), fault, unused, specimen, recording, 0.0 * unused)
+    rows, none = pd.DataFrame(index=range(len(fault))), 0.0 * unused
+    return Records("made up", rows, fault, unused, specimen, recording, none, none, unused)
 
 
 def scores_of(fault, predicted, specimen):

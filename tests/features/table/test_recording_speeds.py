@@ -9,10 +9,8 @@ from features.table.recording_speeds import (
     BY,
     ESTIMATE,
     UNCERTAINTY,
-    Sums,
     other_speed,
     rates_to_use,
-    recording_speeds,
     speed_warnings,
 )
 from gen.corpus import FAULTS, Variable, open_corpus
@@ -136,16 +134,6 @@ def test_a_warning_names_the_recording_both_speeds_and_the_lines(checked, correc
     assert ball.startswith("ball.csv: labelled 1560 rpm, but its shaft harmonics fit 14")
     assert inner.endswith("%); check the label and the bearing, or use the speed 'correct'.")
     assert speed_warnings(corrected)[0].endswith("%); its features use the estimated speed.")
-
-
-def test_the_sum_over_many_parts_does_not_depend_on_their_order():
-    """A recording in two parts would not tell, because a sum of two numbers has no order."""
-    rng, lines = np.random.default_rng(0), np.zeros(9)
-    levels = [rng.standard_normal((21, 181)) for _ in lines]
-    sums = [(part, [Sums(0, 1, 1, level)]) for part, level in enumerate(levels)]
-    numbers, rates = np.zeros(9, int), np.full(9, 25.0)
-    first = recording_speeds(numbers, rates, sums)
-    assert all(recording_speeds(numbers, rates, [sums[n] for n in rng.permutation(9)]) == first for _ in range(20))
 
 
 def test_only_a_clear_speed_contradicts_the_label():
