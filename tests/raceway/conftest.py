@@ -49,10 +49,10 @@ def tables_once() -> Iterator[None]:
     """Commands that ask for the same feature table again get the first one: what they do with it is tested."""
     made: dict[str, xr.Dataset] = {}
 
-    def table_of(corpus: Path, **options: Any) -> xr.Dataset:
-        key = repr((corpus, {name: value for name, value in options.items() if name != "progress"}))
+    def table_of(corpus: Path, *given: Any, **options: Any) -> xr.Dataset:
+        key = repr((corpus, given, {name: value for name, value in options.items() if name != "progress"}))
         if key not in made:
-            made[key] = feature_table(corpus, **options)
+            made[key] = feature_table(corpus, *given, **options)
         return made[key].copy(deep=True)
 
     with pytest.MonkeyPatch.context() as patch:
