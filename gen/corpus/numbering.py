@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from gen.support.errors import CorpusError
@@ -31,18 +32,14 @@ def new_numbers(identities: Sequence[str]) -> dict[str, NDArray[np.int32]]:
     except (ValueError, OverflowError):
         wrong = next((text for text in identities if text.count("/") < len(NUMBERS)), identities[0])
         raise CorpusError(f"identity: {wrong!r} is no corpus with four numbers; make the corpus again.") from None
-    names, corpus = np.unique([row[0] for row in rows], return_inverse=True)
+    corpora = pd.Series([row[0] for row in rows])
+    # records of one corpus get their first numbers back
+    if corpora.nunique() == 1:
+        return dict(zip(NUMBERS, numbers.T, strict=True))
+    keys = {
+        name: corpora + "/" + pd.Series(values).astype(str) for name, values in zip(NUMBERS, numbers.T, strict=True)
+    }
     return {
-        # records of one corpus get their first numbers back
-        name: values if len(names) == 1 else _dense(corpus, values)
+        name: pd.factorize(keys[name].where(values >= 0))[0].astype(np.int32)
         for name, values in zip(NUMBERS, numbers.T, strict=True)
     }
-
-
-def _dense(corpus: NDArray[np.intp], values: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Numbers from 0 for pairs of a corpus and a number, in the order in which each pair first occurs; -1 for a number below 0."""
-    numbers, is_number = np.full(len(values), -1, np.int32), values >= 0
-    pairs = np.stack([corpus, values], axis=1)[is_number]
-    _, first, inverse = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
-    numbers[is_number] = np.argsort(np.argsort(first))[inverse.reshape(-1)]
-    return numbers

@@ -25,7 +25,6 @@ _ALLOWED = (
     ast.BoolOp, ast.boolop, ast.UnaryOp, ast.unaryop, ast.BinOp, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Compare, ast.Eq, ast.NotEq,
     ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.In, ast.NotIn, ast.Name, ast.Constant, ast.List, ast.Tuple, ast.Load,
 )  # fmt: skip
-_SIGN = re.compile(r"""'(?:\\.|[^'\\])*'|"(?:\\.|[^"\\])*"|[&|]""")  # or a text in quotes, which may hold signs
 
 Variables = Mapping[str, xr.DataArray]
 """Per-record variables by name."""
@@ -64,8 +63,7 @@ def records_where(text: str, variables: Variables) -> NDArray[np.intp]:
     """
     if len(text) > MOST_CHARACTERS:
         raise CorpusError(f"where: has {len(text)} characters, at most {MOST_CHARACTERS} are allowed; shorten it.")
-    # & and | bind as "and" and "or", as in every query of pandas
-    line = _SIGN.sub(lambda sign: {"&": " and ", "|": " or "}.get(sign[0], sign[0]), re.sub(r"\s", " ", text)).strip()
+    line = re.sub(r"\s", " ", text).strip()
     try:
         return np.flatnonzero(_evaluated(line, variables))
     except CorpusError:
@@ -79,7 +77,9 @@ def records_where(text: str, variables: Variables) -> NDArray[np.intp]:
 
 def _evaluated(line: str, variables: Variables) -> pd.Series:
     """Whether a condition is true for each record, after a check of all that it names."""
-    tree, columns = ast.parse(line, mode="eval").body, label_columns(variables)
+    # & and | bind as "and" and "or", as in every query of pandas; also within quotes, which has no effect on any check
+    tree = ast.parse(line.replace("&", " and ").replace("|", " or "), mode="eval").body
+    columns = label_columns(variables)
     # a condition comes from strangers: names, numbers, texts and comparisons alone
     wrong = next((node for node in ast.walk(tree) if not _is_allowed(node)), None)
     if wrong is not None:
@@ -96,7 +96,7 @@ def _evaluated(line: str, variables: Variables) -> pd.Series:
     for node in ast.walk(tree):
         if isinstance(node, ast.Compare):
             _check_values(node, table, variables)
-    chosen = table.eval(ast.unparse(tree), engine="python", local_dict={}, global_dict={})  # what query does first
+    chosen = table.eval(line, engine="python", local_dict={}, global_dict={})  # what query does first
     if not isinstance(chosen, pd.Series) or chosen.dtype.kind != "b":
         raise CorpusError(f"where: {line[:60]!r} compares no column; {_EXAMPLE}")
     return chosen
