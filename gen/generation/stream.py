@@ -17,7 +17,7 @@ from gen.drawing import Grid, quantities, sections_with_places
 from gen.generation.compilation import compile_kernels
 from gen.generation.identity import failures_of
 from gen.generation.make_part import decoded, joined, make_part
-from gen.recipe import Recipe, corpus_identity, read_recipe
+from gen.recipe import Recipe, read_recipe
 from gen.support.errors import RecipeError, SimulationError
 from gen.support.executor import run, too_many
 
@@ -127,49 +127,32 @@ def torch_stream(
 
 
 class Stream(Iterator[xr.Dataset]):
-    """Batches of records; made by :func:`stream`. It is closed when it ends its ``with`` block, or is no longer used."""
+    """Batches of records; made by :func:`stream`. It is closed when it ends its ``with`` block, or is no longer used.
+
+    ``next_record`` is the number of the record that comes next: with it as ``start``, another stream goes on from here.
+    """
 
     def __init__(self, recipe: Recipe, batch: int, workers: int, start: int, notice: Callable[[str], None]) -> None:
         self.recipe, self.batch, self.workers, self.notice = recipe, batch, workers, notice
-        self._next = start
+        self.next_record = start
         self._batches: Generator[xr.Dataset] | None = None
 
     def __repr__(self) -> str:
         """Name of the recipe, and the next record."""
-        return f"Stream of {self.recipe.name}: batches of {self.batch} records, next record {self._next}"
+        return f"Stream of {self.recipe.name}: batches of {self.batch} records, next record {self.next_record}"
 
     def __next__(self) -> xr.Dataset:
         """Return the next batch."""
         if self._batches is None:
             compile_kernels(self.recipe, self.notice)
-            self._batches = _batches(self.recipe, self._next, self.batch, self.workers)
+            self._batches = _batches(self.recipe, self.next_record, self.batch, self.workers)
         try:
             batch = next(self._batches)
         except BaseException:
             self.close()  # the next batch, if one is asked for, begins with the same record
             raise
-        self._next = int(batch["recording"].values[-1]) + 1
+        self.next_record = int(batch["recording"].values[-1]) + 1
         return batch
-
-    def state_dict(self) -> dict[str, Any]:
-        """Where the stream is: the number of the next record, and the machines that it belongs to."""
-        return {"identity": corpus_identity(self.recipe), "next": self._next}
-
-    def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Go on behind the last record of another stream of the same recipe and seed.
-
-        Raises
-        ------
-        RecipeError
-            If it is not the state of a stream of this recipe and seed.
-        """
-        if not isinstance(state, Mapping) or state.get("identity") != corpus_identity(self.recipe):
-            raise RecipeError(
-                f"{self.recipe.name}: not a state of a stream of this recipe and seed; give what its state_dict gave."
-            )
-        _check_number("next", state.get("next"), 0, self.recipe.n_records - 1)
-        self.close()
-        self._next = state["next"]
 
     def close(self) -> None:
         """End the workers; the next batch would start others."""
