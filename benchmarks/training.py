@@ -15,7 +15,7 @@ import numpy as np
 import gen
 from benchmarks.features import PER_PART, noise_corpus
 from benchmarks.pairs import Line, cpu_seconds, interleaved, row
-from gen.corpus import SIGNAL, corpus_files, stored_blocks
+from gen.corpus import SIGNAL, corpus_files, stored_records
 from gen.corpus.items import LabelledRecords
 
 SCALE = np.float32(1e-3)  # of the counts of a noise corpus
@@ -36,7 +36,9 @@ def loading_rows(pairs: int, folder: Path, batch: int) -> Iterator[Line]:
     order = np.random.default_rng(0).permutation(records)
     batches = [order[start : start + batch] for start in range(0, records, batch)]
     with tempfile.TemporaryDirectory() as temporary, ExitStack() as stack:
-        np.save(f"{temporary}/counts.npy", np.concatenate([block for path in paths for block in stored_blocks(path)]))
+        np.save(
+            f"{temporary}/counts.npy", np.concatenate([stored_records([path], [path])[SIGNAL].values for path in paths])
+        )
         counts = np.load(f"{temporary}/counts.npy", mmap_mode="r")
         zstd = noise_corpus(Path(temporary) / "zstd", records, counts.shape[2], "zstd")
         fast = gen.torch_dataset(zstd, check="size")

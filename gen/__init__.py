@@ -16,6 +16,7 @@ scenarios   rigs, specimens and records, fully drawn
 simulation  scenarios to accelerations
 measurement accelerations to stored counts, as a data-acquisition card gives
 generation  a recipe to a corpus, to records in memory, or to a plan
+format_page the page about the format, from its schema
 pages       documentation pages written from the code
 =========== ==================================================================
 

@@ -8,8 +8,8 @@ import sys
 import textwrap
 from pathlib import Path
 
-from gen.corpus import format_page
 from gen.drawing import KINDS
+from gen.format_page import format_page
 from gen.generation.labels import LABELS
 from gen.physics.catalogue import catalogue_page
 from gen.recipe.finding import recipe_purpose, shipped_recipes

@@ -10,8 +10,7 @@ import h5py
 import numpy as np
 
 from gen.corpus.disk import append_checksum, remove_checksum
-from gen.corpus.index import corpus_attributes
-from gen.corpus.manifest import write_manifest
+from gen.corpus.manifest import facts_as_attributes, write_manifest
 from gen.support.errors import CorpusError
 
 
@@ -48,5 +47,5 @@ def seal(folder):
     content["parts_sha256"] = hashlib.sha256("\n".join(row["sha256"] for row in content["parts"]).encode()).hexdigest()
     write_manifest(folder, content)
     with suppress(CorpusError), edited(folder / "index.nc") as index:
-        attributes = corpus_attributes(content, None, folder)
+        attributes = facts_as_attributes(content)
         index.attrs.update({name: np.bytes_(text.encode()) for name, text in attributes.items()})

@@ -4,8 +4,12 @@ import difflib
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
+from features.signal.lines import Orders
+from gen.corpus import SIGNAL, blocks_of
 from gen.support.errors import CorpusError
 
 
@@ -25,6 +29,24 @@ def channel_number(corpus: xr.Dataset, channel: int | str, where: Path | str) ->
     near = difflib.get_close_matches(str(channel), names, n=1)
     meant = f"; did you mean {near[0]}?" if near else "."
     raise CorpusError(f"{where}: no channel {channel!r}; give one of {', '.join(names)}, or its number from 0{meant}")
+
+
+def channel_blocks(corpus: xr.Dataset, channel: int) -> list[xr.Dataset]:
+    """Records in blocks that fit the memory of a task: the signal of one channel, rates and nominal orders, all unread."""
+    names = ("sample_rate", "shaft_rate", *Orders._fields)
+    columns = {SIGNAL: corpus[SIGNAL].variable[:, channel]} | {name: corpus[name].variable for name in names}
+    chosen = xr.Dataset(columns)
+    return [chosen.isel(record=block) for block in blocks_of(chosen)]
+
+
+def accelerations(block: xr.Dataset) -> NDArray[np.float32]:
+    """Signal of a block in single precision, shape (record, elapsed_time) [m s-2]; a missing sample is NaN."""
+    return block[SIGNAL].values.astype(np.float32, copy=False)
+
+
+def orders_of(block: xr.Dataset) -> Orders:
+    """Nominal fault orders of the records of a block."""
+    return Orders(*(block[name].values for name in Orders._fields))
 
 
 def channels_of(table: xr.Dataset) -> list[xr.Dataset]:

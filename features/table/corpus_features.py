@@ -21,10 +21,10 @@ import xarray as xr
 
 from features.signal.rows import FloatArray
 from features.table.band import DEFAULT_BAND, Band, band_attributes, band_of, checked_band
-from features.table.channels import channel_number, joined_channels
+from features.table.channels import accelerations, channel_blocks, channel_number, joined_channels, orders_of
 from features.table.definitions import GROUPS, feature_coordinates
 from features.table.durations import DURATION
-from features.table.indicators import Orders, indicators
+from features.table.indicators import indicators
 from features.table.recording_speeds import (
     Speed,
     block_sums,
@@ -34,7 +34,7 @@ from features.table.recording_speeds import (
     recording_speeds,
     with_speeds,
 )
-from gen.corpus import DRAWS, RecordBlock, corpus_name, open_corpus, read_channel, record_blocks
+from gen.corpus import DRAWS, corpus_name, open_corpus
 from gen.support.executor import Workers, connected, run
 from gen.support.plugins import plugin_versions
 from gen.support.progress import Progress, counter
@@ -104,7 +104,7 @@ def feature_table(
     coordinates = feature_coordinates(groups, band)
     with open_corpus(corpus) as opened:
         number = channel_number(opened, channel, corpus_name(corpus))
-        blocks = record_blocks(opened if isinstance(corpus, xr.Dataset) else corpus, check="size")
+        blocks = channel_blocks(opened, number)
         # facts that tell later readers how the features were made
         read = {"channel": str(opened["channel"].values[number]), **band_attributes(band)}
         # labels are read at once, signals block by block
@@ -113,7 +113,7 @@ def feature_table(
         lasts = {"long_name": "duration of the record", "units": "s"}
         table[DURATION] = "record", opened.sizes["elapsed_time"] / table["sample_rate"].values, lasts
     treatment = checked_speed(speed, table)
-    starts = np.cumsum([0, *(block.stop - block.first for block in blocks)])
+    starts = np.cumsum([0, *(block.sizes["record"] for block in blocks)])
     # with speeds every block is read twice: once to estimate them, once for the features
     report = counter(progress, len(blocks) * (1 if treatment == "off" else 2))
     values, missing = np.empty((table.sizes["record"], len(coordinates["feature"][1]))), 0
@@ -122,10 +122,10 @@ def feature_table(
         if treatment != "off":
             recording = recording_numbers(table)
             tasks = list(zip(blocks, np.split(recording, starts[1:-1]), strict=True))
-            with closing(_counted(partial(block_sums, channel=number), tasks, place, report)) as sums:
+            with closing(_counted(block_sums, tasks, place, report)) as sums:
                 estimates = recording_speeds(recording, table["shaft_rate"].values, sums)
             table = with_speeds(table, recording, estimates, treatment)
-        compute = partial(block_features, groups=tuple(groups), channel=number, band=band)
+        compute = partial(block_features, groups=tuple(groups), band=band)
         tasks = list(zip(blocks, np.split(rates_to_use(table), starts[1:-1]), strict=True))
         # blocks come back in order, so that rows are written where they belong
         with closing(_counted(compute, tasks, place, report)) as made:
@@ -150,11 +150,12 @@ def band_warnings(table: xr.Dataset) -> list[str]:
     ]
 
 
-def block_features(task: tuple[RecordBlock, FloatArray], groups: Sequence[str], channel: int, band: Band) -> FloatArray:
+def block_features(task: tuple[xr.Dataset, FloatArray], groups: Sequence[str], band: Band) -> FloatArray:
     """Features of a block of records at their shaft rates [Hz], shape (record, feature); NaN as in `features.table.indicators`."""
     block, shaft_rate = task
-    x, (fs, *nominal) = read_channel(block, channel, ("sample_rate", *Orders._fields))
-    return indicators(x, float(fs[0]), shaft_rate, nominal, groups, band)[0]
+    return indicators(accelerations(block), float(block["sample_rate"][0]), shaft_rate, orders_of(block), groups, band)[
+        0
+    ]
 
 
 def _counted(

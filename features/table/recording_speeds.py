@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray
 from features.signal.speed import DISAGREEMENT, EVIDENCE, ShaftSpeed, find_speed
+from features.table.channels import accelerations, orders_of
 from features.table.speed_search import line_levels
-from gen.corpus import RecordBlock, read_channel
 from gen.support.units import from_si
 
 Speed = Literal["off", "check", "correct"]
@@ -64,13 +64,14 @@ def recording_numbers(table: xr.Dataset) -> IntArray:
     return np.unique(keys, axis=1, return_inverse=True)[1].reshape(-1)
 
 
-def block_sums(task: tuple[RecordBlock, IntArray], channel: int = 0) -> list[Sums]:
+def block_sums(task: tuple[xr.Dataset, IntArray]) -> list[Sums]:
     """Sums of the levels of lines of the recordings in one block of records.
 
     ``task`` is the block and the number of the recording of each of its records, shape (record,).
     """
     block, recording = task
-    x, (fs, shaft_rate, *nominal) = read_channel(block, channel, ("sample_rate", "shaft_rate", *Orders._fields))
+    x, nominal = accelerations(block), orders_of(block)
+    fs, shaft_rate = (block[name].values for name in ("sample_rate", "shaft_rate"))
     # a recording of which no window is usable still counts its records
     counts = zip(*(values.tolist() for values in np.unique(recording, return_counts=True)), strict=True)
     sums = {number: Sums(number, records, 0, np.zeros((1, 1))) for number, records in counts}

@@ -14,20 +14,16 @@ outputs       places of results, none of them in a corpus
 unusable      records that cannot be used
 contents      what a corpus holds, counted from its variables
 part          one file of records
-slices        values of a file by plain slices, some records at a time
 lazy          records as a Dataset, read lazily, with a few files open
-publication   licence, creators and references of a corpus
 manifest      files of a corpus with size and hash, and its facts
-acdd          global attributes of a published corpus
-index         the variables of all parts in one file; opening a corpus
-finishing     index and manifest of finished parts
+index         opening a corpus
+finishing     index and manifest of finished parts, or one file of them
 new           a new corpus, part by part
 where         conditions on records: parsed, never run
 choice        choice of records and channels
 items         records one by one or in batches, for training
 numbering     numbers of machines, bearings and recordings
 validation    all checks of a corpus
-description   page about the format
 ============= ======================================================================
 """
 

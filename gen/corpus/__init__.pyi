@@ -1,7 +1,5 @@
-from .acdd import publication_attributes as publication_attributes
 from .choice import operating_variables as operating_variables
 from .codecs import CODECS as CODECS, Codec as Codec
-from .description import format_page as format_page
 from .fault_classes import (
     FAULT_NAMES as FAULT_NAMES,
     FAULTS as FAULTS,
@@ -10,17 +8,10 @@ from .fault_classes import (
 )
 from .contents import (
     UNITS as UNITS,
-    FaultCounts as FaultCounts,
     by_class as by_class,
     class_counts as class_counts,
-    clipped_records as clipped_records,
     extent as extent,
-    fault_counts as fault_counts,
-    split_counts as split_counts,
-    step_complaint as step_complaint,
-    text_counts as text_counts,
     unit_counts as unit_counts,
-    units_in_several_splits as units_in_several_splits,
 )
 from .disk import (
     check_name as check_name,
@@ -38,12 +29,16 @@ from .disk import (
 )
 from .finishing import (
     finish_corpus as finish_corpus,
-    finish_file as finish_file,
     remove_parts as remove_parts,
     remove_temporary_files as remove_temporary_files,
 )
 from .index import corpus_name as corpus_name, open_corpus as open_corpus
-from .lazy import open_part as open_part
+from .lazy import (
+    blocks_of as blocks_of,
+    open_part as open_part,
+    open_records as open_records,
+    stored_records as stored_records,
+)
 from .locking import lock as lock
 from .manifest import (
     INDEX_NAME as INDEX_NAME,
@@ -53,11 +48,11 @@ from .manifest import (
     Manifest as Manifest,
     corpus_files as corpus_files,
     facts_as_attributes as facts_as_attributes,
-    facts_of_parts as facts_of_parts,
+    finished as finished,
     file_problems as file_problems,
+    manifest_of_parts as manifest_of_parts,
     read_manifest as read_manifest,
     recipe_text as recipe_text,
-    record_blocks as record_blocks,
     row_of as row_of,
     write_manifest as write_manifest,
 )
@@ -73,16 +68,6 @@ from .outputs import (
     write_numbers as write_numbers,
 )
 from .part import PartRow as PartRow, part_name as part_name, part_number as part_number, write_part as write_part
-from .publication import Creator as Creator, Publication as Publication, read_publication as read_publication
-from .slices import (
-    RecordBlock as RecordBlock,
-    file_facts as file_facts,
-    read_attributes as read_attributes,
-    read_channel as read_channel,
-    read_classes as read_classes,
-    read_columns as read_columns,
-    stored_blocks as stored_blocks,
-)
 from .schema import (
     DRAWS as DRAWS,
     FORMAT as FORMAT,
@@ -108,5 +93,5 @@ from .simulated import (
     LIFE as LIFE,
     SIMULATED as SIMULATED,
 )
-from .trust import LIBRARY_LOCK as LIBRARY_LOCK
+from .trust import LIBRARY_LOCK as LIBRARY_LOCK, codec_of as codec_of, file_facts as file_facts
 from .validation import validate_corpus as validate_corpus

@@ -1,46 +1,62 @@
-"""The files of a finished corpus beside its parts: index and manifest; one file of all parts."""
+"""The files of a corpus beside its parts, written when all parts are there: index and manifest, or one file of all parts."""
 
 from collections.abc import Iterable
 from contextlib import suppress
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any
 
-from gen.corpus.disk import CARD_NAME, CROISSANT_NAME, remove_left_behind
-from gen.corpus.index import corpus_attributes, join_parts, write_index
-from gen.corpus.manifest import (
+from gen.corpus.disk import (
+    CARD_NAME,
+    CROISSANT_NAME,
     INDEX_NAME,
     MANIFEST_NAME,
     RECIPE_NAME,
-    facts_of_parts,
-    recipe_text,
-    write_manifest,
+    append_checksum,
+    remove_left_behind,
+    whole_or_not_at_all,
 )
-from gen.corpus.part import PartRow
-from gen.corpus.unusable import SignalCounts
+from gen.corpus.lazy import stored_records
+from gen.corpus.manifest import Manifest, facts_as_attributes, manifest_of_parts, recipe_text, write_manifest
+from gen.corpus.part import PartRow, write_netcdf
+from gen.corpus.schema import SIGNAL
+from gen.corpus.trust import codec_of
+
+_OF_PARTS = ("Conventions", "raceway_format", "history", "source")
 
 
-def finish_corpus(directory: Path, rows: Iterable[PartRow], **facts: Any) -> SignalCounts:
-    """Write index and manifest over finished parts; returns the counts of records that cannot be used.
+def finish_corpus(directory: Path, rows: Iterable[PartRow], file: Path | None = None, **facts: Any) -> Manifest:
+    """Write index and manifest over the finished parts of a folder, or all parts into one ``file``; atomically, and manifest last.
 
     ``facts`` are further fields of the manifest. A data card with its ``croissant.json`` describes the corpus as it was and is removed;
-    ``raceway.describe`` writes both.
+    ``raceway.describe`` writes both. The same parts and facts give the same bytes.
+
+    Raises
+    ------
+    CorpusError
+        If writing fails, with the reason that the system gives.
     """
-    rows = list(rows)
-    content = facts_of_parts(rows, facts)
-    write_index(directory, rows, corpus_attributes(content, recipe_text(directory), directory))
-    write_manifest(directory, content)
-    if (directory / CROISSANT_NAME).exists():  # a README.md alone can be one of the user
-        for name in (CARD_NAME, CROISSANT_NAME):
-            (directory / name).unlink(missing_ok=True)
-    return SignalCounts(**content["signals"])
+    manifest = manifest_of_parts(rows, facts)
+    with whole_or_not_at_all(file or directory / INDEX_NAME) as temporary:
+        _join_parts(directory, manifest, temporary, without=() if file else (SIGNAL,))
+    if file is None:
+        write_manifest(directory, manifest.content)
+        if (directory / CROISSANT_NAME).exists():  # a README.md alone can be one of the user
+            for name in (CARD_NAME, CROISSANT_NAME):
+                (directory / name).unlink(missing_ok=True)
+    return manifest
 
 
-def finish_file(directory: Path, rows: Iterable[PartRow], file: Path, **facts: Any) -> SignalCounts:
-    """Write all parts of a folder into one file; returns the counts of records that cannot be used."""
-    rows = list(rows)
-    content = facts_of_parts(rows, facts)
-    join_parts(directory, rows, corpus_attributes(content, recipe_text(directory), directory), file)
-    return SignalCounts(**content["signals"])
+def _join_parts(directory: Path, manifest: Manifest, path: Path, without: tuple[str, ...]) -> None:
+    """Write the variables of the parts one after the other into a new file, those of one part at a time."""
+    paths, counts = [directory / "parts" / row.name for row in manifest.parts], [row.records for row in manifest.parts]
+    with stored_records(paths, paths, counts) as records:
+        columns = {str(name): variable for name, variable in records.variables.items() if name not in without}
+        blocks = [slice(first, stop) for first, stop in pairwise(accumulate(counts, initial=0))]
+        kept = {name: records.attrs[name] for name in _OF_PARTS if name in records.attrs}
+        facts = facts_as_attributes(manifest.content, recipe_text(directory))
+        write_netcdf(columns, kept | facts, path, codec_of(paths[0]), blocks)
+    append_checksum(path)
 
 
 def remove_temporary_files(directory: Path) -> None:

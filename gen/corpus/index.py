@@ -1,43 +1,14 @@
-"""All per-record variables of a corpus in one file: ``index.nc`` of a folder without the signals, or the single file with them.
+"""Opening a corpus: a folder with its ``index.nc``, which holds the variables of all parts, or a single file."""
 
-Both have the facts of the manifest, the recipe and the attributes of a published corpus as global attributes.
-"""
-
-import shutil
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import accumulate, pairwise
 from pathlib import Path
-from typing import Any
 
-import h5py
 import xarray as xr
 
-from gen.corpus.acdd import publication_attributes
-from gen.corpus.disk import append_checksum, remove_checksum, whole_or_not_at_all
-from gen.corpus.lazy import open_part, open_records, stored_records
-from gen.corpus.manifest import (
-    INDEX_NAME,
-    Check,
-    corpus_files,
-    facts_as_attributes,
-    manifest_of,
-    read_manifest,
-)
-from gen.corpus.part import PartRow, write_netcdf, write_texts
-from gen.corpus.schema import (
-    RECIPE_TEXT,
-    SIGNAL,
-    add_class_names,
-    operating_problems,
-    records_in_memory,
-    schema_problems,
-)
+from gen.corpus.lazy import open_records
+from gen.corpus.manifest import INDEX_NAME, Check, finished
+from gen.corpus.schema import add_class_names, operating_problems, records_in_memory, schema_problems
 from gen.corpus.simulated import LIFE, SIMULATED
-from gen.corpus.slices import codec_of
-from gen.corpus.trust import LIBRARY_LOCK
 from gen.support.errors import CorpusError
-
-_OF_CORPUS = ("Conventions", "raceway_format", "history", "source")
 
 
 def open_corpus(path: Path | str | xr.Dataset, check: Check = "sha256") -> xr.Dataset:
@@ -70,9 +41,14 @@ def open_corpus(path: Path | str | xr.Dataset, check: Check = "sha256") -> xr.Da
         add_class_names(records)
         return records
     path = Path(path)
-    files = corpus_files(path, check)
-    opened = open_part(path) if path.is_file() else _open_folder(path, files)
-    for problem in schema_problems(opened, SIMULATED + LIFE):
+    manifest = finished(path, check)
+    rows = manifest.parts
+    parts, index = [path / "parts" / row.name for row in rows] or [path], path / INDEX_NAME if rows else path
+    opened = open_records([index], parts, [row.records for row in rows] or None)
+    problems = schema_problems(opened, SIMULATED + LIFE)
+    if opened.attrs.get("parts_sha256") != manifest.parts_sha256:
+        problems = [f"{INDEX_NAME} is that of other parts than manifest.json lists; copy the corpus again."]
+    for problem in problems:
         opened.close()
         raise CorpusError(f"{path}: {problem}")
     add_class_names(opened)
@@ -82,76 +58,3 @@ def open_corpus(path: Path | str | xr.Dataset, check: Check = "sha256") -> xr.Da
 def corpus_name(corpus: Path | str | xr.Dataset) -> str:
     """Path of a corpus, or the title of records in memory, with which a sentence begins."""
     return f"{corpus.attrs.get('title', 'records')}" if isinstance(corpus, xr.Dataset) else f"{corpus}"
-
-
-def _open_folder(path: Path, files: Sequence[Path]) -> xr.Dataset:
-    """Records of a folder; CorpusError if its index is that of other parts."""
-    manifest = read_manifest(path)
-    opened = open_records(path / INDEX_NAME, files, [row.records for row in manifest.parts])
-    if opened.attrs.get("parts_sha256") != manifest.parts_sha256:
-        opened.close()
-        raise CorpusError(
-            f"{path / INDEX_NAME}: is the index of other parts than manifest.json lists; copy the corpus again."
-        )
-    return opened
-
-
-def corpus_attributes(content: Mapping[str, Any], recipe: str | None, place: Path) -> dict[str, str]:
-    """Global attributes of ``index.nc`` and of a single file beside those of the parts, from the contents of the manifest."""
-    texts = {} if recipe is None else {RECIPE_TEXT: recipe}
-    return publication_attributes(manifest_of(content, place)) | facts_as_attributes(content) | texts
-
-
-def write_index(directory: Path, rows: Sequence[PartRow], attributes: Mapping[str, str]) -> None:
-    """Write ``index.nc`` over the finished parts atomically; the same parts and attributes give the same bytes.
-
-    Raises
-    ------
-    CorpusError
-        If writing fails, with the reason that the system gives.
-    """
-    with whole_or_not_at_all(directory / INDEX_NAME) as temporary:
-        _write_parts(directory, rows, temporary, attributes, without=(SIGNAL,))
-
-
-def join_parts(directory: Path, rows: Sequence[PartRow], attributes: Mapping[str, str], file: Path) -> None:
-    """Write all parts of a folder into a single file, atomically.
-
-    Raises
-    ------
-    CorpusError
-        If writing fails, with the reason that the system gives.
-    """
-    with whole_or_not_at_all(file) as temporary:
-        _write_parts(directory, rows, temporary, attributes)
-
-
-def _write_parts(
-    directory: Path, rows: Sequence[PartRow], path: Path, attributes: Mapping[str, str], without: Sequence[str] = ()
-) -> None:
-    """Write the variables of the parts one after the other into a new file, those of one part at a time."""
-    paths, counts = [directory / "parts" / row.name for row in rows], [row.records for row in rows]
-    with stored_records(paths, paths, counts) as records:
-        columns = {str(name): variable for name, variable in records.variables.items() if name not in without}
-        kept = {name: records.attrs[name] for name in _OF_CORPUS if name in records.attrs}
-        blocks = [slice(first, stop) for first, stop in pairwise(accumulate(counts, initial=0))]
-        write_netcdf(columns, {**kept, **attributes}, path, codec_of(paths[0]), blocks)
-    append_checksum(path)
-
-
-def rewrite_attributes(file: Path, old: Iterable[str], new: Mapping[str, str]) -> None:
-    """Replace the ``old`` global attributes of a single file by ``new`` ones, in a copy that takes its place.
-
-    Raises
-    ------
-    CorpusError
-        If writing fails, with the reason that the system gives.
-    """
-    with whole_or_not_at_all(file) as temporary:
-        shutil.copyfile(file, temporary)
-        remove_checksum(temporary)
-        with LIBRARY_LOCK, h5py.File(temporary, "r+") as changed:
-            for name in {*old, *new} & set(changed.attrs):
-                del changed.attrs[name]
-        write_texts(temporary, new)
-        append_checksum(temporary)

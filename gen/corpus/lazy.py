@@ -1,4 +1,4 @@
-"""Lazy reading of the records of a corpus as an xarray Dataset.
+"""Records of a corpus as an xarray Dataset that is read when it is used: the one way in which files of records are read.
 
 Arrays hold paths instead of handles, so they can be pickled, sent to dask workers and shared with forked processes. A limited number of
 files is open in each process.
@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property, lru_cache
+from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,13 +20,25 @@ from xarray.backends import BackendArray
 from xarray.core import indexing
 
 from gen.corpus.disk import Stamp, stamp
-from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, with_own_codes
-from gen.corpus.slices import column_type, column_values, variables_of
-from gen.corpus.trust import attributes_of, library_errors, open_trusted, own_dataset, packing_of, read_values
+from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, class_names, with_own_codes
+from gen.corpus.trust import (
+    attributes_of,
+    is_bare_dimension,
+    is_text,
+    library_errors,
+    open_trusted,
+    own_dataset,
+    packing_of,
+    read_values,
+)
 from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 MOST_OPEN = 64
 """Largest number of files that are open for lazy arrays. A process can open 256 or more; an open file holds 1 MB."""
+
+
+_BLOCK_RECORDS, _BLOCK_SAMPLES = 256, 10_000_000
 
 
 class Source(NamedTuple):
@@ -36,16 +49,22 @@ class Source(NamedTuple):
 
 
 class _File:
-    """Open file of a source, with its signal; it is closed when it leaves the cache."""
+    """Open file of a source; it is closed when it leaves the cache."""
 
     def __init__(self, source: Source) -> None:
         self.file = open_trusted(source.path)
 
     @cached_property
+    def variables(self) -> dict[str, h5py.Dataset]:
+        """All variables by name, except the signal."""
+        stored = {name: own_dataset(self.file, name) for name in map(str, self.file) if name != SIGNAL}
+        return {name: variable for name, variable in stored.items() if not is_bare_dimension(variable)}
+
+    @cached_property
     def signal(self) -> tuple[h5py.Dataset, tuple[Any, ...]]:
         """Signal with its shape, type and packing, all of which take longer to read than a record."""
         stored = own_dataset(self.file, SIGNAL)
-        return stored, (stored.shape, column_type(stored), f"{packing_of(stored)}")
+        return stored, (stored.shape, _type_of(stored), f"{packing_of(stored)}")  # in a text NaN equals NaN
 
 
 _open_file = lru_cache(MOST_OPEN)(_File)
@@ -104,7 +123,12 @@ class _Stored(BackendArray):
 
     def _of_file(self, place: int, records: slice, *_: slice) -> NDArray[Any]:
         with _opened(self.sources[place]) as opened:
-            return column_values(own_dataset(opened.file, self.name), records.start, records.stop)
+            stored = opened.variables[self.name]
+            values = read_values(stored, records)
+            if is_text(stored):
+                rows = np.ascontiguousarray(values).view(f"S{values.shape[1]}")[:, 0]
+                values = np.char.decode(rows, "utf-8")
+            return values.astype(_type_of(stored), copy=False)
 
 
 def _places(key: int | slice | NDArray[np.integer[Any]], size: int) -> NDArray[np.integer[Any]]:
@@ -116,7 +140,7 @@ class _Signal(_Stored):
     """Signal of consecutive parts: counts of the converter, or accelerations."""
 
     packing: str
-    """Packing of the first part, as a text, in which NaN equals NaN."""
+    """Packing of the first part."""
 
     def _of_file(self, place: int, records: slice, *channels: slice) -> NDArray[Any]:
         with _opened(self.sources[place]) as opened:
@@ -148,7 +172,7 @@ def stored_records(described: Sequence[Path], parts: Sequence[Path], counts: Seq
     signal.packing = packing
     heads = [_head(source) for source in sources]
     with _opened(sources[-1]) as opened:  # a part names the classes of those before it
-        meanings = {name: attributes_of(stored) for name, stored in variables_of(opened.file).items()}
+        meanings = {name: attributes_of(stored) for name, stored in opened.variables.items()}
         columns = {name: _column(name, sources, heads, of) for name, of in meanings.items()}
         columns[SIGNAL] = xr.Variable(SIGNAL_DIMS, indexing.LazilyIndexedArray(signal), attributes)
         whole = xr.Dataset(columns, attrs=attributes_of(opened.file))
@@ -157,12 +181,10 @@ def stored_records(described: Sequence[Path], parts: Sequence[Path], counts: Seq
     return whole
 
 
-def open_records(path: Path, parts: Sequence[Path], counts: Sequence[int] | None = None) -> xr.Dataset:
+def open_records(described: Sequence[Path], parts: Sequence[Path], counts: Sequence[int] | None = None) -> xr.Dataset:
     """Records decoded to m s-2 (:func:`stored_records`); a missing sample is NaN, and faults have the codes of this process."""
-    stored = stored_records([path], parts, counts)
-    records = xr.decode_cf(
-        with_own_codes(stored, path), concat_characters=False, decode_times=False, decode_coords=False
-    )
+    stored = with_own_codes(stored_records(described, parts, counts), described[0])
+    records = xr.decode_cf(stored, concat_characters=False, decode_times=False, decode_coords=False)
     records.set_close(close_files)
     return records
 
@@ -175,7 +197,19 @@ def open_part(path: Path) -> xr.Dataset:
     CorpusError
         If the file is missing or is not a file of records.
     """
-    return open_records(path, [path])
+    return open_records([path], [path])
+
+
+def blocks_of(records: xr.Dataset) -> list[slice]:
+    """Places of all records, in blocks whose signals fit the memory of a task."""
+    count, *row = records[SIGNAL].shape
+    size = int(np.clip(_BLOCK_SAMPLES // max(1, prod(row)), 1, _BLOCK_RECORDS))
+    return [slice(first, min(first + size, count)) for first in range(0, count, size)]
+
+
+def stored_classes(path: Path) -> dict[int, str]:
+    """Names of the fault classes by their codes in a file, which may not be those of this process."""
+    return class_names(stored_records([path], [path])["fault"].attrs)
 
 
 def _source(path: Path) -> Source:
@@ -186,7 +220,15 @@ def _source(path: Path) -> Source:
 def _head(source: Source) -> dict[str, tuple[int, np.dtype[Any]]]:
     """Number and type of the values of each variable of a file but its signal."""
     with _opened(source) as opened:
-        return {name: (len(stored), column_type(stored)) for name, stored in variables_of(opened.file).items()}
+        return {name: (len(stored), _type_of(stored)) for name, stored in opened.variables.items()}
+
+
+def _type_of(stored: h5py.Dataset) -> np.dtype[Any]:
+    """Type of the values of a variable; of text, the number of characters is that of the stored bytes."""
+    if not is_text(stored):
+        return stored.dtype.newbyteorder("=")
+    check_limit("file_bytes", 4 * stored.shape[1], "a text has", ValueError)
+    return np.dtype(f"U{max(1, stored.shape[1])}")
 
 
 def _column(

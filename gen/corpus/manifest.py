@@ -6,13 +6,12 @@ A folder has it as ``manifest.json``; a single file has the same facts as global
 
 import hashlib
 import json
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_serializer, model_validator
 
 from gen.corpus.disk import (
     INDEX_NAME,
@@ -25,16 +24,12 @@ from gen.corpus.disk import (
     write_text_durably,
 )
 from gen.corpus.part import PartRow, part_number
-from gen.corpus.publication import Publication
 from gen.corpus.schema import FORMAT, RECIPE_TEXT
-from gen.corpus.slices import RecordBlock, blocks_of, file_facts
+from gen.corpus.trust import file_facts
 from gen.corpus.unusable import Count, SignalCounts, sum_counts
 from gen.support.errors import CorpusError
 from gen.support.executor import cores
 from gen.support.limits import check_limit
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Check = Literal["sha256", "size"]
 
@@ -43,8 +38,8 @@ _HASH = "sha256"
 _TEXTS = ("title", "recipe", "recipe_sha256", "sources_sha256", "parts_sha256", "importer")
 """Facts that are text; the others are stored as JSON in global attributes."""
 
-COUNTED = ("raceway_format", "complete", "records", "signals", "publication", "parts_sha256", "parts")
-"""Facts that :func:`facts_of_parts` computes or checks."""
+COUNTED = ("raceway_format", "complete", "records", "signals", "parts_sha256", "parts")
+"""Facts that :func:`manifest_of_parts` computes."""
 
 _Sentences = tuple[str, ...]
 
@@ -55,19 +50,12 @@ class Strict(BaseModel):
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid")
 
 
-class Overrides(Strict):
-    """Seed and number of records that replaced those of the recipe."""
-
-    seed: int | None = None
-    records: int | None = None
-
-
 class Manifest(Strict):
     """Facts of a corpus after their check; those of simulated corpora are None in imported ones, and the other way round."""
 
-    raceway_format: int
+    raceway_format: int = FORMAT
     complete: bool = True
-    records: Count
+    records: Count = 0
     signals: SignalCounts = SignalCounts()
     """Counts of the records that cannot be used."""
     title: str | None = None
@@ -79,8 +67,10 @@ class Manifest(Strict):
     """Hash of the source files of Raceway that made the records."""
     parts_sha256: str | None = None
     """Hash over those of the parts; a single file keeps that of the parts that it was made of."""
-    overrides: Overrides | None = None
-    publication: Publication = Publication()
+    overrides: dict[Literal["seed", "records"], int | None] | None = None
+    """Seed and number of records that replaced those of the recipe."""
+    publication: Annotated[dict[str, Any], Field(default_factory=dict)]
+    """Licence, creators and other facts of publication (`raceway.publish`)."""
     versions: Annotated[dict[str, str], Field(default_factory=dict)]
     failures: _Sentences = ()
     importer: str | None = None
@@ -92,41 +82,44 @@ class Manifest(Strict):
     parts: tuple[PartRow, ...] = ()
     """Rows of the parts, in the order of their records; none of a single file."""
 
+    @property
+    def content(self) -> dict[str, Any]:
+        """Facts in values of JSON; one without content is left out."""
+        return {name: value for name, value in self.model_dump(mode="json").items() if value not in (None, [], {})}
+
+    @field_serializer("signals")
+    def _counts(self, signals: SignalCounts) -> dict[str, int]:
+        return signals._asdict()
+
+    @field_serializer("parts")
+    def _rows(self, rows: tuple[PartRow, ...]) -> list[dict[str, Any]]:
+        return [row._asdict() | {"signals": row.signals._asdict()} for row in rows]
+
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         """Refuse names and counts that disagree."""
-        names = [part.name for part in self.parts]
-        if (repeated := next((name for name, count in Counter(names).items() if count > 1), None)) is not None:
-            raise ValueError(f"it lists {repeated} more than once")
-        if names and sum(part.records for part in self.parts) != self.records:
-            raise ValueError(f"it counts {self.records} records, its parts {sum(part.records for part in self.parts)}")
-        if names and sum_counts(row.signals for row in self.parts) != self.signals:
-            raise ValueError("its number of unusable records is not the sum over its parts")
-        for counts, records in ((self.signals, self.records), *((row.signals, row.records) for row in self.parts)):
-            if sum(counts) > records:
-                raise ValueError(f"it counts {sum(counts)} unusable records of {records}")
+        counts = [(self.records, self.signals), *((row.records, row.signals) for row in self.parts)]
+        records, signals = zip(*counts[1:], strict=True) if self.parts else zip(*counts, strict=True)
+        if len({row.name for row in self.parts}) < len(self.parts):
+            raise ValueError("it lists a part more than once")
+        if (sum(records), sum_counts(signals)) != counts[0] or any(sum(unusable) > count for count, unusable in counts):
+            raise ValueError("its counts are not those of its parts")
         return self
 
 
-def facts_of_parts(rows: Iterable[PartRow], facts: Mapping[str, Any], *, complete: bool = True) -> dict[str, Any]:
-    """Contents of the manifest: counts and parts, and further ``facts`` by the names of the fields of :class:`Manifest`.
-
-    ``publication`` is a :class:`gen.corpus.Publication`; the others are values of JSON.
-    """
-    rows = list(rows)
-    publication: Publication = facts.get("publication") or Publication()
-    # a fact without content is left out
+def manifest_of_parts(rows: Iterable[PartRow], facts: Mapping[str, Any], *, complete: bool = True) -> Manifest:
+    """Manifest of parts, with further ``facts`` by the names of its fields, in values of JSON; one that is None is left out."""
+    rows = tuple(rows)
     known = {name: value for name, value in facts.items() if name not in COUNTED and value is not None}
-    return {
-        "raceway_format": FORMAT,
-        "complete": complete,
-        "records": sum(row.records for row in rows),
-        "signals": sum_counts(row.signals for row in rows)._asdict(),
-        **known,
-        **({"publication": publication.stored} if publication.stored else {}),
-        "parts_sha256": hashlib.sha256("\n".join(row.sha256 for row in rows).encode()).hexdigest(),
-        "parts": [row._asdict() | {"signals": row.signals._asdict()} for row in rows],
-    }
+    return manifest_of(known, Path(MANIFEST_NAME)).model_copy(
+        update={
+            "complete": complete,
+            "records": sum(row.records for row in rows),
+            "signals": sum_counts(row.signals for row in rows),
+            "parts_sha256": hashlib.sha256("\n".join(row.sha256 for row in rows).encode()).hexdigest(),
+            "parts": rows,
+        }
+    )
 
 
 def write_manifest(directory: Path, content: Mapping[str, Any]) -> None:
@@ -153,10 +146,11 @@ def manifest_of(content: Mapping[str, Any] | bytes, place: Path) -> Manifest:
     """
     try:
         values: dict[str, Any] = json.loads(content) if isinstance(content, bytes) else dict(content)
-        _check_format(values["raceway_format"], place)
-        # the hash covers all other keys, so that an edited manifest is noticed
-        if isinstance(content, bytes) and values.pop(_HASH, None) != _hash_of(values):
-            raise CorpusError(_altered(place))
+        if isinstance(content, bytes):
+            _check_format(values["raceway_format"], place)
+            # the hash covers all other keys, so that an edited manifest is noticed
+            if values.pop(_HASH, None) != _hash_of(values):
+                raise CorpusError(_altered(place))
         manifest = Manifest.model_validate_json(json.dumps(values))
     except ValidationError as error:
         reason = first_problem(error)
@@ -224,7 +218,7 @@ def _manifest_of_file(file: Path) -> Manifest:
     """Manifest from the global attributes of a file of records."""
     if file.name == INDEX_NAME:
         raise CorpusError(f"{file}: is the index of a corpus and holds no signals; give its folder, {file.parent}.")
-    attributes, (records, _, _) = file_facts(file)
+    attributes, records = file_facts(file)
     _check_format(attributes.get("raceway_format"), file)
     content: dict[str, Any] = {"raceway_format": FORMAT, "records": records}
     try:
@@ -237,10 +231,11 @@ def _manifest_of_file(file: Path) -> Manifest:
     return manifest_of(content, file)
 
 
-def facts_as_attributes(content: Mapping[str, Any]) -> dict[str, str]:
-    """Facts of a manifest as global attributes of a file."""
+def facts_as_attributes(content: Mapping[str, Any], recipe: str | None = None) -> dict[str, str]:
+    """Facts of a manifest, and the recipe of all records, as global attributes of a file."""
     left_out = ("raceway_format", "complete", "parts")
-    return {
+    texts = {} if recipe is None else {RECIPE_TEXT: recipe}
+    return texts | {
         name: value if name in _TEXTS else json.dumps(value) for name, value in content.items() if name not in left_out
     }
 
@@ -250,8 +245,7 @@ def _with_present_parts(manifest: Manifest, directory: Path) -> Manifest:
     paths = {path: part_number(path.name) for path in (directory / "parts").glob("part-*.nc")}
     parts = sorted((number, path) for path, number in paths.items() if number is not None)
     rows = [row for _, path in parts if (row := row_of(path)) is not None]
-    content = manifest.model_dump(mode="json") | facts_of_parts(rows, {}, complete=False)
-    return manifest_of(content, directory / MANIFEST_NAME)
+    return manifest_of_parts(rows, manifest.content, complete=False)
 
 
 def row_of(path: Path) -> PartRow | None:
@@ -282,23 +276,19 @@ def file_problems(path: Path, manifest: Manifest, check: Check) -> list[str]:
     if path.is_file():
         return []
     rows: list[PartRow | None] = [*manifest.parts, *([None] if manifest.complete else [])]
-    if check == "size":
-        each = [_file_problem(path, row, check) for row in rows]
-    else:
-        with ThreadPoolExecutor(min(8, cores())) as pool:  # hashing releases the interpreter lock
-            each = list(pool.map(lambda row: _file_problem(path, row, check), rows, chunksize=16))
-    return sorted(problem for problem in each if problem is not None)
+    with ThreadPoolExecutor(min(8, cores())) as pool:  # hashing releases the interpreter lock
+        each = pool.map(lambda row: _file_problem(path, row, check), rows)
+        return sorted(problem for problem in each if problem is not None)
 
 
 def _file_problem(directory: Path, row: PartRow | None, check: Check) -> str | None:
     """Sentence about a part that is missing or not the listed one; without a row, about the index."""
     try:
         file = plain_file(directory, INDEX_NAME if row is None else f"parts/{row.name}")
-        if row is None:
+        whole = row is None or file.stat().st_size == row.bytes
+        if check == "sha256" and whole:
             # the index has its checksum at its end, parts have theirs in the manifest
-            whole = check == "size" or has_whole_bytes(file)
-        else:
-            whole = file.stat().st_size == row.bytes and (check == "size" or sha256(file) == row.sha256)
+            whole = has_whole_bytes(file) if row is None else sha256(file) == row.sha256
     except CorpusError as error:
         return str(error)
     except OSError as error:
@@ -329,8 +319,8 @@ def check_bytes(file: Path) -> None:
         raise CorpusError(_altered(file))
 
 
-def corpus_files(path: Path | str, check: Check = "sha256") -> list[Path]:
-    """Files with the signals of a finished corpus, in the order of the records: the parts of a folder, or the single file.
+def finished(path: Path | str, check: Check = "sha256") -> Manifest:
+    """Manifest of a finished corpus.
 
     Every file is compared with its hash first; ``check="size"`` compares sizes only, for corpora that take too long to hash.
 
@@ -343,20 +333,15 @@ def corpus_files(path: Path | str, check: Check = "sha256") -> list[Path]:
     manifest = read_manifest(path, check)
     if not manifest.complete:
         raise CorpusError(f"{path}: is unfinished; run the raceway generate command that began it again.")
-    problems = file_problems(path, manifest, check)
-    if problems:
-        raise CorpusError(problems[0])
-    return [path] if path.is_file() else [path / "parts" / row.name for row in manifest.parts]
+    for problem in file_problems(path, manifest, check):
+        raise CorpusError(problem)
+    return manifest
 
 
-def record_blocks(corpus: "Path | str | xr.Dataset", check: Check = "sha256") -> list[RecordBlock]:
-    """All records of a finished corpus, or of a Dataset in memory, in blocks that fit the memory of a task.
+def corpus_files(path: Path | str, check: Check = "sha256") -> list[Path]:
+    """Files with the signals of a finished corpus, in the order of the records: the parts of a folder, or the single file.
 
-    It raises the errors of :func:`corpus_files`.
+    It raises the errors of :func:`finished`.
     """
-    if not isinstance(corpus, Path | str):
-        return blocks_of(corpus, corpus.sizes["record"])
-    path = Path(corpus).absolute()
-    files, manifest = corpus_files(path, check), read_manifest(path, check)
-    counts = [row.records for row in manifest.parts] or [manifest.records]
-    return [block for file, records in zip(files, counts, strict=True) for block in blocks_of(file, records)]
+    rows = finished(path, check).parts
+    return [Path(path) / "parts" / row.name for row in rows] or [Path(path)]

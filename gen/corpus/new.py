@@ -1,6 +1,6 @@
 """A new corpus written part by part: a folder or a single file, there as a whole or not at all."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from gen.corpus.disk import (
     writing,
 )
 from gen.corpus.fault_classes import further_classes
-from gen.corpus.finishing import finish_corpus, finish_file
+from gen.corpus.finishing import finish_corpus
 from gen.corpus.manifest import RECIPE_NAME
 from gen.corpus.outputs import check_new
 from gen.corpus.part import PartRow, part_name, write_part
@@ -53,7 +53,6 @@ def new_corpus(
     *,
     codec: Codec = "zlib",
     recipe_text: str | None = None,
-    describe: Callable[[Path], None] | None = None,
     **facts: Any,
 ) -> Iterator[NewCorpus]:
     """New corpus to write parts to: a single file if the name of ``target`` ends in ``.nc``, else a folder.
@@ -66,8 +65,6 @@ def new_corpus(
         Compression of the signal.
     recipe_text : str, optional
         Recipe of all records, as YAML.
-    describe : callable, optional
-        Writes pages about the corpus into its finished folder, before the folder gets its name; not called for a single file.
     **facts
         Fields of the manifest (:class:`gen.corpus.Manifest`).
 
@@ -88,8 +85,6 @@ def new_corpus(
         return
     with whole_folder_or_none(target) as folder:
         yield from _write(folder, None, codec, recipe_text, facts)
-        if describe is not None:
-            describe(folder)
 
 
 def _write(
@@ -103,7 +98,4 @@ def _write(
     yield corpus
     if not corpus.rows:
         raise CorpusError("no record was written, so there is no corpus; choose some records.")
-    if file is None:
-        finish_corpus(folder, corpus.rows, **corpus.facts)
-    else:
-        finish_file(folder, corpus.rows, file, **corpus.facts)
+    finish_corpus(folder, corpus.rows, file, **corpus.facts)

@@ -23,6 +23,7 @@ import netCDF4  # noqa: F401 - tells HDF5 where its zstd filter is
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.corpus.codecs import Codec
 from gen.corpus.disk import stamp
 from gen.corpus.schema import MISSING_COUNT, SIGNAL, SIGNAL_DIMS
 from gen.support.errors import CorpusError
@@ -91,6 +92,19 @@ def open_trusted(path: Path | str) -> h5py.File:
         file.close()
         raise
     return file
+
+
+def file_facts(path: Path) -> tuple[dict[str, Any], int]:
+    """Global attributes of a file of records, and the number of its records; CorpusError if it is none."""
+    with library_errors(path), open_trusted(path) as file:
+        return attributes_of(file), len(own_dataset(file, SIGNAL))
+
+
+def codec_of(path: Path) -> Codec:
+    """Codec of the signal of a file."""
+    with library_errors(path), open_trusted(path) as file:
+        filters = filters_of(own_dataset(file, SIGNAL))
+    return "zstd" if ZSTD in filters else "zlib" if filters else "none"
 
 
 def own_dataset(file: h5py.File, path: str) -> h5py.Dataset:

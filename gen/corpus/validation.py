@@ -1,23 +1,23 @@
 """Validation of a corpus: its files, the format of its variables, and the agreement of index, manifest and parts."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus.index import corpus_attributes, open_corpus
+from gen.corpus.index import open_corpus
+from gen.corpus.lazy import blocks_of, stored_records
 from gen.corpus.manifest import (
     INDEX_NAME,
     MANIFEST_NAME,
     Manifest,
-    facts_of_parts,
+    facts_as_attributes,
     file_problems,
     read_manifest,
     recipe_text,
 )
-from gen.corpus.slices import blocks_of, file_facts, read_columns, stored_blocks
+from gen.corpus.schema import SIGNAL
 from gen.corpus.unusable import VERDICTS, SignalCounts, count_verdicts, counts_in_words, judge
 from gen.support.errors import CorpusError
 
@@ -47,9 +47,7 @@ def _facts_problems(path: Path, manifest: Manifest, corpus: xr.Dataset) -> list[
     """Facts of ``manifest.json`` and ``recipe.yaml`` that ``index.nc`` has in another form."""
     if path.is_file():
         return []
-    content = manifest.model_dump(mode="json", exclude_unset=True)
-    content = facts_of_parts(manifest.parts, content | {"publication": manifest.publication})
-    wanted = corpus_attributes(content, recipe_text(path), path)
+    wanted = facts_as_attributes(manifest.content, recipe_text(path))
     names = {*wanted, *(Manifest.model_fields.keys() & corpus.attrs.keys() - {"raceway_format"})}
     wrong = sorted(name for name in names if str(corpus.attrs.get(name)) != wanted.get(name))
     advice = "run raceway card again if a call of it was interrupted, or copy the corpus again"
@@ -57,48 +55,48 @@ def _facts_problems(path: Path, manifest: Manifest, corpus: xr.Dataset) -> list[
 
 
 def _records_problems(path: Path, manifest: Manifest) -> list[str]:
-    """Problems of signals and texts, and of parts with other values than the index."""
+    """Problems of signals and texts, and of parts with other values or origins than the index and the manifest tell."""
+    files = [(path / "parts" / row.name, row.signals) for row in manifest.parts] or [(path, manifest.signals)]
+    described, counts = path if path.is_file() else path / INDEX_NAME, [row.records for row in manifest.parts]
     first, problems = 0, list[str]()
-    if path.is_file():
-        for block in blocks_of(path, manifest.records):
-            read_columns(path, first=block.first, stop=block.stop)
-        return _signal_problems(path, manifest.signals)
-    # one part at a time, so that memory does not grow with the corpus
-    for row in manifest.parts:
-        file = path / "parts" / row.name
-        columns, index = read_columns(file), read_columns(path / INDEX_NAME, first=first, stop=first + row.records)
-        problems += [
-            f"{file}: {name} differs from {INDEX_NAME}; make or copy the corpus again."
-            for name in sorted(columns.keys() | index.keys())
-            if name not in columns or name not in index or not _same(columns[name], index[name])
-        ]
-        problems += [*_origin_problems(file, manifest), *_signal_problems(file, row.signals)]
-        first += row.records
+    with stored_records([described], [file for file, _ in files], counts or None) as index:
+        for file, signals in files:
+            with stored_records([file], [file]) as part:
+                count = part.sizes["record"]
+                problems += _values_problems(file, part, index.isel(record=slice(first, first + count)), signals)
+                advice = "it was made from another recipe or with other sources; make it again"
+                problems += [
+                    f"{file}: its {name} is not that of {MANIFEST_NAME}: {advice}."
+                    for name in _MADE_BY
+                    if name in part.attrs and part.attrs[name] != getattr(manifest, name)
+                ]
+            first += count
     return problems
 
 
-def _same(part: NDArray[Any], index: NDArray[Any]) -> bool:
+def _values_problems(file: Path, records: xr.Dataset, index: xr.Dataset, signals: SignalCounts) -> list[str]:
+    """Variables that differ from the index, samples that are not finite, and other counts of unusable records than the listed ones."""
+    labels, listed = (some.drop_dims(["channel", "elapsed_time"]).variables for some in (records, index))
+    different, verdicts = {str(name) for name in labels.keys() ^ listed.keys()}, list[NDArray[np.int8]]()
+    # some records at a time, so that memory does not grow with the file
+    for rows in blocks_of(records):
+        verdicts.append(judge(records[SIGNAL].variable[rows].values))
+        different |= {
+            str(name) for name in labels.keys() & listed.keys() if not _same(labels[name][rows], listed[name][rows])
+        }
+    problems = [
+        f"{file}: {name} differs from {INDEX_NAME}; make or copy the corpus again." for name in sorted(different)
+    ]
+    found = np.concatenate(verdicts)
+    lost = np.flatnonzero(found == VERDICTS.index("not_finite"))
+    problems += [f"{file}: record {record} of it has samples that are not finite." for record in lost]
+    if (counts := count_verdicts(found)) != signals:
+        told = f"{counts_in_words(counts)} of its records cannot be used, {counts_in_words(signals)} are listed"
+        problems.append(f"{file}: {told}.")
+    return problems
+
+
+def _same(part: xr.Variable, index: xr.Variable) -> bool:
     """Whether values and their kind are equal; text of the index can be wider."""
     same_type = part.dtype == index.dtype or part.dtype.kind == index.dtype.kind == "U"
-    return same_type and np.array_equal(part, index, equal_nan=part.dtype.kind == "f")
-
-
-def _origin_problems(file: Path, manifest: Manifest) -> list[str]:
-    """Facts by which a part was made from another recipe, or with other sources, than the manifest tells."""
-    facts, _ = file_facts(file)
-    return [
-        f"{file}: its {name} is not that of {MANIFEST_NAME}: it was made from another recipe or with other sources; make it again."
-        for name in _MADE_BY
-        if name in facts and facts[name] != getattr(manifest, name)
-    ]
-
-
-def _signal_problems(file: Path, listed: SignalCounts) -> list[str]:
-    """Samples that are not finite, and counts of unusable records other than the listed ones."""
-    verdicts = np.concatenate([judge(block) for block in stored_blocks(file)])
-    lost = np.flatnonzero(verdicts == VERDICTS.index("not_finite"))
-    problems = [f"{file}: record {record} of it has samples that are not finite." for record in lost]
-    if count_verdicts(verdicts) != listed:
-        counts = counts_in_words(count_verdicts(verdicts))
-        problems.append(f"{file}: {counts} of its records cannot be used, {counts_in_words(listed)} are listed.")
-    return problems
+    return same_type and np.array_equal(part.values, index.values, equal_nan=part.dtype.kind == "f")

@@ -20,18 +20,16 @@ from gen.corpus import (
     PartRow,
     SignalCounts,
     check_place,
-    corpus_files,
     facts_as_attributes,
-    file_facts,
     finish_corpus,
-    finish_file,
+    finished,
     is_single_file,
     lock,
-    read_columns,
     read_manifest,
     remove_left_behind_of,
     remove_parts,
     row_of,
+    stored_records,
     write_durably,
     write_part,
     writing,
@@ -39,7 +37,7 @@ from gen.corpus import (
 from gen.corpus.schema import with_file_codes
 from gen.generation.identity import added_classes, failures_of, made_by, part_file
 from gen.generation.record_sources import sources_sha256
-from gen.generation.target import check_parts, check_same, claim, part_numbers, prepare, records_of, remove_other_parts
+from gen.generation.target import check_parts, check_same, claim, part_numbers, prepare, remove_other_parts
 from gen.mechanisms.mechanism import plugins_of
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.display import Shown
@@ -175,19 +173,13 @@ def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
         "title": recipe.title,
         **made_by(recipe),
         "overrides": overrides,
-        "publication": recipe.publication,
     }
 
 
 def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, Any]) -> Generated:
     """Result of a corpus in a single file that an earlier call has finished."""
-    corpus_files(file)
     manifest = read_manifest(file)
-    check_same(file, manifest, facts)
-    if records_of(file, manifest) != recipe.n_records:
-        raise CorpusError(
-            f"{file}: holds {manifest.records} records and not {recipe.n_records}; a corpus grows in a folder: choose another name."
-        )
+    check_same(file, manifest, facts, recipe)
     with suppress(CorpusError):  # not left by a call that was killed between the last two steps
         left = read_manifest(folder)
         if not left.complete and left.recipe_sha256 == manifest.recipe_sha256:
@@ -208,7 +200,6 @@ def _all_parts(
     counts = {part: len(recipe.records_of_part(part)) for part in parts}
     report = counter(progress, sum(counts.values()))
     outcomes = dict[int, Outcome]()
-    # what an earlier call made comes first
     # whole parts of an earlier call are kept
     for part in parts:
         if (kept := _kept(recipe, folder, part)) is not None:
@@ -266,9 +257,9 @@ def _kept(recipe: Recipe, folder: Path, part: int) -> Outcome | None:
     row = row_of(path)
     if row is None:
         return None
-    attributes, _ = file_facts(path)
-    # a part with the name of this one may be of another size of the corpus
-    numbers = read_columns(path, ["recording"])["recording"]
+    with stored_records([path], [path]) as records:
+        attributes, numbers = records.attrs, records["recording"].values
+    # a part with the name of this one may be another one
     expected = recipe.records_of_part(part)
     # the same recipe, sources and libraries give the same bytes
     same = all(attributes.get(name) == text for name, text in facts_as_attributes(made_by(recipe)).items())
@@ -283,11 +274,12 @@ def _finish(target: Path, folder: Path, text: bytes, outcomes: list[Outcome], fa
     if not rows:
         raise CorpusError(f"{target}: no record could be simulated; {outcomes[0].failures[0]}")
     failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
-    facts = facts | {"publication": facts["publication"].dated(), "failures": failures}
-    # recipe first, manifest last: a folder without a manifest of finished parts is unfinished
-    whole = target == folder
-    with writing(folder):
-        write_durably(text, folder / RECIPE_NAME)
-    signals = finish_corpus(folder, rows, **facts) if whole else finish_file(folder, rows, target, **facts)
-    kept = sum(outcome.kept for outcome in outcomes)
-    return Generated(target, sum(row.records for row in rows), len(rows), kept, failures, signals)
+    made = None
+    with suppress(CorpusError):  # a corpus that has all its parts stays as it is, with its card
+        made = finished(folder)
+    if made is None or made.parts != tuple(rows):
+        # recipe first, manifest last: a folder without a manifest of finished parts is unfinished
+        with writing(folder):
+            write_durably(text, folder / RECIPE_NAME)
+        made = finish_corpus(folder, rows, None if target == folder else target, **facts, failures=failures)
+    return Generated(target, made.records, len(rows), sum(outcome.kept for outcome in outcomes), failures, made.signals)

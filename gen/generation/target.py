@@ -12,15 +12,13 @@ from gen.corpus import (
     MANIFEST_NAME,
     RECIPE_NAME,
     Manifest,
-    facts_of_parts,
-    file_facts,
     is_single_file,
     lock,
+    manifest_of_parts,
     part_number,
     read_manifest,
     recipe_text,
     remove_temporary_files,
-    row_of,
     write_durably,
     write_manifest,
     writing,
@@ -48,40 +46,23 @@ def prepare(folder: Path, text: bytes, facts: dict[str, Any], recipe: Recipe) ->
     Returns ``facts``, with the publication that a corpus was given after it was made. The manifest is written first: it tells a corpus
     without any part from a folder that holds something else.
     """
-    finished = False
+    before = None
     with writing(folder):
         remove_temporary_files(folder)
         if (folder / MANIFEST_NAME).exists():
-            manifest = read_manifest(folder)
-            _check_kept(folder, manifest, facts, recipe)
-            if not facts["publication"].stored:
-                facts = facts | {"publication": manifest.publication}
-            finished = manifest.complete
+            before = read_manifest(folder)
+            check_same(folder, before, facts, recipe)
+            facts = facts | {"publication": before.publication}
         # nothing of a user is overwritten
         elif any(folder.iterdir()):
             raise CorpusError(f"{folder}: is not empty and holds no corpus; choose another folder.")
-        if not finished:
+        if before is None or not before.complete:
             # from now on the folder says of what corpus its parts are
-            write_manifest(folder, facts_of_parts([], facts, complete=False))
+            write_manifest(folder, manifest_of_parts([], facts, complete=False).content)
             write_durably(text, folder / RECIPE_NAME)
             remove_other_parts(folder, recipe)
         (folder / "parts").mkdir(exist_ok=True)
     return facts
-
-
-def _check_kept(folder: Path, manifest: Manifest, facts: dict[str, Any], recipe: Recipe) -> None:
-    """Refuse a corpus that cannot become that of the recipe: another one, a copy, or one with more records."""
-    check_same(folder, manifest, facts)
-    # parts of a copy have other records than those that are generated, and would be made again
-    whole = next(filter(row_of, (folder / "parts" / row.name for row in manifest.parts)), None)
-    if whole is not None and "recipe_sha256" not in file_facts(whole)[0]:
-        raise CorpusError(f"{folder}: holds a copy of a corpus, which is not generated again; choose another name.")
-    before = records_of(folder, manifest)
-    if before is not None and recipe.n_records < before:
-        raise CorpusError(
-            f"{folder}: holds a corpus of {before} records and not {recipe.n_records}; a corpus grows and does not shrink: choose another "
-            "name."
-        )
 
 
 def records_of(place: Path, manifest: Manifest) -> int | None:
@@ -91,18 +72,22 @@ def records_of(place: Path, manifest: Manifest) -> int | None:
         recipe = parse_yaml(recipe_text(place) or "", place, RecipeError)
     elif not recipe.exists():
         return None
-    overrides = {} if manifest.overrides is None else dict(manifest.overrides)
-    return read_recipe(recipe, **overrides).n_records
+    return read_recipe(recipe, **manifest.overrides or {}).n_records
 
 
-def check_same(place: Path, manifest: Manifest, facts: dict[str, Any]) -> None:
-    """Refuse to complete a corpus of another recipe, or one that other sources or libraries began: its records would not go together."""
+def check_same(place: Path, manifest: Manifest, facts: dict[str, Any], recipe: Recipe) -> None:
+    """Refuse a corpus that cannot become that of the recipe: another one, one of other sources or libraries, or one with other records."""
     if manifest.recipe_sha256 is None:
         raise CorpusError(
             f"{place}: holds a corpus that was not generated from a recipe as a whole; choose another name."
         )
     if manifest.recipe_sha256 != facts["recipe_sha256"]:
         raise CorpusError(f"{place}: holds a corpus of another recipe or seed; choose another name.")
+    before, asked = records_of(place, manifest), recipe.n_records
+    if before is not None and (asked < before or (place.is_file() and asked > before)):
+        raise CorpusError(
+            f"{place}: holds a corpus of {before} records and not {asked}; a folder grows, and no corpus shrinks: choose another name."
+        )
     # other libraries can round otherwise
     began = manifest.versions | {"sources": (manifest.sources_sha256 or "unknown")[:12]}
     now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}

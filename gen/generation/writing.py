@@ -1,7 +1,7 @@
 """Records in memory written as a corpus: simulated ones, changed or not, or others with the variables of the format.
 
 A record keeps its scenario, from which it can be replayed, if its signal is the one that the scenario gave. All records of one recipe give
-the corpus that :func:`gen.generate` makes, with its recipe.
+a corpus with this recipe.
 """
 
 import json
@@ -19,30 +19,28 @@ from gen.corpus import (
     SCHEMA,
     SIGNAL,
     Variable,
+    blocks_of,
     check_new,
     make_dataset,
     new_corpus,
 )
 from gen.corpus.numbering import new_numbers
 from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
-from gen.generation.corpus import facts_of
-from gen.generation.identity import added_classes, part_attributes, part_file
 from gen.generation.labels import LABELS
 from gen.measurement.measure import LARGEST_COUNT
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
 from gen.recipe.sensing import RecordingSection
 from gen.support.errors import CorpusError
 
-_PART_RECORDS = 256
 _NOT_A_COUNT = 0.01  # largest distance of a decoded sample from a count; single precision comes within 0.004
 
 
-def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
+def write_corpus(records: xr.Dataset, target: Path | str) -> Path:
     """Write records in memory as a corpus.
 
     Parameters
     ----------
-    dataset : Dataset
+    records : Dataset
         One or several records with the variables of the format, in any order: from :func:`gen.record`, :func:`gen.records`,
         :func:`gen.simulate` or :func:`gen.open_corpus`, whole or chosen, changed, or joined with :func:`xarray.concat`. Variables of shape
         (record,) can be added, with the attributes ``long_name`` and ``role``. A record whose signal was filtered, scaled or cut is written
@@ -62,32 +60,22 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
     """
     target = Path(target).absolute()
     check_new(target)
-    rows = records_in_memory(dataset)
+    rows = records_in_memory(records)
     draws = rows[DRAWS].values.astype(str) if DRAWS in rows else np.full(rows.sizes["record"], "")
     recipes = [_recipe_of(text) if text else None for text in draws]
     signal, full_scale, unchanged = _signal(rows[SIGNAL].values, recipes)
     stored = _stored(rows, np.where(unchanged, draws, ""), signal, full_scale)
     # only all records of one recipe make a corpus of that recipe
     recipe = _whole_recipe(rows) if unchanged.all() else None
-    if recipe is None:
-        # otherwise the parts are cut by number
-        parts, codec, text = np.arange(len(signal)) // _PART_RECORDS, "zlib", None
-        names = dict.fromkeys(of.name for of in recipes if of is not None)
-        facts = {
-            "title": stored.attrs["title"],
-            "recipe": ", ".join(names) or None,
-            "versions": json.loads(rows.attrs.get("versions", "{}")),
-        }
-    else:
-        parts, codec = rows["recording"].values // recipe.storage.records_per_part, recipe.storage.codec
-        text, failures = recipe_text(recipe), tuple(json.loads(rows.attrs["failures"]))
-        stored.attrs |= part_attributes(recipe, failures)
-        facts = facts_of(recipe, {"seed": None, "records": None})
-        facts |= {"publication": recipe.publication.dated(), "failures": failures}
-    with new_corpus(target, codec=codec, recipe_text=text, **facts) as corpus:
-        corpus.classes += [] if recipe is None else added_classes(recipe)
-        for part in np.unique(parts):
-            corpus.write(stored.isel(record=parts == part), None if recipe is None else part_file(recipe, int(part)))
+    names = dict.fromkeys(of.name for of in recipes if of is not None)
+    facts = {
+        "title": stored.attrs["title"],
+        "recipe": ", ".join(names) or None,
+        "versions": json.loads(rows.attrs.get("versions", "{}")),
+    }
+    with new_corpus(target, recipe_text=recipe and recipe_text(recipe), **facts) as corpus:
+        for block in blocks_of(stored):
+            corpus.write(stored.isel(record=block))
     return target
 
 
@@ -95,9 +83,11 @@ def _recipe_of(text: str) -> Recipe:
     """Name and recording of a stored scenario, as a recipe without the other sections, which take ten times as long to read."""
     try:
         stored = json.loads(text)
-        return Recipe.model_construct(name=stored["name"], recording=RecordingSection(**stored["recording"]))
-    except (ValueError, TypeError, KeyError, RecursionError):
-        raise CorpusError("stored scenario: is not the recipe of a record; drop the variable draws.") from None
+        if stored.keys() <= Recipe.model_fields.keys():
+            return Recipe.model_construct(name=stored["name"], recording=RecordingSection(**stored["recording"]))
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        pass
+    raise CorpusError("stored scenario: is not the recipe of a record; drop the variable draws.")
 
 
 def _signal(
@@ -129,7 +119,7 @@ def _counts(values: NDArray[np.floating], full_scale: float | None) -> NDArray[n
 
 def _whole_recipe(rows: xr.Dataset) -> Recipe | None:
     """Recipe that a Dataset carries, if its records are all those of the recipe in their order; else None."""
-    if not {RECIPE_TEXT, "recipe_sha256", "records"} <= rows.attrs.keys():  # a choice of records has no hash
+    if not {RECIPE_TEXT, "records"} <= rows.attrs.keys():
         return None
     recipe = read_recipe(rows)
     corpora = {str(text).partition("/")[0] for text in rows[IDENTITY].values}

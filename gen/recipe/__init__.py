@@ -7,7 +7,6 @@ machine       bearing, machine, lubricant, specimen
 faults        entries of faults: one kind, several at once, or none
 life          life of the bearings, snapshots, end of a test
 operation     speed and load with their profiles, slip, temperature
-credits       licence, creators and references of the corpus
 sensing       sensors, level, converter
 changes       keys of operation and level that one fault replaces
 fault_entries keys that all entries of faults have in common

@@ -65,8 +65,8 @@ def read_recipe(
 
 
 def recipe_hash(recipe: Recipe) -> str:
-    """SHA-256 of the values of a recipe that records depend on; ``publication``, ``records``, layout and comments do not count."""
-    return _hash(recipe, {"publication", "records"})
+    """SHA-256 of the values of a recipe that records depend on; ``records``, layout and comments do not count."""
+    return _hash(recipe, {"records"})
 
 
 @functools.lru_cache(maxsize=16)
@@ -74,7 +74,7 @@ def corpus_identity(recipe: Recipe) -> str:
     """First 12 digits of the SHA-256 of the values that draws depend on: with the same ones, equal numbers are the same machine."""
     if recipe.origin is not None:
         return recipe.origin.corpus
-    return _hash(recipe, {"storage", "publication", "records", "name", "title"})[:12]
+    return _hash(recipe, {"storage", "records", "name", "title"})[:12]
 
 
 def _hash(recipe: Recipe, left_out: set[str]) -> str:

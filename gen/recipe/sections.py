@@ -14,7 +14,6 @@ from gen.mechanisms.background.background import BackgroundSection
 from gen.mechanisms.background.machine_conditions import MachineConditions
 from gen.mechanisms.chain.measuring_chain import SensorFaultsSection
 from gen.mechanisms.path import PathSection
-from gen.recipe.credits import PublicationSection
 from gen.recipe.fault_entries import FaultList, fault_entries
 from gen.recipe.faults import Fault
 from gen.recipe.life import LifeSection
@@ -115,8 +114,6 @@ class Sections(Section):
     """One line about the corpus, for its data card."""
     seed: Annotated[StrictInt, Field(ge=0, lt=2**63)] = 0
     """Start of all random streams; the same recipe and seed give the same corpus."""
-    publication: PublicationSection = PublicationSection()
-    """Licence, creators and references; no record depends on them, and `raceway card` can change them later."""
     corpus: CorpusSection
     """Size and split of the corpus."""
     recording: RecordingSection

@@ -43,7 +43,7 @@ Specimen = tuple[Any, Known, tuple[Fault, ...], list[Aged] | None]
 """Recipe of a specimen, quantities that its records can have shares of, its fault at each rung, and the snapshots of its life."""
 
 _ONE = CorpusSection(rigs=1, specimens_per_rig=1, records_per_specimen=1)
-_OF_FILES = {key: Recipe.model_fields[key].default for key in ("publication", "storage", "records", "life")}
+_OF_FILES = {key: Recipe.model_fields[key].default for key in ("storage", "records", "life")}
 
 
 def draw_scenarios(

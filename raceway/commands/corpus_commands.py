@@ -242,7 +242,8 @@ def _show_generated(made: "Generated", wanted: "Recipe") -> None:
 
 def _coarse_steps(corpus: Path) -> str | None:
     """Sentence about the records whose step is too coarse."""
-    from gen.corpus import open_corpus, step_complaint
+    from gen.corpus import open_corpus
+    from raceway.console.corpus_counts import step_complaint
 
     with open_corpus(corpus, check="size") as opened:
         return step_complaint(opened)

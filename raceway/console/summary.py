@@ -17,25 +17,26 @@ from gen.corpus import (
     SignalCounts,
     by_class,
     class_counts,
-    clipped_records,
     counts_in_words,
     extent,
-    fault_counts,
-    file_facts,
     file_problems,
-    read_attributes,
-    read_columns,
+    open_records,
     read_manifest,
-    split_counts,
-    step_complaint,
-    text_counts,
     unit_counts,
 )
-from gen.corpus.contents import OF_FAULTS
+from gen.corpus.choice import channel_names, chosen_records, per_record
 from gen.corpus.schema import operating_problems, stored_unit
 from gen.support.errors import CorpusError
 from gen.support.units import READABLE, range_text
 from raceway.console import show
+from raceway.console.corpus_counts import (
+    OF_FAULTS,
+    clipped_records,
+    fault_counts,
+    split_counts,
+    step_complaint,
+    text_counts,
+)
 
 Columns = Mapping[str, NDArray[Any]]
 
@@ -80,39 +81,34 @@ def corpus_facts(directory: Path, where: str | None = None) -> dict[str, Any]:
     return facts | _content(directory, manifest, where) if manifest.records else facts
 
 
-def _labels(files: Iterable[Path], wanted: Iterable[str]) -> Columns:
-    """Variables that ``info`` shows, from the files that hold them."""
-    parts = [read_columns(file, wanted) for file in files]
-    labels = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    for problem in operating_problems(labels):
-        raise CorpusError(f"{next(iter(files))}: {problem}")
-    return labels
-
-
 def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str, Any]:
-    """Contents of a corpus, read without xarray; of an unfinished corpus those of its finished parts."""
+    """Contents of a corpus; of an unfinished one those of its finished parts."""
     for problem in file_problems(directory, manifest, "size"):
         raise CorpusError(problem)
-    parts = [directory / "parts" / row.name for row in manifest.parts] or [directory]
+    rows = manifest.parts
+    parts = [directory / "parts" / row.name for row in rows] or [directory]
     # the index has the labels of all parts; without it, each part has its own
-    files = [directory / INDEX_NAME] if manifest.complete and directory.is_dir() else parts
-    known = read_attributes(files[0])
-    measured = {name: stored_unit(of) for name, of in known.items() if of.get("role") == "label"}
-    sizes = {name: unit for name, unit in measured.items() if unit in READABLE}
-    labels = _labels(files, [*_SHOWN, *sizes, *(name for name in _IF_PRESENT if name in known)])
-    samples, fs = file_facts(parts[0])[1][2], float(labels["sample_rate"][0])
-    # counts of the chosen records
-    if where is not None:
-        from gen.corpus import open_corpus  # not at the top: xarray takes 0.25 s to load
-        from gen.corpus.choice import chosen_records
-
-        with open_corpus(directory, check="size") as opened:
-            (chosen,) = chosen_records([opened], where)
-        labels = {name: values[chosen] for name, values in labels.items()}
+    files = [directory / INDEX_NAME] if rows and manifest.complete else parts
+    with open_records(files, parts, [row.records for row in rows] or None) as records:
+        known = per_record(records)
+        measured = {name: stored_unit(records[name].attrs) for name in known if records[name].attrs["role"] == "label"}
+        sizes = {name: unit for name, unit in measured.items() if unit in READABLE}
+        wanted = [*_SHOWN, *sizes, *(name for name in _IF_PRESENT if name in known)]
+        for name in wanted:
+            if name not in records.variables:
+                raise CorpusError(f"{files[0]}: has no variable {name}; make or copy the corpus again.")
+        labels = {name: records[name].values for name in wanted}
+        for problem in operating_problems(labels):
+            raise CorpusError(f"{files[0]}: {problem}")
+        if where is not None:
+            (chosen,) = chosen_records([records], where)
+            labels = {name: values[chosen] for name, values in labels.items()}
+        channels, samples = channel_names(records), records.sizes["elapsed_time"]
+    fs = float(labels["sample_rate"][0])
     units = unit_counts(labels)
     return {
         "chosen": units.records,
-        "channels": read_columns(parts[0], ["channel"])["channel"].tolist(),
+        "channels": channels,
         "sample_rate": fs,
         "duration": samples / fs,
         "samples": samples,

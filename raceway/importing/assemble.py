@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus import NewCorpus, Publication, Variable, check_new, identity, make_dataset, new_corpus
+from gen.corpus import NewCorpus, Variable, check_new, identity, make_dataset, new_corpus
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 from gen.support.plugins import plugin_versions
@@ -123,9 +123,7 @@ def import_recordings(
 
     with new_corpus(
         output,
-        describe=describe,
         title=collection.title,
-        publication=Publication().dated(),
         importer=collection.importer,
         basis=collection.facts,
     ) as corpus:
@@ -141,6 +139,8 @@ def import_recordings(
             "skipped": done.skipped,
             "warnings": done.warnings,
         }
+    if output.is_dir():
+        describe(output)
     return done
 
 

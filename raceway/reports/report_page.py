@@ -23,11 +23,11 @@ from gen.corpus import (
     make_result_folder,
     open_corpus,
     read_manifest,
-    split_counts,
     unit_counts,
     write_numbers,
 )
 from gen.corpus.fault_classes import HEALTHY
+from raceway.console.corpus_counts import split_counts
 from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.curves import draw_detection, draw_reliability, draw_roc
 from raceway.reports.examples import examples_of
@@ -209,8 +209,8 @@ def _facts(manifest: Manifest, results: Results) -> list[tuple[str, str]]:
     """Origin of the numbers: the manifest without its parts, and the settings of the benchmark."""
     left_out = {"parts", "parts_sha256", "signals", "complete", "records", "title", "publication"}
     facts = manifest.model_dump(exclude=left_out, exclude_unset=True)
-    if manifest.publication.license:
-        facts["licence"] = manifest.publication.license
+    if license_name := manifest.publication.get("license"):
+        facts["licence"] = license_name
     benchmark = {
         "cross-validation": f"{results.folds} folds by {results.track}",
         "features": f"{results.features} ({', '.join(results.groups)})",

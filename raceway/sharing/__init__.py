@@ -11,6 +11,8 @@ huggingface   Parquet by split with the card of the Hugging Face hub
 forms         all forms; ``copy``
 card          the data card: a page, its facts and additions
 croissant     files, fields and licence for catalogues of data sets
+publication   licence, creators and references of a corpus
+acdd          global attributes of a published corpus
 publishing    terms of use; the pages that describe a corpus
 card_pictures pictures and scores of a data card
 copy_command  the command copy

@@ -63,7 +63,7 @@ def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None
 
     # facts that are given replace those of the corpus
     given = {name: value for name, value in given.items() if value}
-    publish(corpus, read_manifest(corpus).publication.stored | given)
+    publish(corpus, read_manifest(corpus).publication | given)
     publication = read_manifest(corpus).publication
     added = complete_card(corpus, scores)
     written = card_folder(corpus) / "README.md"
@@ -71,15 +71,13 @@ def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None
     if as_json:
         pictures = [written.parent / "pictures" / picture.name for picture in added.pictures]
         scored = {row.name: row.score for row in rows}
-        show.as_json({"card": written, "pictures": pictures, "scores": scored, "publication": publication.stored})
+        show.as_json({"card": written, "pictures": pictures, "scores": scored, "publication": publication})
         return
     scored = f", scores of {show.count_text(len(rows), 'classifier')}" if rows else ""
     show.text(f"{written}: {show.count_text(len(added.pictures), 'picture')}{scored}.")
     # what readers of a published corpus will look for
     missing = [
-        name
-        for name in ("license", "creator", "date")
-        if not publication.stored.get(name.replace("creator", "creators"))
+        name for name in ("license", "creator", "date") if not publication.get(name.replace("creator", "creators"))
     ]
     if missing:
         show.text(

@@ -18,24 +18,23 @@ import xarray as xr
 from numpy.typing import NDArray
 from xarray.conventions import encode_cf_variable
 
-from gen.corpus.acdd import publication_attributes
 from gen.corpus.choice import channel_names, chosen_channels, chosen_records
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import COUNTED, Manifest, read_manifest, recipe_text
 from gen.corpus.numbering import new_numbers
-from gen.corpus.publication import Publication
 from gen.corpus.schema import SIGNAL
 from gen.corpus.where import nearest
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 from gen.support.progress import Progress, counter
+from raceway.sharing.acdd import publication_attributes
 from raceway.sharing.joining import check_fit, check_repeats, sample_digests, with_same_variables
 
 _MOST_IN_BLOCK = 1024  # records; scenarios are text of some kilobytes a record
 _SPAN = 8  # times the records of a block; variables are read with those of the records between the chosen ones
 _SAME = ("Conventions", "raceway_format")  # global attributes of every corpus
 _OF_THE_WHOLE = ("summary", "id", "naming_authority")  # facts of publication that a choice of records does not have
-_FACTS_OF_THE_WHOLE = {"recipe_sha256", "overrides", "recordings"}
+_FACTS_OF_THE_WHOLE = {"overrides", "recordings"}
 
 
 class Block(NamedTuple):
@@ -99,10 +98,10 @@ class Chosen:
         return channel_names(self.corpora[0])
 
     @property
-    def publication(self) -> Publication:
+    def publication(self) -> dict[str, Any]:
         """Licence, creators and references if they are the same for all corpora; else none, since they cannot be joined."""
         first, *others = (manifest.publication for manifest in self.manifests)
-        return first if all(other == first for other in others) else Publication()
+        return first if all(other == first for other in others) else {}
 
     @cached_property
     def title(self) -> str:
@@ -137,8 +136,8 @@ class Chosen:
 
     def facts(self) -> dict[str, Any]:
         """Fields of the manifest of a copy: those that all corpora share, and all sentences of any; of a choice, no hash of the whole."""
-        each = [manifest.model_dump(mode="json", exclude_unset=True) for manifest in self.manifests]
-        left_out = {*COUNTED, "title"} | (_FACTS_OF_THE_WHOLE if self.asked else set())
+        each = [manifest.content for manifest in self.manifests]
+        left_out = {*COUNTED, "title", "publication", "recipe_sha256"} | (_FACTS_OF_THE_WHOLE if self.asked else set())
         fields: dict[str, Any] = {"title": self.title, "publication": self.publication}
         for name in dict.fromkeys(name for facts in each for name in facts if name not in left_out):
             values = [facts.get(name) for facts in each]

@@ -11,15 +11,15 @@ from typing import Any
 
 import xarray as xr
 
-from gen.corpus.acdd import content_id, license_address, publication_attributes
 from gen.corpus.disk import CROISSANT_NAME, sha256, write_text_durably
 from gen.corpus.index import open_corpus
+from gen.corpus.lazy import stored_classes
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
-from gen.corpus.publication import Publication
 from gen.corpus.schema import SIGNAL, class_names, listed_flags
-from gen.corpus.slices import read_classes
+from raceway.sharing.acdd import content_id, license_address, publication_attributes
 from raceway.sharing.card.card_page import card_folder
 from raceway.sharing.card.citation import citation
+from raceway.sharing.publication import Publication, publication_of
 
 _PARTS = {
     "@type": "cr:FileSet",
@@ -97,7 +97,7 @@ def croissant(path: Path) -> dict[str, Any]:
             # a version that follows from the content
             "version": f"1.0.0+{content_id(manifest)[:8]}",
             "isLiveDataset": False,
-            **_publication_facts(manifest.publication),
+            **_publication_facts(publication_of(manifest)),
             "citeAs": citation(title, manifest),
             "distribution": [
                 *(_file(name, file, kinds[file.suffix], hashes.get(name)) for name, file in files.items()),
@@ -106,7 +106,7 @@ def croissant(path: Path) -> dict[str, Any]:
             "recordSet": [
                 _records(
                     corpus,
-                    read_classes(corpus_files(path, "size")[-1]),
+                    stored_classes(corpus_files(path, "size")[-1]),
                     {"fileObject": {"@id": path.name}} if path.is_file() else {"fileSet": {"@id": "parts"}},
                 ),
             ],

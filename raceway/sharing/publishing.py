@@ -1,20 +1,30 @@
 """Terms of use of a finished corpus, and the pages that describe it: the data card ``README.md``, and ``croissant.json``."""
 
+import json
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from gen.corpus import Publication
-from gen.corpus.acdd import publication_attributes
-from gen.corpus.disk import remove_left_behind_of, writing
-from gen.corpus.finishing import finish_corpus, remove_temporary_files
-from gen.corpus.index import corpus_attributes, rewrite_attributes
+import h5py
+
+from gen.corpus.disk import append_checksum, remove_checksum, remove_left_behind_of, whole_or_not_at_all, writing
+from gen.corpus.finishing import remove_temporary_files
 from gen.corpus.locking import lock
-from gen.corpus.manifest import corpus_files, facts_of_parts, read_manifest, recipe_text
-from gen.corpus.publication import read_publication
+from gen.corpus.manifest import (
+    INDEX_NAME,
+    Manifest,
+    finished,
+    read_manifest,
+    write_manifest,
+)
+from gen.corpus.part import write_texts
+from gen.corpus.trust import LIBRARY_LOCK, attributes_of
+from raceway.sharing.acdd import attributes_or_none
 from raceway.sharing.card.additions import read_additions, write_additions
 from raceway.sharing.card.card_page import card_folder, check_card, write_card
 from raceway.sharing.croissant import write_croissant
+from raceway.sharing.publication import Publication, read_publication
 
 
 def describe(path: Path | str) -> None:
@@ -32,6 +42,8 @@ def describe(path: Path | str) -> None:
         with writing(folder):
             folder.mkdir(exist_ok=True)
         write_additions(folder, read_additions(folder, manifest))
+    else:
+        _write_attributes(path / INDEX_NAME, manifest)
     write_card(path)
     write_croissant(path)
 
@@ -60,21 +72,30 @@ def publish(path: Path | str, publication: Publication | Mapping[str, Any]) -> N
         publication = read_publication(publication)
     # a card that somebody else wrote is not replaced
     check_card(path)
-    corpus_files(path)
-    manifest = read_manifest(path)
-    publication = publication.dated()
-    facts = manifest.model_dump(mode="json", exclude_unset=True) | {"publication": publication}
+    manifest = finished(path)
+    published = manifest.model_copy(update={"publication": publication.dated().stored})
     if path.is_file():
         remove_left_behind_of(path)
-        if publication == manifest.publication:
-            return
-        # a single file keeps its counts, of which it has no parts to count
-        content = facts_of_parts([], facts) | {"records": manifest.records, "signals": manifest.signals._asdict()}
-        content |= {"parts_sha256": manifest.parts_sha256} if manifest.parts_sha256 else {}
-        old = {*facts, *publication_attributes(manifest)} - {"raceway_format"}
-        rewrite_attributes(path, old, corpus_attributes(content, recipe_text(path), path))
+        if published != manifest:
+            _write_attributes(path, published)
         return
     with lock(path):
         remove_temporary_files(path)
-        finish_corpus(path, manifest.parts, **facts)
+        write_manifest(path, published.content)
         describe(path)
+
+
+def _write_attributes(file: Path, manifest: Manifest) -> None:
+    """Give a single file, or an index, the attributes of publication, in a copy that takes its place."""
+    wanted = {"publication": json.dumps(manifest.publication) if manifest.publication else None}
+    wanted |= attributes_or_none(manifest)
+    with whole_or_not_at_all(file) as temporary:
+        shutil.copyfile(file, temporary)
+        remove_checksum(temporary)
+        with LIBRARY_LOCK, h5py.File(temporary, "r+") as changed:
+            before = attributes_of(changed)
+            other = {name: value for name, value in wanted.items() if (value or None) != before.get(name)}
+            for name in other.keys() & before.keys():
+                del changed.attrs[name]
+        write_texts(temporary, {name: value for name, value in other.items() if value})
+        append_checksum(temporary)

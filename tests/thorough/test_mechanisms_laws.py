@@ -9,10 +9,10 @@ import pytest
 from scipy.stats import kurtosis
 
 from gen import generate, open_corpus
-from gen.corpus import clipped_records
 from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
+from raceway.console.corpus_counts import clipped_records
 from tests.gen.measurement.test_record_rms_laws import check
 from tests.reference_machine import (
     FS,

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gen.corpus import open_corpus, read_manifest, read_publication, sha256, validate_corpus
+from gen.corpus import open_corpus, read_manifest, sha256, validate_corpus
 from gen.generation.corpus import generate
 from raceway import describe, publish
 from raceway.importing import import_generic
 from raceway.sharing.card.card_page import card_folder
+from raceway.sharing.publication import read_publication
 from tests.labels import write_labels
 
 FACTS = {
@@ -41,8 +42,8 @@ OF_THE_WHOLE = {
 @pytest.fixture(scope="module")
 def simulated(write_recipe, tmp_path_factory):
     folder = tmp_path_factory.mktemp("simulated")
-    made = generate(write_recipe(folder / "small.yaml", {"publication": FACTS}), folder / "corpus", records=8).path
-    describe(made)
+    made = generate(write_recipe(folder / "small.yaml"), folder / "corpus", records=8).path
+    publish(made, FACTS)
     return made
 
 

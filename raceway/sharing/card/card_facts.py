@@ -9,17 +9,19 @@ from gen.corpus.choice import per_record
 from gen.corpus.contents import (
     UNITS,
     by_class,
-    clipped_records,
     extent,
-    fault_counts,
-    split_counts,
-    text_counts,
     unit_counts,
-    units_in_several_splits,
 )
 from gen.corpus.manifest import RECIPE_NAME, Manifest
 from gen.corpus.schema import ROLES, SPLITS, stored_unit
 from gen.corpus.unusable import counts_in_words
+from raceway.console.corpus_counts import (
+    clipped_records,
+    fault_counts,
+    split_counts,
+    text_counts,
+    units_in_several_splits,
+)
 
 _NEW = "../again"
 
@@ -92,8 +94,7 @@ def _cell(found: tuple[float, ...] | None) -> str:
 def rebuilding(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
     """Words of the command that makes the corpus again; empty if none does."""
     if manifest.recipe_sha256 is not None:
-        overrides = manifest.overrides.model_dump() if manifest.overrides is not None else {}
-        given = [(f"--{name}", str(overrides[name])) for name in ("seed", "records") if overrides.get(name) is not None]
+        given = [(f"--{name}", str(value)) for name, value in (manifest.overrides or {}).items() if value is not None]
         return ["raceway", "generate", RECIPE_NAME, *(word for pair in given for word in pair), "-o", _NEW]
     if manifest.recordings is not None and manifest.importer is not None:
         window = corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])

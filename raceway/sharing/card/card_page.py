@@ -10,14 +10,16 @@ import xarray as xr
 from gen.corpus.disk import CARD_NAME, CARD_SUFFIX, corpus_around, place_of, write_text_durably
 from gen.corpus.fault_classes import FAULTS
 from gen.corpus.index import open_corpus
+from gen.corpus.lazy import stored_classes
 from gen.corpus.manifest import RECIPE_NAME, Manifest, corpus_files, read_manifest, recipe_text
 from gen.corpus.schema import listed_flags
-from gen.corpus.slices import codec_of, read_classes
+from gen.corpus.trust import codec_of
 from gen.support.errors import CorpusError
 from raceway.sharing.card import additions
 from raceway.sharing.card.card_facts import card_facts
 from raceway.sharing.card.citation import citation
 from raceway.sharing.card.markdown import code_text, plain_text
+from raceway.sharing.publication import publication_of
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -61,7 +63,7 @@ def data_card(path: Path | str) -> str:
 def card_text(corpus: xr.Dataset, manifest: Manifest, added: additions.CardAdditions, path: Path, first: Path) -> str:
     """Page of an opened corpus that lies at ``path``, whose ``first`` file has signals."""
     title = str(corpus.attrs.get("title", "Untitled corpus"))
-    publication, single = manifest.publication, path.is_file()
+    publication, single = publication_of(manifest), path.is_file()
     # what a person has stated, with a row for each
     terms = (
         ("licence", publication.license),
@@ -81,7 +83,7 @@ def card_text(corpus: xr.Dataset, manifest: Manifest, added: additions.CardAddit
         whole=path.name if single else None,
         file=path.name if single else first.relative_to(path).as_posix(),
         zstd=codec_of(first) == "zstd",
-        faulty=listed_flags({code: name for code, name in read_classes(first).items() if name in FAULTS[1:]}),
+        faulty=listed_flags({code: name for code, name in stored_classes(first).items() if name in FAULTS[1:]}),
         citation=citation(title, manifest),
         most=MOST_SENTENCES,
     )

@@ -4,11 +4,12 @@ from collections.abc import Sequence
 
 from gen.corpus.manifest import Manifest
 from raceway.sharing.card.markdown import plain_text
+from raceway.sharing.publication import publication_of
 
 
 def citation(title: str, manifest: Manifest) -> str:
     """Citation as a sentence."""
-    publication, title = manifest.publication, plain_text(title)
+    publication, title = publication_of(manifest), plain_text(title)
     names = [plain_text(person.name) for person in publication.creators]
     year = f" ({publication.date[:4]})" if publication.date else ""
     tool = f"Raceway {plain_text(manifest.versions.get('raceway', ''))}".strip()

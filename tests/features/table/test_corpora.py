@@ -47,6 +47,14 @@ def make_corpus(directory, spoiled=None, change=lambda dataset: dataset):
     return directory
 
 
+@pytest.fixture(scope="module", autouse=True)
+def small_blocks():
+    """Several blocks of a small corpus."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("gen.corpus.lazy._BLOCK_RECORDS", RECORDS)
+        yield
+
+
 @pytest.fixture(scope="module")
 def corpus(tmp_path_factory):
     return make_corpus(tmp_path_factory.mktemp("corpus") / "corpus")
@@ -106,7 +114,7 @@ def test_a_missing_count_is_not_used_as_a_sample(tmp_path):
 
 
 def test_a_single_file_is_worked_on_block_by_block(tmp_path, table, monkeypatch):
-    monkeypatch.setattr("gen.corpus.slices._BLOCK_RECORDS", 4)
+    monkeypatch.setattr("gen.corpus.lazy._BLOCK_RECORDS", 4)
     done = []
     found = feature_table(make_corpus(tmp_path / "c.nc"), progress=lambda *counts: done.append(counts))
     xr.testing.assert_equal(found, table)

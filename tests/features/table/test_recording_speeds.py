@@ -49,6 +49,14 @@ def write_machines(folder, *, per_part=7, extra=(), spoiled=(), speeds=None):
     return write_records(folder, signal, FS, columns, title="machines", per_part=per_part, extra=extra)
 
 
+@pytest.fixture(scope="module", autouse=True)
+def small_blocks():
+    """Several blocks of a small corpus."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("gen.corpus.lazy._BLOCK_RECORDS", 7)
+        yield
+
+
 @pytest.fixture(scope="module")
 def corpus(tmp_path_factory):
     return write_machines(tmp_path_factory.mktemp("machines") / "corpus")

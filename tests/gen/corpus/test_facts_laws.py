@@ -5,16 +5,8 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.corpus import (
-    FAULT_NAMES,
-    FAULTS,
-    FaultCounts,
-    by_class,
-    class_counts,
-    fault_counts,
-    unit_counts,
-    units_in_several_splits,
-)
+from gen.corpus import FAULT_NAMES, FAULTS, by_class, class_counts, unit_counts
+from raceway.console.corpus_counts import FaultCounts, fault_counts, units_in_several_splits
 
 INNER, HEALTHY = FAULTS.index("inner"), FAULTS.index("healthy")
 COLUMNS = {

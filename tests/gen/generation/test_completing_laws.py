@@ -75,7 +75,7 @@ def changed(before):
     return [path for path, stat in before.items() if path.exists() and path.stat().st_mtime_ns != stat.st_mtime_ns]
 
 
-@pytest.mark.parametrize("step", [None, "corpus.finishing.join_parts", "generation.corpus.remove_parts"])
+@pytest.mark.parametrize("step", [None, "corpus.finishing._join_parts", "generation.corpus.remove_parts"])
 def test_files_of_the_user_beside_the_parts_of_a_file_stay(recipe_file, single, tmp_path, monkeypatch, step):
     target = tmp_path / "c.nc"
     notes = [tmp_path / "c.nc.parts" / name for name in ("notes.txt", "parts/notes.txt")]
@@ -84,7 +84,7 @@ def test_files_of_the_user_beside_the_parts_of_a_file_stay(recipe_file, single, 
         notes[1].parent.mkdir(parents=True)
     else:
         with monkeypatch.context() as patch:
-            patch.setattr(f"gen.{step}", lambda *_: 1 / 0)
+            patch.setattr(f"gen.{step}", lambda *_, **_named: 1 / 0)
             with pytest.raises(ZeroDivisionError):
                 generate(recipe_file, target)
     for note in notes:

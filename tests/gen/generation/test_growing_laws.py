@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from gen.corpus import RECIPE_NAME, open_corpus, part_name, read_manifest, validate_corpus
-from gen.corpus.manifest import facts_of_parts, write_manifest
+from gen.corpus.manifest import manifest_of_parts, write_manifest
 from gen.generation.corpus import generate
 from gen.recipe import read_recipe
 from gen.support.errors import CorpusError, RecipeError
@@ -82,6 +82,6 @@ def test_parts_beyond_the_hundred_thousandth_are_in_the_order_of_their_records(c
         shutil.copy(copied / "parts" / part_name(0), copied / "parts" / name)
     for number in range(3):
         (copied / "parts" / part_name(number)).unlink()
-    write_manifest(copied, facts_of_parts([], {"title": "unfinished"}, complete=False))
+    write_manifest(copied, manifest_of_parts([], {"title": "unfinished"}, complete=False).content)
     assert (copied / RECIPE_NAME).is_file()
     assert [row.name for row in read_manifest(copied).parts] == names

@@ -84,7 +84,7 @@ def test_facts_pictures_and_scores_reach_the_card_and_no_part_changes(told, copi
         assert sentence in text
     assert len(found["pictures"]) == 3
     assert found["scores"] == {"linear": 0.8125}
-    assert read_manifest(copied).publication.stored == found["publication"]
+    assert read_manifest(copied).publication == found["publication"]
     for path in map(Path, found["pictures"]):
         assert f"](pictures/{path.name})" in text
         assert path.stat().st_size < 100_000

@@ -6,13 +6,14 @@ import shutil
 import numpy as np
 import pytest
 
-from gen.corpus import FAULTS, open_corpus, read_manifest, read_publication
+from gen.corpus import FAULTS, open_corpus, read_manifest
 from gen.corpus.manifest import Manifest
 from gen.support.errors import CorpusError
 from raceway import publish
 from raceway.sharing.card.additions import CardAdditions, CardPicture, write_additions
 from raceway.sharing.card.card_facts import ranges, rebuilding
 from raceway.sharing.card.card_page import data_card
+from raceway.sharing.publication import read_publication
 from tests.tone_corpora import write_corpus
 
 

@@ -7,10 +7,11 @@ import pytest
 from xarray.conventions import encode_cf_variable
 
 from gen import open_corpus, validate_corpus
-from gen.corpus import SIGNAL, Publication, open_part, read_manifest
+from gen.corpus import SIGNAL, open_part, read_manifest
 from gen.support.errors import CorpusError
 from raceway import copy, publish
 from raceway.console.ending import BAD_INPUT
+from raceway.sharing.publication import Publication
 from tests import corpora, tone_corpora
 from tests.same_corpora import files
 
@@ -63,7 +64,7 @@ def test_copying_there_and_back_gives_the_same_bytes(source, tmp_path):
     assert files(tmp_path / "two") == files(tmp_path / "one")
     assert files(tmp_path / "two.nc") == files(tmp_path / "one.nc")
     assert (tmp_path / "two" / "recipe.yaml").read_text() == "name: small\n"
-    assert read_manifest(tmp_path / "two.nc").publication.license == "CC-BY-4.0"
+    assert read_manifest(tmp_path / "two.nc").publication["license"] == "CC-BY-4.0"
 
 
 def test_an_altered_corpus_is_not_copied(source, tmp_path):
@@ -111,7 +112,7 @@ def test_the_history_tells_the_choice_and_the_manifest_keeps_the_publication(sou
             "copied by raceway copy: where rig < 8; channels a",
             "copied by raceway copy: split test",
         ]
-    assert read_manifest(tmp_path / "two").publication.license == "CC-BY-4.0"
+    assert read_manifest(tmp_path / "two").publication["license"] == "CC-BY-4.0"
     with open_part(tmp_path / "two" / "parts" / "part-00000.nc") as part:  # terms can change, and parts cannot
         assert not {"license", "comment"} & set(part.attrs)
 

@@ -13,11 +13,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import raceway
-from gen.corpus import SIGNAL, Publication, new_corpus, open_corpus
+from gen.corpus import SIGNAL, new_corpus, open_corpus
 from gen.support.errors import CorpusError
 from raceway import publish
 from raceway.sharing import FORMS
 from raceway.sharing.form_columns import plain_names
+from raceway.sharing.publication import Publication
 from tests.corpora import dataset, write_corpus, write_parts
 from tests.same_corpora import files
 

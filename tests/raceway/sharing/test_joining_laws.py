@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 
 import gen
 from gen import generate, open_corpus, validate_corpus
-from gen.corpus import SCHEMA, SIGNAL, Publication, identity, make_dataset, new_corpus, read_manifest
+from gen.corpus import SCHEMA, SIGNAL, identity, make_dataset, new_corpus, read_manifest
 from gen.corpus.numbering import NUMBERS, new_numbers
 from gen.support.errors import CorpusError
 from raceway import copy, publish
+from raceway.sharing.publication import Publication
 from tests import corpora, tone_corpora
 
 
@@ -164,8 +165,8 @@ def test_facts_are_kept_if_all_corpora_have_them(tones, tmp_path):
         publish(folder, Publication(license="CC-BY-4.0", date="2026-01-02"))
     copy(published, tmp_path / "same")
     copy([published[1], tones[2]], tmp_path / "other")
-    assert read_manifest(tmp_path / "same").publication.license == "CC-BY-4.0"
-    assert read_manifest(tmp_path / "other").publication.license is None
+    assert read_manifest(tmp_path / "same").publication["license"] == "CC-BY-4.0"
+    assert read_manifest(tmp_path / "other").publication == {}
     with open_corpus(tmp_path / "same") as corpus:
         assert corpus.attrs["title"] == "tones"
         assert corpus.attrs["history"].endswith("copied by raceway copy: joined 2 corpora")

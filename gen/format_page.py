@@ -37,7 +37,7 @@ as JSON where they are not text. A fact without content is left out:
 | fact | content |
 |---|---|
 | `title`, `recipe` | title of the corpus, name of its recipe |
-| `recipe_sha256` | hash of the recipe, if whole parts of it are here; `raceway generate` completes such a corpus |
+| `recipe_sha256` | hash of the recipe, if its parts are here as they were generated; `raceway generate` completes such a corpus |
 | `sources_sha256`, `versions` | hash of the sources of Raceway that made the records; versions of Raceway, libraries and plug-ins |
 | `records` | number of records |
 | `parts_sha256` | hash over those of the parts; a single file has that of the parts that it was made of |
@@ -50,7 +50,7 @@ as JSON where they are not text. A fact without content is left out:
 | `recipe_text` | attribute only: the recipe as in `recipe.yaml` |
 
 Every file has `Conventions`, `raceway_format`, `title`, `history`, `source` and `signals`. `index.nc` and single files
-have all facts and the attributes of [publication](sharing.md).
+have all facts; `raceway.describe` and `raceway.publish` add the attributes of [publication](sharing.md).
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
 a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;

@@ -7,8 +7,8 @@ have. No variable has a CF standard name (the table has none for vibration), so 
 from uuid import NAMESPACE_OID, uuid5
 
 from gen.corpus.manifest import Manifest
-from gen.corpus.publication import Creator
 from gen.corpus.schema import FORMAT
+from raceway.sharing.publication import Creator, publication_of
 
 _KEYWORDS = (
     "bearing vibration, rolling bearing, bearing fault, fault diagnosis, condition monitoring, labelled recordings"
@@ -23,15 +23,20 @@ _BOTH = (
 
 
 def publication_attributes(manifest: Manifest) -> dict[str, str]:
-    """Global attributes of ``index.nc``, of single files and of copies in other forms, beside those of the parts.
+    """Global attributes of ``index.nc``, of single files and of copies in other forms, beside those of the parts."""
+    return {name: value for name, value in attributes_or_none(manifest).items() if value}
 
-    They follow from the manifest alone: its ``publication``, its counts and the hash of its parts.
-    """
-    publication = manifest.publication
+
+def attributes_or_none(manifest: Manifest) -> dict[str, str | None]:
+    """All attributes that a corpus can have; they follow from its ``publication``, its counts and the hash of its parts."""
+    publication = publication_of(manifest)
     recorded = _RECORDED if manifest.recipe is None else _BOTH
     platform, instrument, made = _SIMULATED if manifest.importer is None else recorded
-    # what follows from the corpus itself
-    fixed = {
+    creators = publication.creators
+    institutional = all(creator.name == publication.institution for creator in creators)
+    publisher = publication.institution or ", ".join(creator.name for creator in creators)
+    return {
+        # what follows from the corpus itself
         "summary": f"{manifest.records} labelled records of bearing vibration, {made}, with fault class, speed, load and nominal fault "
         f"frequencies of each.",
         "keywords": f"{_KEYWORDS}, {made}",
@@ -41,12 +46,7 @@ def publication_attributes(manifest: Manifest) -> dict[str, str]:
         "product_version": _product_version(manifest),
         "platform": platform,
         "instrument": instrument,
-    }
-    creators = publication.creators
-    institutional = all(creator.name == publication.institution for creator in creators)
-    publisher = publication.institution or ", ".join(creator.name for creator in creators)
-    # what a person has to say, and may have left out
-    given = {
+        # what a person has to say, and may have left out
         "license": _license(publication.license),
         "creator_name": ", ".join(creator.name for creator in creators),
         "creator_type": ("institution" if institutional else "person") if creators else None,
@@ -62,7 +62,6 @@ def publication_attributes(manifest: Manifest) -> dict[str, str]:
         "metadata_link": f"https://doi.org/{publication.doi}" if publication.doi else None,
         "date_created": publication.date,
     }
-    return fixed | {name: value for name, value in given.items() if value}
 
 
 def content_id(manifest: Manifest) -> str:

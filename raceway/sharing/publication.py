@@ -13,6 +13,7 @@ from typing import Annotated, Any, Self
 from packaging.licenses import InvalidLicenseExpression, canonicalize_license_expression
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
+from gen.corpus.manifest import Manifest
 from gen.support.errors import CorpusError
 
 EPOCH = "SOURCE_DATE_EPOCH"
@@ -153,6 +154,11 @@ class Publication(BaseModel):
                 f"{EPOCH}: {seconds!r} is not a time; give whole seconds since 1970, or unset it."
             ) from None
         return self.model_copy(update={"date": day.isoformat()})
+
+
+def publication_of(manifest: Manifest) -> Publication:
+    """Facts of publication of a corpus; CorpusError if somebody wrote wrong ones into its manifest."""
+    return read_publication(manifest.publication)
 
 
 def read_publication(facts: Mapping[str, Any]) -> Publication:
