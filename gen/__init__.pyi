@@ -1,4 +1,5 @@
 from .corpus import open_corpus as open_corpus, validate_corpus as validate_corpus
+from .corpus.plain_arrays import to_arrays as to_arrays
 from .corpus.items import torch_dataset as torch_dataset
 from .generation.corpus import generate as generate
 from .generation.memory import record as record, records as records, simulate as simulate

@@ -22,6 +22,7 @@ new           a new corpus, part by part
 where         conditions on records: parsed, never run
 choice        choice of records and channels
 items         records one by one or in batches, for training
+plain_arrays  plain arrays in and out
 numbering     numbers of machines, bearings and recordings
 validation    all checks of a corpus
 ============= ======================================================================

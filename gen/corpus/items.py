@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.choice import channel_names, chosen_channels, chosen_records, operating_variables, per_record
-from gen.corpus.index import open_corpus
+from gen.corpus.index import corpus_name, open_corpus
 from gen.corpus.manifest import Check
 from gen.corpus.schema import SIGNAL, class_names
 from gen.corpus.where import nearest
@@ -115,7 +115,7 @@ class LabelledRecords(Shown):
 
 
 def torch_dataset(
-    corpus: Path | str,
+    corpus: Path | str | xr.Dataset,
     *,
     split: str | None = None,
     where: str | None = None,
@@ -131,8 +131,8 @@ def torch_dataset(
 
     Parameters
     ----------
-    corpus : path
-        Folder of a corpus, or a corpus in one file.
+    corpus : path or Dataset
+        Folder of a corpus, a corpus in one file, or one that has been opened.
     split : {"train", "validation", "test"}, optional
         Name of a split.
     where : str, optional
@@ -156,7 +156,7 @@ def torch_dataset(
     opened = open_corpus(corpus, check)
     known = channel_names(opened)
     places = chosen_channels(known, channels)
-    numbers, names = _labels(opened, label, f"{corpus}")
+    numbers, names = _labels(opened, label, corpus_name(corpus))
     (records,) = chosen_records([opened], where, split)
     chosen = tuple(known[place] for place in places)
     # labels are read now, signals when they are asked for

@@ -1,15 +1,17 @@
-"""Records in memory written as a corpus: simulated ones, changed or not, or others with the variables of the format.
+"""Records in memory written as a corpus: simulated ones, changed or not, others with the variables of the format, or plain arrays.
 
 A record keeps its scenario, from which it can be replayed, if its signal is the one that the scenario gave. All records of one recipe give
 a corpus with this recipe.
 """
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gen.corpus import (
     DRAWS,
@@ -25,6 +27,7 @@ from gen.corpus import (
     new_corpus,
 )
 from gen.corpus.numbering import new_numbers
+from gen.corpus.plain_arrays import records_of_arrays
 from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
 from gen.generation.labels import LABELS
 from gen.measurement.measure import LARGEST_COUNT
@@ -32,21 +35,37 @@ from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
 from gen.recipe.sensing import RecordingSection
 from gen.support.errors import CorpusError
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 _NOT_A_COUNT = 0.01  # largest distance of a decoded sample from a count; single precision comes within 0.004
 
 
-def write_corpus(records: xr.Dataset, target: Path | str) -> Path:
+def write_corpus(
+    records: xr.Dataset | NDArray[Any],
+    target: Path | str,
+    *,
+    fs: float | None = None,
+    labels: "pd.DataFrame | Mapping[str, ArrayLike] | None" = None,
+) -> Path:
     """Write records in memory as a corpus.
 
     Parameters
     ----------
-    records : Dataset
+    records : Dataset or array
         One or several records with the variables of the format, in any order: from :func:`gen.record`, :func:`gen.records`,
         :func:`gen.simulate` or :func:`gen.open_corpus`, whole or chosen, changed, or joined with :func:`xarray.concat`. Variables of shape
         (record,) can be added, with the attributes ``long_name`` and ``role``. A record whose signal was filtered, scaled or cut is written
         without its scenario, so that it cannot be replayed. Signals are stored as float32 unless all are counts of one converter.
+        Or accelerations [m s-2] of shape (record, time) or (record, channel, time).
     target : path
         New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
+    fs : float
+        Sample rate of an array [Hz].
+    labels : DataFrame or mapping of columns
+        Of an array, one row for each record: ``fault`` (name of the class) and ``specimen`` (the physical bearing, by number or name), and
+        further variables of the :data:`format <gen.corpus.SCHEMA>`, such as ``shaft_rate`` or ``shaft_rpm``, ``load_n``, ``bpfo``,
+        ``rig``, ``split``. Those that are left out are not known; all records are of one rig, for training.
 
     Returns
     -------
@@ -60,7 +79,8 @@ def write_corpus(records: xr.Dataset, target: Path | str) -> Path:
     """
     target = Path(target).absolute()
     check_new(target)
-    rows = records_in_memory(records)
+    plain = isinstance(records, np.ndarray) or fs is not None or labels is not None
+    rows = records_in_memory(records_of_arrays(records, fs, labels) if plain else records)
     draws = rows[DRAWS].values.astype(str) if DRAWS in rows else np.full(rows.sizes["record"], "")
     recipes = [_recipe_of(text) if text else None for text in draws]
     signal, full_scale, unchanged = _signal(rows[SIGNAL].values, recipes)

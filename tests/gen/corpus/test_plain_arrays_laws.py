@@ -1,0 +1,79 @@
+"""Laws of plain arrays: a corpus gives back the signals, classes and groups that it was written from."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from sklearn.model_selection import GroupKFold
+
+import gen
+from gen.corpus import FAULTS
+from gen.support.errors import CorpusError
+
+FS, SHAPE = 2000.0, (6, 2, 400)
+SIGNALS = np.random.default_rng(0).normal(size=SHAPE).astype(np.float32)
+LABELS = {"fault": ["inner", "healthy"] * 3, "specimen": ["b", "a", "b", "c", "c", "a"], "shaft_rpm": 1500.0}
+
+
+@pytest.mark.parametrize("x", [SIGNALS, SIGNALS[:, 0]], ids=["channels", "one channel"])
+@pytest.mark.parametrize("name", ["c", "c.nc"])
+def test_signals_classes_and_groups_come_back(tmp_path, name, x):
+    corpus = gen.write_corpus(x, tmp_path / name, fs=FS, labels=pd.DataFrame(LABELS))
+    assert gen.validate_corpus(corpus) == []
+    found = gen.to_arrays(corpus)
+    np.testing.assert_array_equal(found.X, x.reshape(6, -1, 400))
+    assert found.y.tolist() == LABELS["fault"]
+    assert found.groups.tolist() == [1, 0, 1, 2, 2, 0]
+    for train, test in GroupKFold(3).split(*found):
+        assert not set(found.groups[train]) & set(found.groups[test])
+    with gen.open_corpus(corpus) as opened:
+        assert (opened["shaft_rate"] == 25.0).all()
+        assert (opened["sample_rate"] == FS).all()
+        assert np.isnan(opened["load"]).all()
+
+
+def test_the_arrays_of_a_choice_are_those_of_its_records(tmp_path):
+    labels = LABELS | {"shaft_rpm": np.arange(6) * 60, "rig": [0, 0, 0, 1, 1, 1], "split": ["train", "test"] * 3}
+    corpus = gen.write_corpus(SIGNALS, tmp_path / "c", fs=FS, labels=labels)
+    found = gen.to_arrays(corpus, split="train", where="shaft_rpm > 60", channels=["channel_2"], label="shaft_rate")
+    np.testing.assert_array_equal(found.X, SIGNALS[[2, 4], 1:])
+    np.testing.assert_array_equal(found.y, [2, 4])
+    assert len(set(found.groups)) == 2
+
+
+def test_a_bearing_is_numbered_in_its_rig(tmp_path):
+    labels = LABELS | {"specimen": [0] * 6, "rig": [0, 0, 0, 1, 1, 1], "fault": [FAULTS.index("ball")] * 6}
+    found = gen.to_arrays(gen.write_corpus(SIGNALS, tmp_path / "c", fs=FS, labels=labels))
+    assert found.groups.tolist() == [0, 0, 0, 1, 1, 1]
+    assert set(found.y) == {"ball"}
+
+
+WRONG = {
+    "no sample rate": ({"fs": None}, {}, "an array needs fs, its sample rate in Hz"),
+    "no table": ({"labels": None}, {}, "an array needs fs, its sample rate in Hz, and labels"),
+    "a sample rate of zero": ({"fs": 0.0}, {}, "an array needs fs, its sample rate in Hz"),
+    "a sample rate of minus one": ({"fs": -1.0}, {}, "sample_rate is -1 Hz, not one rate from"),
+    "a class that is none": ({}, {"fault": ["iner"] * 6}, "fault has no value 'iner'; the nearest is inner."),
+    "a code that is none": ({}, {"fault": [99] * 6}, "fault has values other than 0 healthy"),
+    "half a bearing": ({}, {"n_spalls": [0.5] * 6}, "n_spalls has no value '0.5'; give numbers."),
+    "too few labels": ({}, {"fault": ["inner"] * 5}, "fault has shape (5,), not one value for each of 6 records."),
+    "words for speeds": ({}, {"shaft_rpm": ["fast"] * 6}, "shaft_rate has no value 'fast'; give numbers."),
+    "a column that is none": ({}, {"widht_mm": [1.0] * 6}, "there is no column widht_mm; the nearest is width_mm."),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_what_no_record_can_have_is_one_sentence_and_writes_nothing(tmp_path, wrong):
+    arguments, labels, sentence = WRONG[wrong]
+    with pytest.raises(CorpusError) as refused:
+        gen.write_corpus(
+            SIGNALS, tmp_path / "c", **{"fs": FS, "labels": LABELS | {"shaft_rpm": [1500] * 6} | labels} | arguments
+        )
+    assert sentence in str(refused.value)
+    assert "\n" not in str(refused.value)
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("x", [SIGNALS[0, 0], SIGNALS[:0], SIGNALS.astype(str), SIGNALS[None]])
+def test_other_shapes_are_refused(tmp_path, x):
+    with pytest.raises(CorpusError, match=r"give numbers of shape \(record, channel, time\)"):
+        gen.write_corpus(x, tmp_path / "c", fs=FS, labels=LABELS)
