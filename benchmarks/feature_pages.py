@@ -5,6 +5,7 @@ A table stands between ``<!-- table: NAME -->`` and ``<!-- end of table -->``; a
 
 import re
 import sys
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -52,7 +53,8 @@ def _features(features: Sequence[Feature]) -> str:
     varied = [(name, cells) for name, cells in columns if len(set(cells)) > 1]
     same = "; ".join(f"{name} {cells[0]}" for name, cells in columns if len(set(cells)) == 1)
     names, values = zip(*varied, strict=True)
-    return (f"In all rows: {same}\n\n" if same else "") + _markdown(names, zip(*values, strict=True))
+    above = textwrap.fill(f"In all rows: {same}", 120) + "\n\n" if same else ""
+    return above + _markdown(names, zip(*values, strict=True))
 
 
 def _cells(feature: Feature) -> Sequence[str]:

@@ -171,12 +171,10 @@ def _energies(band: Band) -> Iterator[Feature]:
         (ENERGY_ORDERS, "orders", "fr", "end of the band, shaft rate"),
     ):
         for low, high in pairwise(edges):
-            between = f"{low:g} to {high:g} {place}"
-            formula = f"ln of the integral of the power spectral density over {between}"
             yield _energy(
                 f"energy_{low:g}-{high:g}_{unit}",
-                f"logarithm of the energy from {between}",
-                formula,
+                f"logarithm of the energy from {low:g} to {high:g} {place}",
+                "ln of the integral of the power spectral density over the band",
                 parameters=parameters,
             )
 
