@@ -1,6 +1,6 @@
 """The tables of docs/running.md are those of the files of results."""
 
-from benchmarks.performance_pages import PAGE, tables, with_tables
+from benchmarks.performance_pages import PAGE, UNLISTED, tables, with_tables
 from benchmarks.results import every_result
 
 
