@@ -102,7 +102,7 @@ def test_commands_that_compute_features_pass_on_workers_and_scheduler(
     run, given, monkeypatch, tiny_corpus, command, more
 ):
     options = given("features.feature_table")
-    monkeypatch.setattr("features.baselines.Model.load", lambda _: SimpleNamespace(band=DEFAULT_BAND))
+    monkeypatch.setattr("features.baselines.Model.load", lambda _: SimpleNamespace(band=DEFAULT_BAND, groups=()))
     run(command, tiny_corpus, *more, "--workers", 3, "--scheduler", "tcp://a:1")
     assert (options["workers"], options["scheduler"]) == (3, "tcp://a:1")
     run(command, tiny_corpus, *more)

@@ -166,7 +166,7 @@ def test_a_broken_recipe_gets_one_sentence(tmp_path, whole, broken, sentence):
 )
 def test_rungs_that_the_faults_cannot_meet_are_refused(tmp_path, faults, sentence):
     pairs = WHOLE[: WHOLE.index("faults:")].replace("rigs: 2", "rigs: 2, rungs: [0, 1]")
-    assert sentence_of(tmp_path, f"{pairs}faults: {faults}\n") == sentence
+    assert sentence in sentence_of(tmp_path, f"{pairs}faults: {faults}\n")
 
 
 def test_every_thing_that_is_wrong_gets_a_sentence_of_its_own(tmp_path):

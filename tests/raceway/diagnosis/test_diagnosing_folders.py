@@ -115,7 +115,7 @@ def test_a_file_of_a_folder_that_states_another_rate_or_unit_is_read_as_it_state
 @pytest.mark.parametrize(
     ("files", "options", "sentence"),
     [
-        ((), (), "has no recording in it (.mat, .npy,"),
+        ((), (), "has no recording in it (.csv, "),
         (("a.txt",), (), "no recording can be used; the first of 1: campaign/a.txt: has no row of numbers"),
         (("a.txt",), ("-o", "mine"), "page.html: was not made by raceway"),
         (("a.txt",), ("-o", "mine/page.html"), "is a file; give a folder"),

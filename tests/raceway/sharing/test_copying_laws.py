@@ -183,7 +183,7 @@ def test_a_choice_is_copied_and_described(run, tones, tmp_path):
         ("{one} --split train -o {other}", "exists and is not an empty folder"),
         ("{one} {one} -o {out}", "has the same samples as record 0"),
         ("{one} -o {one}/parts/part-00000.nc", "choose a place outside it"),
-        ("{one} --to xls -o {out}", "there is no form 'xls'; allowed are parquet, huggingface"),
+        ("{one} --to xls -o {out}", "there is no form 'xls'; allowed is huggingface"),
         ("{one} --rename-channel housing -o {out}", "give OLD=NEW, once for each channel"),
         ("-o {out}", "Missing argument"),
     ],

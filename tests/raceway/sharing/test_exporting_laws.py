@@ -165,8 +165,12 @@ def test_hugging_face_gets_the_names_of_the_classes_that_are_there(tmp_path):
 @pytest.mark.parametrize(
     ("name", "to", "sentence"),
     [
-        ("out", "xls", r"to: there is no form 'xls'; allowed is huggingface; NAME.nc is netCDF"),
-        ("a.mat", None, "a.mat: copies are not written as .mat; NAME.nc is netCDF, which MATLAB, R, Julia and Octave"),
+        ("out", "xls", r"to: there is no form 'xls'; allowed is huggingface; NAME.parquet is a table"),
+        (
+            "a.mat",
+            None,
+            "a.mat: copies are not written as .mat; NAME.parquet is a table, NAME.nc is netCDF, which MATLAB",
+        ),
         ("a.zarr", None, "not written as .zarr; .*docs/sharing.md has lines of xarray for CSV and Zarr"),
         ("a.nc", "huggingface", "nc is one file, and to='huggingface' makes a folder; leave one of the two out"),
         ("a.parquet", None, "parquet: needs pyarrow; pip install pyarrow, or"),
