@@ -24,7 +24,9 @@ FORMS: Mapping[str, Callable[[Chosen, Path], None]] = {"huggingface": write_hugg
 """Forms that are folders of files: functions that write into a folder, with a README.md."""
 SUFFIXES = (".nc", ".parquet")
 """Suffixes of targets of one file; a target without is a folder."""
-_READ_BY_OTHERS = "NAME.parquet is a table, NAME.nc is netCDF, which MATLAB, R, Julia and Octave read; docs/sharing.md has lines of xarray for CSV and Zarr"
+_READ_BY_OTHERS = (
+    "NAME.parquet is a table, NAME.nc is read by MATLAB, R, Julia and Octave; docs/sharing.md writes CSV and Zarr"
+)
 _NEEDS = {"parquet": "pyarrow", "huggingface": "pyarrow"}
 """Package that a form needs and Raceway does not bring."""
 
