@@ -171,7 +171,7 @@ def test_hugging_face_gets_the_names_of_the_classes_that_are_there(tmp_path):
             None,
             "a.mat: copies are not written as .mat; NAME.parquet is a table, NAME.nc is read by MATLAB",
         ),
-        ("a.zarr", None, "not written as .zarr; .*docs/sharing.md has lines of xarray for CSV and Zarr"),
+        ("a.zarr", None, "not written as .zarr; .*docs/sharing.md writes CSV and Zarr"),
         ("a.nc", "huggingface", "nc is one file, and to='huggingface' makes a folder; leave one of the two out"),
         ("a.parquet", None, "parquet: needs pyarrow; pip install pyarrow, or"),
     ],
