@@ -5,10 +5,17 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
 
 import numpy as np
 import pytest
 
+from features.table.definitions import GROUPS, Feature, FeatureGroup
+from features.table.indicators import Orders, indicators
+from gen.mechanisms.chain.drift import Drift
+from gen.mechanisms.chain.sensor_fault import SensorFault
+from gen.mechanisms.mechanism import with_plugins
+from gen.support.errors import RacewayError
 from tests.page_examples import blocks
 from tests.paths import ROOT
 
@@ -189,3 +196,48 @@ def test_the_page_shows_the_example():
     shown = blocks("plugins.md") + blocks("plugins.md", "toml")
     assert len(shown) == 6
     assert [block for block in shown if block not in source] == []
+
+
+class Taken(Drift):
+    """A fault in the place of a built-in one."""
+
+
+class OfNoLevel(Drift):
+    """A fault that is drawn at no level."""
+
+    place, drawn_per = "of_no_level", "machine"
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "said"), [(Taken, "drift is taken"), (OfNoLevel, "drawn_per is 'machine' and not")]
+)
+def test_a_mechanism_that_breaks_a_rule_is_named_when_it_is_loaded(monkeypatch, mechanism, said):
+    entries = {"mine": EntryPoint("mine", "mine:Mine", "raceway.mechanisms")}
+    for module in ("gen.support.plugins", "gen.mechanisms.mechanism"):
+        monkeypatch.setattr(f"{module}.plugins", lambda _: entries)
+    monkeypatch.setattr("gen.mechanisms.mechanism.plugin", lambda *_: mechanism)
+    with pytest.raises(RacewayError, match=f"its mine in raceway.mechanisms cannot be used .{said}"):
+        with_plugins(SensorFault, (Drift,))
+
+
+@pytest.mark.parametrize(
+    ("group", "said"),
+    [
+        (
+            FeatureGroup((Feature("cepstral_bpfo_comb", "a name of another", "x"),), lambda x, *_: x[:, :1]),
+            "cepstral_bpfo_comb is taken",
+        ),
+        (
+            FeatureGroup((Feature("mine", "values in one dimension", "x"),), lambda x, *_: x[:, 0]),
+            r"the shape \(2,\) and not \(2, 1\)",
+        ),
+    ],
+)
+def test_a_group_of_features_that_breaks_a_rule_is_named_when_it_is_computed(monkeypatch, group, said):
+    entries = {"mine": EntryPoint("mine", "mine:GROUP", "raceway.features")}
+    monkeypatch.setattr("gen.support.plugins.plugins", lambda _: entries)
+    monkeypatch.setattr("features.table.definitions.plugin", lambda *_: group)
+    monkeypatch.setattr("features.table.definitions.ALL_GROUPS", (*GROUPS, "mine"))
+    x = np.random.default_rng(0).standard_normal((2, 6000))
+    with pytest.raises(RacewayError, match=f"its mine in raceway.features cannot be used .*{said}"):
+        indicators(x, 12_000.0, 25.0, Orders(*map(np.float64, (0.4, 3.6, 5.4, 2.4))), ("mine",))

@@ -18,7 +18,7 @@ import numpy as np
 
 from features.signal.lines import FAMILIES, FITTED_TOLERANCE
 from features.table.band import DEFAULT_BAND, Band
-from gen.support.plugins import plugin, plugins
+from gen.support.plugins import plugin, plugins, unusable
 
 ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
 
@@ -195,6 +195,10 @@ GROUPS = ("lines", "shape", "bands", "time")
 """Groups of a table for which none are named, so that no package that is installed changes it."""
 ALL_GROUPS = (*GROUPS, *plugins("features"))
 
+for _name in plugins("features"):
+    if _name in GROUPS:
+        raise unusable("features", _name, f"{_name} is taken")
+
 
 class FeatureGroup(NamedTuple):
     """A group of features of a plug-in."""
@@ -206,8 +210,17 @@ class FeatureGroup(NamedTuple):
 
 
 def added_group(group: str) -> FeatureGroup:
-    """Group of a plug-in."""
-    return plugin("features", group, FeatureGroup)
+    """Group of a plug-in.
+
+    Raises
+    ------
+    RacewayError
+        If the name of one of its features is taken.
+    """
+    added = plugin("features", group, FeatureGroup)
+    if same := {feature.name for feature in define_features()} & {feature.name for feature in added.features}:
+        raise unusable("features", group, f"{min(same)} is taken")
+    return added
 
 
 def define_features(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> tuple[Feature, ...]:

@@ -16,7 +16,9 @@ in ``GROUP_FEATURES``.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,6 +31,7 @@ from features.signal.shape import envelope_shape, moments, peaks, time_statistic
 from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd, whiten_cepstrally
 from features.table.band import DEFAULT_BAND, Band
 from features.table.definitions import ENERGY_ORDERS, GROUPS, SHAPES, added_group, define_features
+from gen.support.plugins import unusable
 
 __all__ = ["Orders", "feature_names", "indicators"]
 
@@ -118,13 +121,20 @@ def _features(
     by_group: dict[str, FloatArray] = {}
     for group in groups:
         if group not in by_group:  # one function may compute several groups
-            compute = GROUP_FEATURES.get(group)
-            by_group |= (
-                compute(x, fs, shaft_rate, orders, band)
-                if compute is not None
-                else {group: added_group(group).compute(x, fs, shaft_rate, orders, band)}
-            )
+            compute = GROUP_FEATURES.get(group, partial(_added, group))
+            by_group |= compute(x, fs, shaft_rate, orders, band)
     return np.concatenate([by_group[group] for group in groups], axis=-1)
+
+
+def _added(group: str, x: FloatArray, *others: Any) -> dict[str, FloatArray]:
+    """Values of a group of a plug-in."""
+    added = added_group(group)
+    values, wanted = added.compute(x, *others), (len(x), len(added.features))
+    if np.shape(values) != wanted:
+        raise unusable(
+            "features", group, f"its values have the shape {np.shape(values)} and not {wanted}, (record, feature)"
+        )
+    return {group: values}
 
 
 def _lines_and_shape(

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.support.errors import CorpusError, RacewayError
-from gen.support.plugins import missing_distributions, plugin, plugins
+from gen.support.plugins import missing_distributions, plugin, plugins, unusable
 
 
 class NominalLine(NamedTuple):
@@ -121,6 +121,8 @@ def fault_class(name: str) -> FaultClass:
     """Row of a class, or of records whose class is not known."""
     rows = {row.name: row for row in (*BUILT_IN, FaultClass(UNKNOWN, n_spalls=-1))}
     row = rows[name] if name in rows else plugin("classes", name, FaultClass)
+    if name not in rows and (row.name != name or row.companion not in ("", *FAULTS)):
+        raise unusable("classes", name, f"it is named {row.name}, and its companion {row.companion or 'none'}")
     return row._replace(name=name, words=row.words or f"{name.replace('_', ' ').capitalize()} fault")
 
 

@@ -1,15 +1,15 @@
 """What a mechanism of a recipe is: a section that some rigs or records have, with its key, its effect and its labels."""
 
 from collections.abc import Iterable, Iterator
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
 from gen.corpus.schema import Variable
-from gen.drawing import Probability, Section, composed, sections_with_places
-from gen.support.plugins import plugin, plugins
+from gen.drawing import Level, Probability, Section, composed, sections_with_places
+from gen.support.plugins import plugin, plugins, unusable
 
 FloatArray = NDArray[np.floating]
 Base = TypeVar("Base")
@@ -31,9 +31,30 @@ class Mechanism(Section):
 
 
 def with_plugins(base: type[Base], built_in: tuple[type[Base], ...]) -> tuple[type[Base], ...]:
-    """Classes that are built in, and those of plug-ins with the same base."""
-    added = (plugin("mechanisms", name, type) for name in plugins("mechanisms"))
-    return *built_in, *(mechanism for mechanism in added if issubclass(mechanism, base))
+    """Classes that are built in, and those of plug-ins with the same base, each with a key of its own.
+
+    Raises
+    ------
+    RacewayError
+        If the key of a plug-in is taken, or its draws are of no level.
+    """
+    classes = [*built_in]
+    for name in plugins("mechanisms"):
+        mechanism = plugin("mechanisms", name, type)
+        if not issubclass(mechanism, base):
+            continue
+        if (key := _key(mechanism)) in map(_key, classes):
+            raise unusable("mechanisms", name, f"{key} is taken")
+        if (level := getattr(mechanism, "drawn_per", None)) not in (None, *get_args(Level)):
+            raise unusable("mechanisms", name, f"drawn_per is {level!r} and not {', '.join(get_args(Level)[1:])}")
+        classes.append(mechanism)
+    return tuple(classes)
+
+
+def _key(mechanism: type) -> str:
+    """Key of a mechanism in a recipe: its place, or the kind of a fault."""
+    fields = getattr(mechanism, "model_fields", {})
+    return getattr(mechanism, "place", None) or "".join(get_args(fields["kind"].annotation) if "kind" in fields else ())
 
 
 def plugins_of(*recipes: Section) -> list[str]:

@@ -46,10 +46,16 @@ def plugin(group: str, name: str, of_type: type) -> Any:
     except Exception as error:  # noqa: BLE001 - code of other people
         loaded, reason = None, f"{type(error).__name__}: {error}"
     if reason:
-        raise RacewayError(
-            f"{_distribution(entry)}: its {name} in raceway.{group} cannot be used ({reason}); install another version, or uninstall it."
-        )
+        raise unusable(group, name, reason)
     return loaded
+
+
+def unusable(group: str, name: str, reason: str) -> RacewayError:
+    """Error about an object of a plug-in that breaks a rule of its group."""
+    return RacewayError(
+        f"{_distribution(plugins(group)[name])}: its {name} in raceway.{group} cannot be used ({reason}); install another version, or "
+        "uninstall it."
+    )
 
 
 def plugin_versions(group: str, names: Container[str]) -> dict[str, str]:

@@ -72,6 +72,8 @@ def read_recording(candidate: Candidate, length: int, fs: float, channels: tuple
             recording = candidate.read()
     except (OSError, MemoryError) as error:
         raise UnusableError(reason_of(error)) from error
+    if recording.fault not in (*FAULTS, UNKNOWN):
+        raise UnusableError(f"is of class {recording.fault!r}, and not one of {', '.join((*FAULTS, UNKNOWN))}")
     signal = np.atleast_2d(recording.signal)
     for name, channel in zip(channels, signal, strict=True):
         flaw = _flaw(channel, length, fs)

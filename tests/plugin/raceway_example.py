@@ -13,7 +13,7 @@ from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.background.source import MachineSource
 from gen.mechanisms.chain.sensor_fault import SensorFault
 from gen.mechanisms.faults.race_spalls import Spalls
-from gen.physics.catalogue import CATALOGUE
+from gen.physics.bearing_text import bearing_from_text
 from raceway.importing.assemble import Collection, Import, Importer, import_recordings
 from raceway.importing.recordings import Candidate, Recording, files_below
 
@@ -89,7 +89,7 @@ CROSSINGS = FeatureGroup(
 # an importer of CLASS-BEARING-RPM.npy: accelerations [m/s2] at 12 kHz
 def _read(path: Path, number: int) -> Recording:
     fault, bearing, rpm = path.stem.split("-")
-    return Recording(number, number, 0, CATALOGUE[bearing], float(rpm) / 60, fault, np.load(path))
+    return Recording(number, number, 0, bearing_from_text(bearing), float(rpm) / 60, fault, np.load(path))
 
 
 def import_plain(source: Path, output: Path, *, window: float = 0.5, progress: Any = None) -> Import:

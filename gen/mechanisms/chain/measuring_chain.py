@@ -26,6 +26,7 @@ from gen.mechanisms.chain.mains_hum import MainsHum
 from gen.mechanisms.chain.saturation import Saturation
 from gen.mechanisms.chain.sensor_fault import SensorFault
 from gen.mechanisms.mechanism import FloatArray, mechanisms_of, section_with, with_plugins
+from gen.support.errors import RacewayError
 
 CHAIN: tuple[type[SensorFault], ...] = with_plugins(
     SensorFault, (LooseMount, Drift, MainsHum, EmiBursts, GainSteps, Saturation, DroppedSamples)
@@ -67,5 +68,7 @@ def disturb(
     dtype, labels = signal.dtype, dict[str, float]()
     for fault in mechanisms_of(section):
         signal, *values = fault.disturb(signal, fs, stream(f"sensor_faults.{fault.place}"))
+        if len(values) != len(fault.labels):
+            raise RacewayError(f"{fault.place}: gives {len(values)} values for its {len(fault.labels)} labels.")
         labels |= zip([label.name for label in fault.labels], values, strict=True)
     return signal.astype(dtype, copy=False), labels

@@ -4,12 +4,13 @@ from collections import Counter, defaultdict
 
 import pytest
 
+from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.mechanisms.mechanism import mechanisms_of
 from gen.scenarios import draw_scenarios
 from gen.support.errors import RecipeError
 from tests.sensor_faults import GEAR_MESH, SENSOR_FAULTS, rarely
 
-OF_RECORDS = ("drift", "dropped_samples", "gain_steps", "emi_bursts")
+OF_RECORDS = [fault.place for fault in CHAIN if fault.drawn_per == "record"]
 
 
 def drawn(recipe_with, sections, **changes):
