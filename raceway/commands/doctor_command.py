@@ -44,19 +44,20 @@ def _findings() -> Iterator[dict[str, str]]:
 
     yield _finding("Python", f"{platform.python_version()} ({sys.executable})")
     yield _finding("raceway", version("raceway"))
-    for text in requires("raceway") or ():
-        needed = Requirement(text)
-        marker = needed.marker
-        # extras that nobody asked for may be missing
-        if marker is not None and not any(marker.evaluate({"extra": extra}) for extra in EXTRAS):
-            continue
+    # extras that nobody asked for may be missing, and two of them may need one library
+    wanted = {
+        needed.name: needed
+        for needed in map(Requirement, requires("raceway") or ())
+        if needed.marker is None or any(needed.marker.evaluate({"extra": extra}) for extra in EXTRAS)
+    }
+    for needed in wanted.values():
         try:
             present = version(needed.name)
             is_met = needed.specifier.contains(present, prereleases=True)
         except PackageNotFoundError:
             present, is_met = "missing", False
-        advice = "" if is_met else f"pip install '{text.partition(';')[0].strip()}'."
-        yield _finding(needed.name, present, "fine" if is_met else "note" if marker else "problem", advice)
+        advice = "" if is_met else f"pip install '{str(needed).partition(';')[0].strip()}'."
+        yield _finding(needed.name, present, "fine" if is_met else "note" if needed.marker else "problem", advice)
 
 
 def _finding(subject: str, value: str, state: str = "fine", advice: str = "") -> dict[str, str]:
