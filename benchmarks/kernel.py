@@ -85,7 +85,7 @@ def laid_out(scenarios: list[Scenario]) -> list[tuple[Shape, int, Batch]]:
     work, fs = [], scenarios[0].recipe.recording.sample_rate_hz
     for records in batches(open_integrations(runs_of(scenarios))):
         shape, steps = records[0].group
-        work.append((shape, steps, lay_out([record.given for record in records], shape, 1 / fs)))
+        work.append((shape, steps, lay_out([record.kernel_input for record in records], shape, 1 / fs)))
     return work
 
 

@@ -55,7 +55,7 @@ def seed_records(recipe: Recipe, wanted: int) -> dict[int, list[KernelInput]]:
     """The first records of a recipe by the profile of their spall."""
     groups: dict[int, list[KernelInput]] = {}
     for run in runs_of(draw_scenarios(recipe, 0, wanted)):
-        record = run.given
+        record = run.kernel_input
         profile = _PROFILES[record.spalls[0].profile] if record.spalls else NO_SPALL
         groups.setdefault(profile, []).append(record)
     return groups

@@ -77,7 +77,7 @@ def passage(kind: str, width_mm: float, rpm: float, profile: str = "geometric", 
     )
     scenario = draw_scenarios(recipe)[0]
     runs = simulate([scenario, scenario.without_fault()])
-    given, bearing, width = runs[0].given, scenario.bearing, 1e-3 * width_mm
+    given, bearing, width = runs[0].kernel_input, scenario.bearing, 1e-3 * width_mm
     assert given is not None
     load = scenario.machine["load_angle"]
     housing, sensor = np.subtract(*accelerations_of(runs).astype(float))

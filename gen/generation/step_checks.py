@@ -22,7 +22,7 @@ def step_errors(recipe: Recipe, numbers: range, records: Sequence[Measured]) -> 
     groups, faults = [run.integrations[0].group for run in runs], [record.scenario.fault for record in records]
     # all together, so that they fill the lanes of the kernel
     halved = {
-        place: Integration(runs[place].given, 2 * runs[place].oversampling)
+        place: Integration(runs[place].kernel_input, 2 * runs[place].oversampling)
         for place in checked_places(recipe, numbers, faults, groups)
     }
     integrate_all(halved.values(), axis)

@@ -67,7 +67,7 @@ def axial_approach(machine: Machine, axial_load: FloatArray, angles: FloatArray)
     cosine, factor, n = machine.contact_cosine, machine.load_deflection_factor, machine.contact_exponent
     missing, sine = np.isnan(angles.T), np.sqrt(1 - np.square(cosine))
     directions = np.stack([cosine * np.cos(angles).T, cosine * np.sin(angles).T, np.broadcast_to(sine, missing.shape)])
-    given = _Balls(
+    balls = _Balls(
         directions=np.where(missing, 0.0, directions),
         load=np.stack([machine.load_x, machine.load_y, axial_load]),
         factor=np.asarray(factor),
@@ -75,11 +75,11 @@ def axial_approach(machine: Machine, axial_load: FloatArray, angles: FloatArray)
         half_clearance=np.where(missing, np.inf, machine.half_clearance),  # never squeezed
     )
     # every ball carries the same part of the axial load
-    equal_squeeze = power(axial_load / (np.count_nonzero(~missing, axis=0) * sine * factor), 1 / given.exponent)
+    equal_squeeze = power(axial_load / (np.count_nonzero(~missing, axis=0) * sine * factor), 1 / balls.exponent)
     start = np.zeros((3, len(angles)))
     start[2] = (np.maximum(machine.half_clearance, 0.0) + equal_squeeze) / sine
     # rounded to a picometre: the powers of C libraries may differ in the last bit
-    return [round(squeeze, 12) for squeeze in (_equilibrium(given, start)[2] * sine).tolist()]
+    return [round(squeeze, 12) for squeeze in (_equilibrium(balls, start)[2] * sine).tolist()]
 
 
 class _Balls(NamedTuple):
@@ -110,7 +110,7 @@ def _sum(terms: FloatArray) -> FloatArray:
     return np.add.accumulate(terms, axis=-2)[..., -1, :]
 
 
-def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
+def _equilibrium(balls: _Balls, start: FloatArray) -> FloatArray:
     """Displacement of the inner ring at which the forces of the balls balance the loads, shape (axis, record) [m].
 
     Newton steps down the potential energy, which is convex; a step that raises it is halved. Converged records are frozen.
@@ -118,30 +118,30 @@ def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
     places = np.arange(start.shape[1], dtype=np.intp)
     equilibrium, q = start.copy(), start
     for _ in range(_MOST_STEPS):
-        squeeze = given.squeeze(q)
-        root = power(squeeze, given.exponent - 1)
-        residual = given.load - _sum(given.factor * squeeze * root * given.directions)
-        moving = np.abs(residual).max(axis=0) >= _BALANCED * np.abs(given.load).max(axis=0)
+        squeeze = balls.squeeze(q)
+        root = power(squeeze, balls.exponent - 1)
+        residual = balls.load - _sum(balls.factor * squeeze * root * balls.directions)
+        moving = np.abs(residual).max(axis=0) >= _BALANCED * np.abs(balls.load).max(axis=0)
         if not moving.all():
             equilibrium[:, places[~moving]] = q[:, ~moving]
-            given = _Balls(*(array[..., moving] for array in given))
+            balls = _Balls(*(array[..., moving] for array in balls))
             places, q, squeeze = places[moving], q[:, moving], squeeze[:, moving]
             root, residual = root[:, moving], residual[:, moving]
         if not len(places):
             break
-        stiff = given.exponent * given.factor * root * given.directions
-        step = solve(_sum(stiff[:, None] * given.directions), residual)
-        q = _lower_energy(given, q, step, given.energy(squeeze, q))
+        stiff = balls.exponent * balls.factor * root * balls.directions
+        step = solve(_sum(stiff[:, None] * balls.directions), residual)
+        q = _lower_energy(balls, q, step, balls.energy(squeeze, q))
     equilibrium[:, places] = q
     return equilibrium
 
 
-def _lower_energy(given: _Balls, q: FloatArray, step: FloatArray, before: FloatArray) -> FloatArray:
+def _lower_energy(balls: _Balls, q: FloatArray, step: FloatArray, before: FloatArray) -> FloatArray:
     """Displacements after a step, or after a share of it that does not raise the energy above ``before``, shape (axis, record) [m]."""
     share, before = np.ones(q.shape[1]), before + _ROUNDING * np.abs(before)
     while True:
         moved = q + share * step
-        again = (given.energy(given.squeeze(moved), moved) > before) & (share >= _SMALLEST_SHARE)
+        again = (balls.energy(balls.squeeze(moved), moved) > before) & (share >= _SMALLEST_SHARE)
         if not again.any():
             return moved
         share = np.where(again, share / 2, share)

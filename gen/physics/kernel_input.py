@@ -138,14 +138,17 @@ class KernelInput(NamedTuple):
 def at_rest(inputs: Sequence[KernelInput]) -> list[KernelInput]:
     """The same inputs, which start from static rest; each rests where it rests alone."""
     alike: dict[float, list[int]] = defaultdict(list)
-    for place, given in enumerate(inputs):
-        alike[given.machine.contact_exponent].append(place)
+    for place, kernel_input in enumerate(inputs):
+        alike[kernel_input.machine.contact_exponent].append(place)
     resting = list(inputs)
     for places in alike.values():
         some = [inputs[place] for place in places]
-        balls = ball_angles([given.bearing.n_balls for given in some], [given.turning.cage_angle for given in some])
+        balls = ball_angles(
+            [kernel_input.bearing.n_balls for kernel_input in some],
+            [kernel_input.turning.cage_angle for kernel_input in some],
+        )
         for place, start in zip(
-            places, rest(as_columns([given.machine for given in some]), balls).tolist(), strict=True
+            places, rest(as_columns([kernel_input.machine for kernel_input in some]), balls).tolist(), strict=True
         ):
             resting[place] = inputs[place]._replace(start=tuple(start))
     return resting

@@ -126,8 +126,8 @@ def ball_forces(machine: Machine, displacement: FloatArray, angles: FloatArray) 
     force, stiffness : arrays, shape (record, ball)
         [N] and [N/m].
     """
-    given = _balance(machine, angles)
-    force, stiffness = given.pressed(displacement.T)
+    balance = _balance(machine, angles)
+    force, stiffness = balance.pressed(displacement.T)
     return force.T, stiffness.T
 
 
@@ -174,21 +174,21 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
     array, shape (record, coordinate)
         x1, y1, x2, y2 [m].
     """
-    given = _balance(machine, angles)
-    reach = np.maximum(given.half_clearance, 0) / given.cosine + 2 * power(
-        given.weight / given.factor, 1 / given.exponent
+    balance = _balance(machine, angles)
+    reach = np.maximum(balance.half_clearance, 0) / balance.cosine + 2 * power(
+        balance.weight / balance.factor, 1 / balance.exponent
     )
-    housing = given.load / (given.support + given.ground) + given.play * np.sign(given.load)
-    q = np.concatenate([housing + given.load / given.weight * reach, housing])
+    housing = balance.load / (balance.support + balance.ground) + balance.play * np.sign(balance.load)
+    q = np.concatenate([housing + balance.load / balance.weight * reach, housing])
     places: NDArray[np.intp] = np.arange(q.shape[1])
     equilibrium = q.copy()
     for _ in range(200):
-        residual, jacobian = _unbalanced_force(given, q)
+        residual, jacobian = _unbalanced_force(balance, q)
         largest = np.abs(residual).max(axis=0)
-        moving = largest >= 1e-9 * given.weight
+        moving = largest >= 1e-9 * balance.weight
         if not moving.all():
             equilibrium[:, places[~moving]] = q[:, ~moving]
-            given = _Balance(*(array[..., moving] for array in given))
+            balance = _Balance(*(array[..., moving] for array in balance))
             places, q, largest = places[moving], q[:, moving], largest[moving]
             residual, jacobian = residual[:, moving], jacobian[..., moving]
         if not len(places):
@@ -221,27 +221,27 @@ def _balance(machine: Machine, angles: FloatArray) -> _Balance:
     )
 
 
-def _unbalanced_force(given: _Balance, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _unbalanced_force(balance: _Balance, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Sum of the forces on each coordinate, shape (4, record), and its negative derivative, shape (4, 4, record)."""
     relative = q[:2] - q[2:]
-    force, stiffness = given.pressed(relative)
+    force, stiffness = balance.pressed(relative)
     of_balls = np.empty((6, *force.shape))
-    np.multiply(force, given.directions, out=of_balls[:2])
-    stiff = stiffness * given.directions
-    np.multiply(stiff[:, None], given.directions, out=of_balls[2:].reshape(2, 2, *force.shape))
+    np.multiply(force, balance.directions, out=of_balls[:2])
+    stiff = stiffness * balance.directions
+    np.multiply(stiff[:, None], balance.directions, out=of_balls[2:].reshape(2, 2, *force.shape))
     # accumulate adds ball by ball; the order of a sum would depend on the number of records
     sums = np.add.accumulate(of_balls, axis=1)[:, -1]
-    pushed, contact = sums[:2] + given.ring * relative, sums[2:].reshape(2, 2, -1)
-    stretch = q[2:] - np.clip(q[2:], -given.play, given.play)
-    held = np.where((stretch != 0) | (given.play == 0), given.support, 0.0)
-    residual = np.concatenate([given.load - pushed - given.ground * q[:2], pushed - given.support * stretch])
+    pushed, contact = sums[:2] + balance.ring * relative, sums[2:].reshape(2, 2, -1)
+    stretch = q[2:] - np.clip(q[2:], -balance.play, balance.play)
+    held = np.where((stretch != 0) | (balance.play == 0), balance.support, 0.0)
+    residual = np.concatenate([balance.load - pushed - balance.ground * q[:2], pushed - balance.support * stretch])
     for axis in range(2):
-        contact[axis, axis] += given.ring[axis]
+        contact[axis, axis] += balance.ring[axis]
     jacobian = np.empty((4, 4, q.shape[1]))
     jacobian[:2, :2] = jacobian[2:, 2:] = contact
     jacobian[:2, 2:] = jacobian[2:, :2] = -contact
     for axis in range(2):
-        jacobian[axis, axis] += given.ground[axis]
+        jacobian[axis, axis] += balance.ground[axis]
         jacobian[2 + axis, 2 + axis] += held[axis]
     return residual, jacobian
 

@@ -25,7 +25,7 @@ from gen.simulation.timeline import Timeline
 class Integration:
     """One record that is integrated, with or without its fault, and the result."""
 
-    given: KernelInput
+    kernel_input: KernelInput
     steps: int
     """Per sample."""
     response: NDArray[np.float32] | None = None
@@ -38,7 +38,7 @@ class Integration:
     @property
     def group(self) -> tuple[Shape, int]:
         """Shape and steps per sample: records that have the same may share batches."""
-        return input_shape(self.given), self.steps
+        return input_shape(self.kernel_input), self.steps
 
 
 _filters = functools.lru_cache(maxsize=16)(decimation)
@@ -62,7 +62,7 @@ def integrate_all(integrations: Iterable[Integration], axis: Timeline) -> None:
     """Integrate records, batch by batch."""
     for records in batches(integrations):
         shape, steps = records[0].group
-        batch = lay_out([record.given for record in records], shape, 1 / axis.fs)
+        batch = lay_out([record.kernel_input for record in records], shape, 1 / axis.fs)
         result = integrate_batch(shape, steps, batch, axis)
         for lane, record in enumerate(records):
             record.response = result.response[:, :, lane].copy()

@@ -14,26 +14,26 @@ from gen.simulation.inputs import bare_inputs, resting
 from gen.simulation.motion import draw_motion
 
 
-def load_zone(given: KernelInput) -> tuple[float, float]:
+def load_zone(kernel_input: KernelInput) -> tuple[float, float]:
     """Part of the circumference where balls are loaded while the shaft rests, of a record that starts from static rest.
 
     Direction of its middle, and half of its width: pi if all balls are loaded, 0 if none is [rad].
     """
-    machine, (x1, y1, x2, y2) = given.machine, given.start
+    machine, (x1, y1, x2, y2) = kernel_input.machine, kernel_input.start
     approach = math.hypot(x1 - x2, y1 - y2) * machine.contact_cosine
     share = machine.half_clearance / max(approach, 1e-15)
     return math.atan2(y1 - y2, x1 - x2), math.acos(min(max(share, -1.0), 1.0))
 
 
-def loaded_hits(given: KernelInput, orders: FaultOrders, turns: float) -> int:
+def loaded_hits(kernel_input: KernelInput, orders: FaultOrders, turns: float) -> int:
     """Expected number of passages of loaded balls over all spalls in ``turns`` of the shaft, rounded [1].
 
     ``orders`` are the mean fault orders of the record. The tilt of the spin axis of a damaged ball does not count.
     """
-    passages, (_, half) = 0.0, load_zone(given)
-    for spall in given.spalls:
+    passages, (_, half) = 0.0, load_zone(kernel_input)
+    for spall in kernel_input.spalls:
         if spall.site == "outer":
-            passages += orders.bpfo * turns if _is_loaded(spall, given) else 0.0
+            passages += orders.bpfo * turns if _is_loaded(spall, kernel_input) else 0.0
         else:
             passages += (orders.bpfi if spall.site == "inner" else 2 * orders.bsf) * turns * half / math.pi
     return round(passages)
@@ -44,14 +44,14 @@ def felt_places(scenarios: Sequence[Scenario]) -> list[bool]:
     outer = [place for place, one in enumerate(scenarios) if one.spalls and one.damaged_parts == ["outer"]]
     felt = [True] * len(scenarios)
     inputs = resting(bare_inputs([draw_motion(scenarios[place]) for place in outer]))
-    for place, given in zip(outer, inputs, strict=True):
-        if isinstance(given, KernelInput):  # otherwise no such machine is possible; the simulation says so
-            felt[place] = any(_is_loaded(spall, given) for spall in scenarios[place].spalls)
+    for place, kernel_input in zip(outer, inputs, strict=True):
+        if isinstance(kernel_input, KernelInput):  # otherwise no such machine is possible; the simulation says so
+            felt[place] = any(_is_loaded(spall, kernel_input) for spall in scenarios[place].spalls)
     return felt
 
 
-def _is_loaded(spall: Spall, given: KernelInput) -> bool:
+def _is_loaded(spall: Spall, kernel_input: KernelInput) -> bool:
     """Whether a spall of the outer race lies in the load zone with a part of its width."""
-    direction, half = load_zone(given)
+    direction, half = load_zone(kernel_input)
     away = abs(math.remainder(spall.angle - direction, 2 * math.pi))
-    return away - spall.width / (2 * given.bearing.outer_radius) < half
+    return away - spall.width / (2 * kernel_input.bearing.outer_radius) < half

@@ -22,8 +22,8 @@ _FIRST_COORDINATE = {"shaft": 0, "housing": 2, "sensor": 4}
 def kernel_inputs(motions: Sequence[Motion]) -> list[KernelInput | SimulationError]:
     """Everything the kernel needs of each record, or an error that says why no such machine is possible."""
     return resting(
-        given if isinstance(given, SimulationError) else _possible(_damaged, motion, given)
-        for given, motion in zip(bare_inputs(motions), motions, strict=True)
+        kernel_input if isinstance(kernel_input, SimulationError) else _possible(_damaged, motion, kernel_input)
+        for kernel_input, motion in zip(bare_inputs(motions), motions, strict=True)
     )
 
 
@@ -36,20 +36,22 @@ def bare_inputs(motions: Sequence[Motion]) -> list[KernelInput | SimulationError
 def resting(inputs: Iterable[KernelInput | SimulationError]) -> list[KernelInput | SimulationError]:
     """The same inputs, which start from static rest."""
     every = [*inputs]
-    starts = iter(at_rest([given for given in every if isinstance(given, KernelInput)]))
-    return [next(starts) if isinstance(given, KernelInput) else given for given in every]
+    starts = iter(at_rest([kernel_input for kernel_input in every if isinstance(kernel_input, KernelInput)]))
+    return [next(starts) if isinstance(kernel_input, KernelInput) else kernel_input for kernel_input in every]
 
 
-def without_fault(given: KernelInput, scenario: Scenario) -> KernelInput:
+def without_fault(kernel_input: KernelInput, scenario: Scenario) -> KernelInput:
     """Kernel input of a record without its fault, from that with it: the machine is the same."""
-    sound, turning = scenario.without_fault(), given.turning
+    sound, turning = scenario.without_fault(), kernel_input.turning
     angles = turning.shaft_angle, turning.cage_angle, turning.spin_angle
-    return given._replace(spalls=(), turning=turning_of(sound, *angles), waviness=waviness_of(sound))
+    return kernel_input._replace(spalls=(), turning=turning_of(sound, *angles), waviness=waviness_of(sound))
 
 
-def _possible(make: Callable[..., KernelInput], motion: Motion, *given: KernelInput) -> KernelInput | SimulationError:
+def _possible(
+    make: Callable[..., KernelInput], motion: Motion, *kernel_input: KernelInput
+) -> KernelInput | SimulationError:
     try:
-        return make(motion, *given)
+        return make(motion, *kernel_input)
     except ValueError as error:
         return SimulationError(f"record {motion.scenario.origin.record}: {error}")
 
@@ -66,9 +68,9 @@ def _without_axial_load(motion: Motion) -> KernelInput:
     return KernelInput(scenario.bearing, machine, motion.turning, (), motion.frequencies, motion.phases, pickups)
 
 
-def _damaged(motion: Motion, given: KernelInput) -> KernelInput:
+def _damaged(motion: Motion, kernel_input: KernelInput) -> KernelInput:
     scenario = motion.scenario
-    return given._replace(
+    return kernel_input._replace(
         spalls=spall_inputs(scenario, heaviest_ball_load(scenario)),
         waviness=waviness_of(scenario),
         schedule=schedule_of(scenario),

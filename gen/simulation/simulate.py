@@ -39,9 +39,9 @@ class Run:
         return self.integrations[-1] if self.twin or self.scenario.fault == "healthy" else None
 
     @property
-    def given(self) -> KernelInput:
+    def kernel_input(self) -> KernelInput:
         """Kernel input of a record that is possible."""
-        return self.integrations[0].given
+        return self.integrations[0].kernel_input
 
     @property
     def acceleration(self) -> NDArray[np.float32]:
@@ -57,7 +57,7 @@ class Run:
     def step_phase(self) -> float:
         """Fastest angular frequency at the largest contact stiffness of the record, times the step [rad]."""
         fs = self.scenario.recipe.recording.sample_rate_hz
-        return step_phase(self.given, self.integrations[0].steepest, self.oversampling, fs)
+        return step_phase(self.kernel_input, self.integrations[0].steepest, self.oversampling, fs)
 
     @property
     def failure(self) -> str | None:
@@ -97,19 +97,19 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] = {}) -> list[Ru
     integrated = {(number, one.steps): one for number, run in known.items() if (one := run.healthy)}
     of_group = dict[tuple[int, int], Integration | None]()
     runs = list[Run]()
-    for motion, given in zip(motions, kernel_inputs(motions), strict=True):
+    for motion, kernel_input in zip(motions, kernel_inputs(motions), strict=True):
         scenario = motion.scenario
-        if isinstance(given, SimulationError):
-            runs.append(Run(scenario, motion, given))
+        if isinstance(kernel_input, SimulationError):
+            runs.append(Run(scenario, motion, kernel_input))
             continue
-        steps, pair = steps_per_sample(given, scenario), scenario.origin.pair
-        before, own, twin = integrated.get((scenario.origin.record, steps)), Integration(given, steps), None
+        steps, pair = steps_per_sample(kernel_input, scenario), scenario.origin.pair
+        before, own, twin = integrated.get((scenario.origin.record, steps)), Integration(kernel_input, steps), None
         if scenario.fault == "healthy":
             # a healthy record is the twin of another one, or of itself
             own = before or own
         elif twins:
             # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
-            twin = before or of_group.get((pair, steps)) or Integration(without_fault(given, scenario), steps)
+            twin = before or of_group.get((pair, steps)) or Integration(without_fault(kernel_input, scenario), steps)
         runs.append(Run(scenario, motion, own, twin))
         if pair >= 0:
             # one twin serves all severities of a group

@@ -23,7 +23,7 @@ _FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
 LARGEST_TURN = 0.7  # of the shaft per sample [rad]: its rate is constant within a sample
 
 
-def steps_per_sample(given: KernelInput, scenario: Scenario) -> int:
+def steps_per_sample(kernel_input: KernelInput, scenario: Scenario) -> int:
     """Steps per sample that the modes and the spalls of a record need; the records of a group have the same.
 
     Raises
@@ -33,16 +33,16 @@ def steps_per_sample(given: KernelInput, scenario: Scenario) -> int:
     """
     number, recording = scenario.origin.record, scenario.recipe.recording
     fs, asked = recording.sample_rate_hz, recording.oversampling
-    turn = 2 * math.pi * _fastest_shaft_rate(given)
+    turn = 2 * math.pi * _fastest_shaft_rate(kernel_input)
     if turn / fs > LARGEST_TURN:
         raise SimulationError(
             f"record {number}: its shaft turns {math.degrees(turn / fs):.3g} degrees per sample; raise "
             f"recording.sample_rate_hz to {math.ceil(turn / LARGEST_TURN)}."
         )
     # the step follows the fastest mode of the machine and the narrowest spall
-    rate, narrowest = fastest_rate(given), scenario.origin.narrowest_mm  # of the spalls of a group
+    rate, narrowest = fastest_rate(kernel_input), scenario.origin.narrowest_mm  # of the spalls of a group
     need = max(min(rate / (FINE_STEP * fs), ENOUGH), rate / (FOLLOWED_STEP * fs))
-    passages = passage_rate(given, None if narrowest is None else to_si(narrowest, "mm"))
+    passages = passage_rate(kernel_input, None if narrowest is None else to_si(narrowest, "mm"))
     need = max(need, min(PASSAGE_STEPS * passages / fs, MAX_OVERSAMPLING))
     # a step of the recipe's own is refused only where it would be unstable
     if asked is not None:
@@ -62,38 +62,40 @@ def steps_per_sample(given: KernelInput, scenario: Scenario) -> int:
     )
 
 
-def fastest_rate(given: KernelInput) -> float:
+def fastest_rate(kernel_input: KernelInput) -> float:
     """Angular frequency that the step must follow: that of the stiffest mode, or of the strongest damping [rad/s]."""
-    machine, n_balls = given.machine, given.bearing.n_balls
-    stiffness = likely_stiffness(machine, n_balls, largest_pull(given))
+    machine, n_balls = kernel_input.machine, kernel_input.bearing.n_balls
+    stiffness = likely_stiffness(machine, n_balls, largest_pull(kernel_input))
     return max(highest_angular_frequency(machine, stiffness), highest_damping_rate(machine, n_balls) / 2.5)
 
 
-def passage_rate(given: KernelInput, narrowest: float | None = None) -> float:
+def passage_rate(kernel_input: KernelInput, narrowest: float | None = None) -> float:
     """Speed at which balls roll on the races over the ``narrowest`` spall [m] or one of their own, 0 without any [Hz]."""
-    narrowest = min([narrowest or math.inf, *(spall.width for spall in given.spalls)])
-    cage_rate = 0.5 * (1 - given.bearing.gamma) * _fastest_shaft_rate(given)
-    return 2 * math.pi * cage_rate * given.bearing.radius("outer") / narrowest
+    narrowest = min([narrowest or math.inf, *(spall.width for spall in kernel_input.spalls)])
+    cage_rate = 0.5 * (1 - kernel_input.bearing.gamma) * _fastest_shaft_rate(kernel_input)
+    return 2 * math.pi * cage_rate * kernel_input.bearing.radius("outer") / narrowest
 
 
-def _fastest_shaft_rate(given: KernelInput) -> float:
+def _fastest_shaft_rate(kernel_input: KernelInput) -> float:
     """Largest shaft rate of the speed profile [Hz]."""
-    return abs(given.turning.shaft_rate) * (float(given.schedule[:, 0].max()) if given.schedule.size else 1.0)
+    return abs(kernel_input.turning.shaft_rate) * (
+        float(kernel_input.schedule[:, 0].max()) if kernel_input.schedule.size else 1.0
+    )
 
 
-def largest_pull(given: KernelInput) -> float:
+def largest_pull(kernel_input: KernelInput) -> float:
     """Largest force on the shaft beside its steady load: unbalance, bent shaft, misalignment, profile of the load [N]."""
-    turning = given.turning
-    speeds, loads = given.schedule.T if given.schedule.size else (np.ones(1), np.ones(1))
+    turning = kernel_input.turning
+    speeds, loads = kernel_input.schedule.T if kernel_input.schedule.size else (np.ones(1), np.ones(1))
     unbalance = turning.unbalance * (2 * math.pi * turning.shaft_rate * float(speeds.max())) ** 2
-    steady = math.hypot(given.machine.load_x, given.machine.load_y)
+    steady = math.hypot(kernel_input.machine.load_x, kernel_input.machine.load_y)
     further = steady * (float(loads.max()) - 1)
     return max(unbalance + turning.bow + math.hypot(turning.twice_x, turning.twice_y) + further, 0.0)
 
 
-def step_phase(given: KernelInput, steepest: float, steps: int, fs: float) -> float:
+def step_phase(kernel_input: KernelInput, steepest: float, steps: int, fs: float) -> float:
     """Fastest angular frequency at the contact stiffness ``steepest`` [N/m], times the step [rad]."""
-    return highest_angular_frequency(given.machine, steepest) / (fs * steps)
+    return highest_angular_frequency(kernel_input.machine, steepest) / (fs * steps)
 
 
 def failure(number: int, steps: int, diverged: float, phase: float) -> str | None:

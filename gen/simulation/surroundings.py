@@ -97,17 +97,22 @@ def with_axial_loads(
 ) -> list[KernelInput | SimulationError]:
     """Inputs whose balls are squeezed by the axial ``loads`` [N] too."""
     loaded, alike = list(inputs), defaultdict[float, list[tuple[int, KernelInput, float]]](list)
-    for place, (given, load) in enumerate(zip(inputs, loads, strict=True)):
-        if isinstance(given, KernelInput) and load != 0:
-            alike[given.machine.contact_exponent].append((place, given, load))
+    for place, (kernel_input, load) in enumerate(zip(inputs, loads, strict=True)):
+        if isinstance(kernel_input, KernelInput) and load != 0:
+            alike[kernel_input.machine.contact_exponent].append((place, kernel_input, load))
     # balances of bearings with one contact law are solved together
     for group in alike.values():
         places, some, loads_of = zip(*group, strict=True)
-        balls = ball_angles([given.bearing.n_balls for given in some], [given.turning.cage_angle for given in some])
-        squeezes = axial_approach(as_columns([given.machine for given in some]), np.array(loads_of), balls)
-        for place, given, squeeze in zip(places, some, squeezes, strict=True):
-            half_clearance = given.machine.half_clearance - squeeze
-            loaded[place] = given._replace(machine=given.machine._replace(half_clearance=half_clearance))
+        balls = ball_angles(
+            [kernel_input.bearing.n_balls for kernel_input in some],
+            [kernel_input.turning.cage_angle for kernel_input in some],
+        )
+        squeezes = axial_approach(
+            as_columns([kernel_input.machine for kernel_input in some]), np.array(loads_of), balls
+        )
+        for place, kernel_input, squeeze in zip(places, some, squeezes, strict=True):
+            half_clearance = kernel_input.machine.half_clearance - squeeze
+            loaded[place] = kernel_input._replace(machine=kernel_input.machine._replace(half_clearance=half_clearance))
     return loaded
 
 

@@ -62,7 +62,7 @@ def _loaded_hits(run: Run) -> int:
     if not run.scenario.spalls:
         return 0
     rate, orders = run.motion.means
-    return loaded_hits(run.given, orders, rate * _duration(run))
+    return loaded_hits(run.kernel_input, orders, rate * _duration(run))
 
 
 LABELS = (
@@ -91,7 +91,7 @@ LABELS = (
         )
     ),
     Variable("operating_clearance", "f8", "m", "latent", "diametral clearance in operation: warm, oiled, under axial load",
-        lambda run: 2 * run.given.machine.half_clearance),
+        lambda run: 2 * run.kernel_input.machine.half_clearance),
     Variable("loaded_hits", "i4", "1", "latent", "expected number of passages of loaded balls over spalls, -1 if not known",
         _loaded_hits),
     *with_values(oversampling=None),

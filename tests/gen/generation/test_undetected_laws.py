@@ -130,7 +130,7 @@ def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
 
     def second_twin_diverges(integrations, *given):
         integrate(integrations, *given)
-        (_, twin) = (one for one in integrations if not one.given.spalls)
+        (_, twin) = (one for one in integrations if not one.kernel_input.spalls)
         twin.diverged = 100
 
     monkeypatch.setattr(simulation, "integrate_all", second_twin_diverges)
