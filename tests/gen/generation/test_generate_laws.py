@@ -1,11 +1,14 @@
 """Laws of generation: a corpus is the same for any number of workers."""
 
+import json
+
 import numpy as np
 import pytest
 from distributed import LocalCluster
 
 from gen.corpus import SIGNAL, open_corpus, read_manifest, recipe_text, validate_corpus
 from gen.generation.corpus import generate
+from gen.support.errors import CorpusError
 from raceway.sharing.card.card_page import data_card
 from tests.same_corpora import assert_the_same_corpus
 
@@ -59,3 +62,11 @@ def test_workers_of_a_given_scheduler_make_the_same_corpus(recipe_file, whole, t
         generate(recipe_file, tmp_path / "given", scheduler=cluster.scheduler_address, progress=note)
     assert_the_same_corpus(tmp_path / "given", whole)
     assert done == [(8, 24), (16, 24), (24, 24)]
+
+
+def test_a_folder_with_somebody_elses_manifest_is_left_alone(tmp_path):
+    (tmp_path / "manifest.json").write_text(json.dumps({"name": "an app"}))
+    (tmp_path / "README.md").write_text("mine")
+    with pytest.raises(CorpusError, match=r"manifest\.json"):
+        generate("quickstart", tmp_path, records=8)
+    assert (tmp_path / "README.md").read_text() == "mine"

@@ -12,8 +12,9 @@ from gen.generation.replaying import replay
 from gen.physics.catalogue import CATALOGUE
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios, fault_of_each_specimen
+from gen.simulation.simulate import simulate
 from tests.recipes import EVERYTHING
-from tests.responses import input_of
+from tests.responses import accelerations_of, input_of
 
 BEARING = CATALOGUE["6205"]
 KNOWN = ("fault", "parts", "n_spalls", "wear", "pitch_error", "knock", "width_share")
@@ -126,3 +127,12 @@ def test_records_of_every_class_replay_bit_for_bit(whole, drawn):
     numbers = {kind_of(scenario): scenario.origin.record for scenario in drawn}
     for number in numbers.values():
         assert replay(whole.path, number).identical
+
+
+def test_the_fault_alone_tells_a_record_from_its_twin(drawn):
+    some = list({kind_of(scenario): scenario for scenario in drawn}.values())
+    damaged, sound = (
+        accelerations_of(simulate(batch)) for batch in (some, [scenario.without_fault() for scenario in some])
+    )
+    for scenario, one, other in zip(some, damaged, sound, strict=True):
+        assert np.array_equal(one, other) == (scenario.fault == "healthy")

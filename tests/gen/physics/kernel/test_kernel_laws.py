@@ -1,13 +1,14 @@
 """Laws of the equations of motion and of the step that advances them."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.kernel.compiling import LANES
-from gen.physics.kernel_input import Turning
+from gen.physics.kernel_input import Spall, Turning
 from tests.lanes import march_lanes
-from tests.strategies import RIG, record, wandering_records
+from tests.strategies import RIG, machines, record, steady_turnings, wandering_records
 
 law = settings(max_examples=10)
 KNOT = 1 / 12_000
@@ -82,3 +83,33 @@ def test_a_record_does_not_depend_on_its_lane_or_its_neighbours(drawn, order):
         if order[lane] % len(drawn) == 0:
             np.testing.assert_array_equal(trip.accelerations, alone.accelerations)
             np.testing.assert_array_equal(trip.states, alone.states)
+
+
+@law
+@given(machines(contact_damping=0.0), steady_turnings(), st.integers(0, 2**32 - 1))
+def test_the_bearing_moves_momentum_but_makes_none(machine, motion, seed):
+    still = motion._replace(unbalance=0.0)
+    start = np.random.default_rng(seed).normal(size=12) * np.repeat([1e-5, 1e-2], 6)
+    masses = np.repeat([machine.shaft_mass, machine.housing_mass, machine.sensor_mass], 2)
+    forces = masses * accelerations(record(machine, still), start)
+    total = forces.reshape(3, 2).sum(axis=0)
+    ground = np.array([machine.support_stiffness_x, machine.support_stiffness_y]) * start[2:4]
+    ground += np.array([machine.support_damping_x, machine.support_damping_y]) * start[8:10]
+    ground += machine.shaft_stiffness * start[:2] + machine.shaft_damping * start[6:8]
+    load = np.array([machine.load_x, machine.load_y])
+    np.testing.assert_allclose(total, load - ground, rtol=0, atol=1e-12 * np.abs(forces).max())
+
+
+@law
+@given(st.floats(0, 0.5), st.floats(1e-8, 1e-6))
+def test_a_damped_contact_never_pulls(speed, deflection):
+    damped = record(
+        RIG._replace(load_x=0.0, load_y=0.0, contact_damping=600.0, ring_damping=0.0, shaft_damping=0.0),
+        Turning(0.0, jitter_rms=1e-9),
+        [Spall("outer", 2e-4, 1e-4, 2.0), Spall("outer", 2e-4, 1e-4, 2.0)],
+    )
+    start = displaced(along=0.0, by=deflection, clearance=RIG.half_clearance)
+    start[6] = -speed  # away from the ball
+    force = -RIG.shaft_mass * accelerations(damped, start)[0]
+    elastic = RIG.load_deflection_factor * deflection**1.5
+    assert force == pytest.approx(max(elastic - 600.0 * speed, 0.0), rel=1e-6, abs=1e-9)

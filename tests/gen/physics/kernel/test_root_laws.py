@@ -78,3 +78,9 @@ def test_the_root_of_zero_is_zero_and_small_and_large_roots_are_right():
 def test_the_root_that_this_processor_chooses_has_the_same_bits():
     x = np.concatenate([hardest(256), np.random.default_rng(1).uniform(0, 1, 10_000)])
     np.testing.assert_array_equal(chosen_roots(x), np.sqrt(x))
+
+
+def test_the_root_is_right_at_squares_and_beside_them():
+    x = np.random.default_rng(0).uniform(1e-8, 1, 300_000).astype(np.float32).astype(float) ** 2
+    for near in (x, np.nextafter(x, 0), np.nextafter(x, 1)):
+        np.testing.assert_array_equal(roots(near), np.sqrt(near))
