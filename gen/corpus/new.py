@@ -1,6 +1,6 @@
 """A new corpus written part by part: a folder or a single file, there as a whole or not at all."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -53,6 +53,7 @@ def new_corpus(
     *,
     codec: Codec = "zlib",
     recipe_text: str | None = None,
+    describe: Callable[[Path], object] | None = None,
     **facts: Any,
 ) -> Iterator[NewCorpus]:
     """New corpus to write parts to: a single file if the name of ``target`` ends in ``.nc``, else a folder.
@@ -65,6 +66,8 @@ def new_corpus(
         Compression of the signal.
     recipe_text : str, optional
         Recipe of all records, as YAML.
+    describe : callable, optional
+        Writes pages about the corpus into its finished folder, before the folder gets its name; not called for a single file.
     **facts
         Fields of the manifest (:class:`gen.corpus.Manifest`).
 
@@ -85,6 +88,8 @@ def new_corpus(
         return
     with whole_folder_or_none(target) as folder:
         yield from _write(folder, None, codec, recipe_text, facts)
+        if describe is not None:
+            describe(folder)
 
 
 def _write(

@@ -123,6 +123,7 @@ def import_recordings(
 
     with new_corpus(
         output,
+        describe=describe,
         title=collection.title,
         importer=collection.importer,
         basis=collection.facts,
@@ -139,8 +140,6 @@ def import_recordings(
             "skipped": done.skipped,
             "warnings": done.warnings,
         }
-    if output.is_dir():
-        describe(output)
     return done
 
 

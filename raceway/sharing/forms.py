@@ -108,8 +108,6 @@ def copy(
             _WRITERS[form](chosen, place)
             # hashes of the records are known when all are written; the target is then still temporary
             chosen.check_repeats()
-    if form == "folder":
-        describe(target)
     files = [target] if target.is_file() else [path for path in target.rglob("*") if path.is_file()]
     size = sum(path.stat().st_size for path in files)
     return Copied(target, form, chosen.count, chosen.of, tuple(chosen.channels), chosen.filled, len(files), size)
@@ -118,7 +116,7 @@ def copy(
 def _place(form: str, target: Path, recipe: str | None, codec: Codec) -> AbstractContextManager[Any]:
     """Place to write to: a corpus under way, or a temporary path."""
     if form in ("folder", "nc"):
-        return new_corpus(target, codec=codec, recipe_text=recipe)
+        return new_corpus(target, codec=codec, recipe_text=recipe, describe=describe)
     return whole_or_not_at_all(target) if target.suffix in SUFFIXES else whole_folder_or_none(target)
 
 
