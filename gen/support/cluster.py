@@ -68,18 +68,25 @@ class _Processes(Subprocess):
         super().__init__()
         self.scheduler, self.module = scheduler, module
         self.names = [f"{name}{suffix}" for suffix in _suffixes(count)]
+        self._ours: int | None = None
 
     async def _start(self) -> None:
         environment = {"OMP_NUM_THREADS": "1", "DASK_LOGGING__DISTRIBUTED": "critical"} | os.environ
         environment["PYTHONPATH"] = os.pathsep.join(path or os.getcwd() for path in sys.path)  # noqa: PTH109 - as text
         command = [sys.executable, "-m", copied_workers.__name__, self.scheduler, self.module, *self.names]
-        pipe, silent = asyncio.subprocess.PIPE, asyncio.subprocess.DEVNULL
-        self.process = await asyncio.create_subprocess_exec(*command, stdin=pipe, stdout=silent, env=environment)
+        # a pipe of our own: asyncio closes its pipe when the program ends, and its copies would end too
+        theirs, self._ours = os.pipe()
+        try:
+            silent = asyncio.subprocess.DEVNULL
+            self.process = await asyncio.create_subprocess_exec(*command, stdin=theirs, stdout=silent, env=environment)
+        finally:
+            os.close(theirs)
 
     async def close(self) -> None:
         """End the processes: the copies too where the program that made them was killed."""
-        if self.process and self.process.stdin:
-            self.process.stdin.close()
+        if self._ours is not None:
+            os.close(self._ours)
+            self._ours = None
         while True:
             with suppress(psutil.NoSuchProcess):  # a copy has ended with its pipe while it was to be killed
                 return await super().close()
