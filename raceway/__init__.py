@@ -6,7 +6,7 @@ From Python, ``raceway.reference_model()`` is its model, and ``raceway.show_prog
 module        responsibility
 ============= ========================================================================
 console       options, results, progress, errors
-kept_models   models trained on a recipe; the reference model is kept per user
+kept_models   the reference model, trained once and kept per user
 importing     a job: recordings of people in the format of corpora
 comparing     a job: synthetic records against real ones
 lives         a job: remaining life of bearings run to failure

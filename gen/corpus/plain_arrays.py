@@ -2,10 +2,12 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
+from numbers import Real
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
@@ -16,9 +18,6 @@ from gen.corpus.schema import IDENTITY, SCHEMA, SPLITS, identity, make_dataset
 from gen.corpus.where import nearest
 from gen.support.errors import CorpusError
 from gen.support.units import keys_of
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _OWN = (IDENTITY, "sample_rate")
 _UNKNOWN = {"f8": np.nan, "str": "", "i4": 0, "i1": 0, "i2": -1}
@@ -58,7 +57,7 @@ def to_arrays(
 
 
 def records_of_arrays(
-    signals: object, fs: float | None, labels: "pd.DataFrame | Mapping[str, ArrayLike] | None"
+    signals: object, fs: float | None, labels: pd.DataFrame | Mapping[str, ArrayLike] | None
 ) -> xr.Dataset:
     """Records with the variables of the format, of signals of shape (record, time) or (record, channel, time) [m s-2].
 
@@ -67,10 +66,13 @@ def records_of_arrays(
     CorpusError
         If the shapes do not fit, or a label is missing, unknown or has a wrong value.
     """
+    if isinstance(signals, xr.Dataset):
+        raise CorpusError("records: a Dataset has its own sample rate and labels; leave fs and labels out.")
     x = np.asarray(signals)
     if x.dtype.kind not in "iuf" or x.ndim not in (2, 3) or not x.size:
         raise CorpusError(f"records: {x.dtype} of shape {x.shape}; give numbers of shape (record, channel, time).")
-    if not fs or labels is None or not {"fault", "specimen"} <= {*labels.keys()}:
+    rate = fs if isinstance(fs, Real) and fs else None
+    if rate is None or not isinstance(labels, Mapping | pd.DataFrame) or not {"fault", "specimen"} <= {*labels.keys()}:
         raise CorpusError(
             "labels: an array needs fs, its sample rate in Hz, and labels, a table with fault and specimen, the bearing of each record."
         )
@@ -82,29 +84,39 @@ def records_of_arrays(
         name: np.full(len(x), _UNKNOWN[of.dtype], None if of.dtype == "str" else of.dtype)
         for name, of in variables.items()
     }
-    columns |= {"recording": np.arange(len(x)), "sample_rate": np.full(len(x), float(fs))}
+    columns |= {"recording": np.arange(len(x)), "sample_rate": np.full(len(x), float(rate))}
+    given = set[str]()
     for key in labels.keys():  # noqa: SIM118 - of a DataFrame too
         if key not in keys:
             raise CorpusError(f"labels: there is no column {key}{nearest(f'{key}', [*keys])}")
         (name, factor), values = keys[key], np.asarray(labels[key])
         if values.shape not in ((), (len(x),)):
             raise CorpusError(f"labels: {key} has shape {values.shape}, not one value for each of {len(x)} records.")
+        if name in given:
+            raise CorpusError(f"labels: {key} gives {name} twice; leave one of its columns out.")
+        given.add(name)
         columns[name] = _column(name, np.broadcast_to(values, len(x)), factor, variables[name].dtype)
     corpus = hashlib.sha256(np.ascontiguousarray(x[0]).tobytes()).hexdigest()[:12]
     numbers = zip(*(columns[name].tolist() for name in ("rig", "specimen", "recording")), strict=True)
     columns[IDENTITY] = np.array([identity(corpus, *some) for some in numbers])
-    signal = (x[:, None] if x.ndim == 2 else x).astype(np.float32)
+    with np.errstate(over="ignore"):
+        signal = (x[:, None] if x.ndim == 2 else x).astype(np.float32)
+    if lost := int((~np.isfinite(signal).all(axis=(1, 2))).sum()):
+        raise CorpusError(f"records: {lost} of {len(x)} have samples that are not finite; leave them out.")
     channels = tuple(f"channel_{number}" for number in range(1, signal.shape[1] + 1))
     attributes = {"title": "Vibration records", "history": "written from arrays"}
-    return make_dataset(signal, fs, channels, columns, attributes=attributes)
+    return make_dataset(signal, float(rate), channels, columns, attributes=attributes)
 
 
 def _column(name: str, values: NDArray[Any], factor: float, dtype: str) -> NDArray[Any]:
     """Values of a label as the format has them: classes by their codes, names of machines and bearings by numbers."""
     if dtype == "str":
         return values.astype(str)
-    if values.dtype.kind in "iuf" and (dtype == "f8" or np.array_equal(values, np.rint(values))):
-        return (values * factor).astype(dtype)
+    if values.dtype.kind in "iuf":
+        with np.errstate(invalid="ignore"):
+            stored = (values * factor).astype(dtype)
+        if dtype == "f8" or np.array_equal(stored, values):
+            return stored
     texts: list[str] = values.astype(str).tolist()
     if dtype == "i4":
         return np.unique(texts, return_inverse=True)[1]

@@ -340,7 +340,10 @@ def operating_problems(columns: Mapping[str, NDArray[Any]]) -> list[str]:
         shown = ", ".join(f"{rate:g}" for rate in rates[:3])
         return [f"sample_rate is {shown} Hz, not one rate from 1 to {_HIGHEST:g} Hz for all records."]
     wrong = [name for name in _RATES if name in columns and (np.abs(columns[name]) > _HIGHEST).any()]
-    return [f"{name} has values above {_HIGHEST:g}." for name in wrong]
+    negative = [name for name in _RATES if name in columns and (columns[name] < 0).any()]
+    return [f"{name} has values above {_HIGHEST:g}." for name in wrong] + [
+        f"{name} has values below 0." for name in negative
+    ]
 
 
 def _values_problems(known: Variable | None, name: str, array: "xr.Variable") -> list[str]:

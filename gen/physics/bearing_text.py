@@ -16,7 +16,7 @@ from gen.support.units import from_si, to_si
 
 _EXAMPLE = "n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938"
 _ORDERS = "bpfo=3.585,bpfi=5.415,bsf=2.357,ftf=0.398"
-_ROUNDING = 0.02  # share by which printed orders may differ from those of any geometry
+_ROUNDING = 0.02  # of orders that are printed with two decimals, and their share of a geometry's orders
 
 
 class Geometry(Keys):
@@ -51,7 +51,7 @@ class PrintedOrders(Keys):
     def _agree(self) -> Self:
         """With a fixed outer ring, BPFO + BPFI is the number of balls, BPFO is FTF times it, and BSF follows from a cosine below 1."""
         n_balls = round(self.bpfo + self.bpfi)
-        if n_balls < 3 or abs(self.bpfo + self.bpfi - n_balls) > _ROUNDING * 2:
+        if n_balls < 3 or abs(self.bpfo + self.bpfi - n_balls) > _ROUNDING:
             raise ValueError(f"bpfo and bpfi add up to {self.bpfo + self.bpfi:g}, which is no number of balls.")
         if abs(self.ftf * n_balls - self.bpfo) > _ROUNDING * self.bpfo:
             raise ValueError(

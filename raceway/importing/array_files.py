@@ -1,5 +1,6 @@
 """Tables in files of arrays: NumPy, WAV, Parquet, TDMS of LabVIEW and universal file format 58."""
 
+import re
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
@@ -15,6 +16,7 @@ from raceway.importing.table import NumberTable, table_of
 _ACCELERATION = 12  # kind of the values in format 58; 0 is unknown and 1 general
 _KINDS_WITHOUT_A_NAME = (0, 1, _ACCELERATION)
 _TIME_RESPONSE = 1  # kind of the function in format 58
+_IS_NUMBER = re.compile("u?int|float|double|halffloat")  # type of a column of Parquet
 
 
 def read_numpy(path: Path) -> NumberTable:
@@ -61,10 +63,9 @@ def read_parquet(path: Path) -> NumberTable:
     with guarded(path, "Parquet"):
         facts = parquet.read_metadata(path)
         check_limit("file_bytes", 8 * facts.num_rows * facts.num_columns, "is unpacked", UnusableError)
-        columns = parquet.read_table(path).to_pandas().select_dtypes("number").items()
-        return _columns(
-            (str(name), unit_said(str(name)), None, values.to_numpy(np.float64)) for name, values in columns
-        )
+        names = [field.name for field in parquet.read_schema(path) if _IS_NUMBER.match(str(field.type))]
+        table = parquet.read_table(path, columns=names)
+        return _columns((name, unit_said(name), None, table[name].to_numpy()) for name in names)
 
 
 def read_tdms(path: Path) -> NumberTable:
@@ -77,14 +78,15 @@ def read_tdms(path: Path) -> NumberTable:
     """
     library = optional("nptdms")
     with guarded(path, "TDMS"), path.open("rb") as stream, library.TdmsFile.open(stream) as file:
-        channels = [channel for group in file.groups() for channel in group.channels() if len(channel)]
+        every = [channel for group in file.groups() for channel in group.channels() if len(channel)]
+        channels = [channel for channel in every if channel.dtype.kind in "iuf"]
         check_limit("file_bytes", sum(8 * len(channel) for channel in channels), "is unpacked", UnusableError)
-        every = []
+        columns = []
         for channel in channels:
             step, unit = channel.properties.get("wf_increment"), channel.properties.get("unit_string")
             rate = rounded_rate(1 / step, 1e-9) if step else None
-            every.append((channel.name, unit or unit_said(channel.name), rate, channel[:]))
-        return _columns(every)
+            columns.append((channel.name, unit or unit_said(channel.name), rate, channel[:]))
+        return _columns(columns)
 
 
 def read_uff(path: Path) -> NumberTable:

@@ -7,6 +7,7 @@ import functools
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -203,9 +204,10 @@ def _courses(
             warnings.append(f"{name}: is left out, since {name_of(whole, source)} holds more of the same life.")
         if (folder == whole) != (subset == ALL):
             continue
-        missing = sorted({*range(min(numbers[folder]), max(numbers[folder]))} - {*numbers[folder]})
-        if missing:
-            warnings.append(f"{name}: {len(missing)} snapshots are missing, the first is number {missing[0]}.")
+        taken = sorted({*numbers[folder]})
+        if missing := taken[-1] - taken[0] + 1 - len(taken):
+            first = next(before + 1 for before, after in pairwise(taken) if after > before + 1)
+            warnings.append(f"{name}: {missing} snapshots are missing, the first is number {first}.")
         event = "censored" if censored[folder] else "failed"
         for path, number in zip(paths, numbers[folder], strict=True):
             courses[path] = {"age_s": life["every_s"] * (number - 1), "event": event}

@@ -15,6 +15,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 
 from gen.corpus.manifest import Manifest
 from gen.support.errors import CorpusError
+from gen.support.sentences import sentences
 
 EPOCH = "SOURCE_DATE_EPOCH"
 """Environment variable with a time [s since 1970, UTC] that replaces that of the clock in reproducible files."""
@@ -158,7 +159,10 @@ class Publication(BaseModel):
 
 def publication_of(manifest: Manifest) -> Publication:
     """Facts of publication of a corpus; CorpusError if somebody wrote wrong ones into its manifest."""
-    return read_publication(manifest.publication)
+    try:
+        return read_publication(manifest.publication)
+    except CorpusError as error:
+        raise CorpusError(f"publication of the corpus: {error}") from None
 
 
 def read_publication(facts: Mapping[str, Any]) -> Publication:
@@ -177,10 +181,4 @@ def read_publication(facts: Mapping[str, Any]) -> Publication:
     try:
         return Publication.model_validate(facts)
     except ValidationError as error:
-        # one sentence about the first flaw
-        problem = error.errors()[0]
-        place = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in problem["loc"]).lstrip(".")
-        if problem["type"] == "extra_forbidden":
-            raise CorpusError(f"{place}: no such key; allowed are {', '.join(Publication.model_fields)}.") from None
-        text = problem["msg"].removeprefix("Value error, ").removesuffix(".")
-        raise CorpusError(f"{place}: {text}.") from None
+        raise CorpusError(sentences(error, Publication)[0]) from None

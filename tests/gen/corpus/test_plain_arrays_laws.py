@@ -55,6 +55,10 @@ WRONG = {
     "a class that is none": ({}, {"fault": ["iner"] * 6}, "fault has no value 'iner'; the nearest is inner."),
     "a code that is none": ({}, {"fault": [99] * 6}, "fault has values other than 0 healthy"),
     "half a bearing": ({}, {"n_spalls": [0.5] * 6}, "n_spalls has no value '0.5'; give numbers."),
+    "text for a rate": ({"fs": "12k"}, {}, "an array needs fs, its sample rate in Hz"),
+    "a list for a table": ({"labels": [1, 2]}, {}, "an array needs fs, its sample rate in Hz, and labels"),
+    "a speed in two units": ({}, {"shaft_rate": [25.0] * 6}, "shaft_rate gives shaft_rate twice; leave one"),
+    "a shaft that turns back": ({}, {"shaft_rpm": [-60] * 6}, "shaft_rate has values below 0"),
     "too few labels": ({}, {"fault": ["inner"] * 5}, "fault has shape (5,), not one value for each of 6 records."),
     "words for speeds": ({}, {"shaft_rpm": ["fast"] * 6}, "shaft_rate has no value 'fast'; give numbers."),
     "a column that is none": ({}, {"widht_mm": [1.0] * 6}, "there is no column widht_mm; the nearest is width_mm."),
@@ -71,6 +75,31 @@ def test_what_no_record_can_have_is_one_sentence_and_writes_nothing(tmp_path, wr
     assert sentence in str(refused.value)
     assert "\n" not in str(refused.value)
     assert not any(tmp_path.iterdir())
+
+
+def test_names_of_bearings_are_any_numbers_and_texts(tmp_path):
+    labels = LABELS | {"specimen": [10**12, 5, 10**12, 7, 7, 5]}
+    assert gen.to_arrays(gen.write_corpus(SIGNALS, tmp_path / "c", fs=FS, labels=labels)).groups.tolist() == [
+        0,
+        1,
+        0,
+        2,
+        2,
+        1,
+    ]
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, 1e300])
+def test_samples_that_no_file_can_hold_are_refused(tmp_path, wrong):
+    x = SIGNALS.astype(float)
+    x[1, 0, 3] = wrong
+    with pytest.raises(CorpusError, match="1 of 6 have samples that are not finite"):
+        gen.write_corpus(x, tmp_path / "c", fs=FS, labels=LABELS)
+
+
+def test_a_dataset_has_labels_of_its_own(tmp_path):
+    with pytest.raises(CorpusError, match="leave fs and labels out"):
+        gen.write_corpus(gen.record(duration_s=0.1), tmp_path / "c", fs=FS)
 
 
 @pytest.mark.parametrize("x", [SIGNALS[0, 0], SIGNALS[:0], SIGNALS.astype(str), SIGNALS[None]])

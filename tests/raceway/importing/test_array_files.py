@@ -83,12 +83,14 @@ def parquet(path):
     pd.DataFrame({"t [s]": T, "x [g]": X, "who": "me"}).to_parquet(path)
 
 
+CLOCK = np.datetime64("2026-01-01") + np.arange(N).astype("timedelta64[s]")
 SHEET = ods_row("t [s]", "x [g]") + "".join(map(ods_row, T.tolist(), X.tolist()))
 TWO = LVM.format(**ONE_LVM | {"channels": "2\t", "unit": "Newtons\tm/s^2", "step": "1.000000\t7.8125E-5", "columns": "No",
                               "names": "F (trigger)\tx (response)"})  # fmt: skip
 READ = {
     "one.tdms": (lambda path: tdms(path, ("DE", "g", X)), G * X),
     "pressure_and_one.tdms": (lambda path: tdms(path, ("p", "Pa", Y), ("a", "m/s^2", X)), X),
+    "clock_and_one.tdms": (lambda path: tdms(path, ("clock", "", CLOCK), ("a", "m/s^2", X)), X),
     "no_suffix_but_content.dat": (lambda path: tdms(path, ("DE [g]", "", X)), G * X),
     "text.uff": (lambda path: uff(path, ("DE", "g", X, {})), G * X),
     "binary.unv": (lambda path: uff(path, ("DE", "m/s^2", X, {}), binary=1), X),

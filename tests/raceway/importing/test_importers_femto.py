@@ -83,6 +83,15 @@ def test_missing_and_damaged_snapshots_are_named(tmp_path):
     ]
 
 
+def test_a_snapshot_with_a_number_of_its_own_takes_no_memory(tmp_path):
+    folder = tmp_path / "set" / "Bearing2_1"
+    write(folder, 1)
+    (folder / f"acc_{10**11}.csv").write_bytes((folder / "acc_00001.csv").read_bytes())
+    (folder / "acc_1.csv").write_bytes((folder / "acc_00001.csv").read_bytes())
+    done = import_set("femto", tmp_path / "set", tmp_path / "corpus")
+    assert done.warnings[0] == f"Bearing2_1: {10**11 - 2} snapshots are missing, the first is number 2."
+
+
 def test_a_folder_without_lives_is_refused(tmp_path):
     write(tmp_path / "set" / "Other", 1)
     with pytest.raises(CorpusError, match="has no folder such as Bearing1_1"):

@@ -148,7 +148,7 @@ WRONG = {
     "contact": ("jane at example.org", "contact: 'jane at example.org' is not an e-mail address"),
     "doi": ("11.1000/182", "doi: '11.1000/182' is not a DOI"),
     "date": ("31.3.2026", "date: '31.3.2026' is not a date; write year, month and day as 2026-03-31."),
-    "licence": ("MIT", "licence: no such key; allowed are license, creators"),
+    "licence": ("MIT", "licence: no such key; did you mean license?"),
 }  # fmt: skip
 
 
