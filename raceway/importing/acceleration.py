@@ -6,11 +6,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
-import numpy as np
-
-from gen.support.errors import CorpusError
 from raceway.importing.array_files import read_numpy, read_parquet, read_tdms, read_uff, read_wav
-from raceway.importing.columns import Values, signal_of
+from raceway.importing.columns import signal_of
 from raceway.importing.conversion import (
     Scale,
     Unit,
@@ -21,7 +18,7 @@ from raceway.importing.conversion import (
 )
 from raceway.importing.header import known_unit
 from raceway.importing.matlab import read_variable
-from raceway.importing.refused_files import FloatArray, UnusableError, reason_of
+from raceway.importing.refused_files import FloatArray, UnusableError, told_of
 from raceway.importing.sheets import read_sheet
 from raceway.importing.table import NumberTable, read_text
 
@@ -48,29 +45,24 @@ _SIGNATURES = {
     rb"TDSm": ".tdms",
 }
 _ZIPPED = (".npz", ".ods")
-_AS_HERE: Mapping[str, str] = MappingProxyType({})
+_AS_HERE: Mapping[str, str] = MappingProxyType({"sample_rate_hz": "rate"})
 
 
-class RefusedError(CorpusError):
-    """A sentence on a file, and the reason, which tells what is contradicted and which signals are axes of one sensor."""
+class Sensor(NamedTuple):
+    """A channel and how it is read; None stands for what the file states.
 
-    def __init__(self, message: str, reason: UnusableError) -> None:
-        super().__init__(message)
-        self.reason = reason
-
-
-class Place(NamedTuple):
-    """Place of a signal in a file.
-
-    ``variable`` is the name in a MATLAB file, by default that of the only signal in it, or the sheet of an Excel file, by default the
-    active one; ``column`` the name in the header of a text or sheet, or a number from 0; ``delimiter`` and ``decimal`` are the mark between
-    the columns of a text and its decimal mark, detected by default.
+    ``variable`` is the name in a MATLAB file, by default that of the only signal in it, or the sheet of a spreadsheet, by default the
+    active one; ``column`` the name in the header of a table, or a number from 0; ``delimiter`` and ``decimal`` are the mark between the
+    columns of a text and its decimal mark; ``rate`` is the sample rate [Hz].
     """
 
+    name: str = ""
     variable: str | None = None
     column: int | str | None = None
     delimiter: str | None = None
     decimal: str | None = None
+    scale: Scale = Scale(None)
+    rate: float | None = None
 
 
 class Signal(NamedTuple):
@@ -86,10 +78,6 @@ class Signal(NamedTuple):
     rpm: float | None = None
 
 
-Reader = Callable[[Place], Values]
-"""Values of a signal in the unit of its file, by its place."""
-
-
 def read_signal(
     path: Path,
     *,
@@ -100,7 +88,6 @@ def read_signal(
     unit: Unit | None = None,
     sensitivity: float | None = None,
     rate: float | None = None,
-    read: Reader | None = None,
     options: Mapping[str, str] = _AS_HERE,
 ) -> Signal:
     """Read a recording from a file of the user.
@@ -124,8 +111,6 @@ def read_signal(
         Of the sensor [mV/g], for a voltage.
     rate : float, optional
         Sample rate [Hz]; by default that of the times or the header. It is used even if a WAV file states another.
-    read : callable, optional
-        The :func:`reader` of the file, for several signals of it; by default a new one.
     options : mapping, optional
         Names of the options that give ``variable``, ``column``, ``delimiter``, ``decimal``, ``unit`` and ``rate``, for error messages.
 
@@ -137,60 +122,46 @@ def read_signal(
     Raises
     ------
     CorpusError
-        If the file cannot be read or holds no such signal, or unit and sensitivity do not belong together; a :class:`RefusedError`, which
-        is one, if the file states another rate, unit or kind of unit than is given, or none of its signals is chosen.
+        If the file cannot be read or holds no such signal, states another rate or unit than is given, or unit and sensitivity do not
+        belong together.
     """
-    try:
-        values = (read or reader(path))(Place(variable, column, delimiter, decimal))
-        signal = acceleration(values, unit, volts_per_acceleration(sensitivity, None), rate)
-    except UnusableError as reason:
-        raise RefusedError(f"{path}: {reason.told(options)}.", reason) from None
-    except (OSError, MemoryError) as error:
-        raise CorpusError(f"{path}: {reason_of(error)}.") from None
+    scale = Scale(unit, volts_per_acceleration(sensitivity, None))
+    with told_of(path, options):
+        signal = reader(path, "m/s2")(Sensor("", variable, column, delimiter, decimal, scale, rate))
     return signal._replace(warnings=tuple(f"{path.name}: {note}." for note in signal.warnings))
 
 
-def acceleration(
-    content: Values, unit: Unit | None, sensitivity: float | None, rate: float | None, key: str = "rate"
-) -> Signal:
-    """Signal of values in the unit of their file; the sensitivity is in V per m s-2, and ``key`` gives the rate."""
-    fs, notes = content.rate(rate, key)
-    used, of_unit = content.stated_unit(unit)
-    problem = unit_problem(used, sensitivity)
-    if problem is not None:
-        of_file = unit is None and sensitivity is not None and known_unit(content.unit) is not None
-        raise UnusableError(problem, contradicted="sensitivity" if of_file else "")
-    scale = Scale(used, sensitivity)
-    signal = accelerations(content.values, scale)
-    table = content.table
-    told = *table.notes, *notes, *of_unit, *doubts(content.values, signal, scale, absolute=table.absolute)
-    return Signal(signal, fs, told, used, table.rpm)
+def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
+    """Function that reads a signal of a file; it parses each table once. ``assumed`` is the unit where none is stated; None refuses.
 
-
-def reader(path: Path) -> Reader:
-    """Reader of signals of a file, which parses each of its tables once.
-
-    It raises an :class:`UnusableError` if the file is empty, of an unknown type, damaged or has no such signal, and an :class:`OSError`
-    if it cannot be opened.
+    It raises an :class:`UnusableError` if the file is empty, of an unknown type, damaged or has no such signal, or states otherwise than
+    is given, and an :class:`OSError` if it cannot be opened.
     """
-    tables: dict[Place, NumberTable] = {}
+    tables: dict[tuple[str | None, ...], NumberTable] = {}
 
-    def read(place: Place) -> Values:
-        which = place._replace(column=None)
+    def read(sensor: Sensor) -> Signal:
+        which = sensor.variable, sensor.delimiter, sensor.decimal
         if which not in tables:
-            tables[which] = _table(path, place)
-        content = signal_of(tables[which], place.column)
-        wrong = np.flatnonzero(~np.isfinite(content.values))
-        if wrong.size:
-            count = f"{wrong.size} samples of {content.values.size}"
-            message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
-            raise UnusableError(message)
-        return content
+            tables[which] = _table(path, *which)
+        table = tables[which]
+        content = signal_of(table, sensor.column)
+        fs, of_rate = content.rate(sensor.rate)
+        unit, of_unit = content.stated_unit(sensor.scale.unit, assumed)
+        scale = sensor.scale._replace(unit=unit)
+        problem = unit_problem(*scale)
+        if problem is not None:
+            of_file = (
+                sensor.scale.unit is None and scale.sensitivity is not None and known_unit(content.unit) is not None
+            )
+            raise UnusableError(problem, contradicted="sensitivity" if of_file else "")
+        signal = accelerations(content.values, scale)
+        doubtful = doubts(content.values, signal, scale, absolute=table.absolute)
+        return Signal(signal, fs, (*table.notes, *of_rate, *of_unit, *doubtful), unit, table.rpm)
 
     return read
 
 
-def _table(path: Path, place: Place) -> NumberTable:
+def _table(path: Path, variable: str | None, delimiter: str | None, decimal: str | None) -> NumberTable:
     suffix = path.suffix.lower()
     if path.is_file():
         with path.open("rb") as stream:
@@ -202,10 +173,10 @@ def _table(path: Path, place: Place) -> NumberTable:
     if suffix in _ARRAYS:
         return _ARRAYS[suffix](path)
     if suffix in _OF_PARTS:
-        return _OF_PARTS[suffix](path, place.variable)
+        return _OF_PARTS[suffix](path, variable)
     if not is_known(suffix):
         raise UnusableError(f"is of no known type; known are {', '.join(SUFFIXES)}")
-    return read_text(path, place.delimiter, place.decimal)
+    return read_text(path, delimiter, decimal)
 
 
 def is_known(suffix: str) -> bool:

@@ -32,7 +32,7 @@ class Values(NamedTuple):
     named: str
     table: NumberTable
 
-    def rate(self, given: float | None, key: str) -> tuple[float | None, list[str]]:
+    def rate(self, given: float | None) -> tuple[float | None, list[str]]:
         """Sample rate to be used, or None; and a sentence without its end if another one is stated.
 
         Raises
@@ -48,7 +48,7 @@ class Values(NamedTuple):
                 return given, []
             if self.table.playback is None and any(SLOWEST <= rate <= FASTEST for rate, _ in stated):
                 message = f"is at {told}, and {given:g} Hz are given; correct what is given"
-                raise UnusableError(message, key, contradicted="rate")
+                raise UnusableError(message, "sample_rate_hz", contradicted="rate")
             return given, [f"is at {told}; the given {given:g} Hz are used"]
         if not stated:
             return None, []
@@ -56,14 +56,14 @@ class Values(NamedTuple):
         if max(rates) > (1 + _SAME_RATE) * min(rates) or not SLOWEST <= rates[0] <= FASTEST:
             beyond = "" if SLOWEST <= min(rates) <= max(rates) <= FASTEST else f", beyond {SLOWEST:g} Hz to 1 MHz"
             message = f"is at {told}{beyond}; give the sample rate"
-            raise UnusableError(message, key)
+            raise UnusableError(message, "sample_rate_hz")
         of_sound = not self.rates and rates[0] % _SOUND == 0
         return rates[0], [
             f"its header states {rates[0]:g} Hz, as for sound; give the rate of the recording if it is another"
         ] if of_sound else []
 
-    def stated_unit(self, given: Unit | None) -> tuple[Unit, list[str]]:
-        """Unit to be used, and a sentence without its end if none or another one is stated.
+    def stated_unit(self, given: Unit | None, assumed: Unit | None) -> tuple[Unit, list[str]]:
+        """Unit to be used, and a sentence without its end if none or another one is stated; ``assumed`` if none is, None refuses.
 
         Raises
         ------
@@ -82,7 +82,9 @@ class Values(NamedTuple):
             return given, [f"states {self.named} in its header; the given unit {given} is used"] if said else []
         if known is not None:
             return known, []
-        return "m/s2", ["it states no unit, and m/s2 is assumed"] if self.table.absolute else []
+        if assumed is None:
+            raise UnusableError("states no unit; give it", "unit")
+        return assumed, [f"it states no unit, and {assumed} is assumed"] if self.table.absolute else []
 
 
 def signal_of(table: NumberTable, column: int | str | None) -> Values:
@@ -133,6 +135,11 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
     own = header.unit_of(signals[0])
     name = header.name(signals[0])
     named = f"column {name if own in name else f'{name} in {own}'}" if own else header.unit
+    wrong = np.flatnonzero(~np.isfinite(columns[signals[0]]))
+    if wrong.size:
+        count = f"{wrong.size} samples of {columns[signals[0]].size}"
+        message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
+        raise UnusableError(message)
     return Values(columns[signals[0]], tuple(rates), own or header.unit, named, table)
 
 

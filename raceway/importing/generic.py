@@ -19,7 +19,7 @@ from gen.corpus.fault_classes import fault_class
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from gen.support.units import rpm_to_hertz, to_si
-from raceway.importing.acceleration import acceleration, reader
+from raceway.importing.acceleration import reader
 from raceway.importing.assemble import Collection, Import, import_recordings
 from raceway.importing.assumptions import assumptions
 from raceway.importing.label_keys import Labels, SensorKeys
@@ -136,7 +136,7 @@ def _recordings(
     listed: dict[tuple[Any, ...], tuple[str, Labels]] = {}
     for place, path, labels in files:
         first_place, first = listed.setdefault(
-            (path, tuple(sensor.place for sensor in labels.sensors)), (place, labels)
+            (path, tuple((sensor.variable, sensor.column) for sensor in labels.sensors)), (place, labels)
         )
         if first is not labels:
             _check_alike(place, labels, first, f"is the file of {first_place}; remove one of the two rows")
@@ -218,21 +218,17 @@ def _join(parts: Sequence[tuple[Path, Labels]]) -> tuple[list[FloatArray], float
     speeds: list[float | None] = []
     notes: dict[str, None] = {}
     for path, labels in parts:
-        read = reader(path)
-        read_parts.append([])
+        read = reader(path, None)
+        signals = [read(sensor) for sensor in labels.sensors]
+        read_parts.append([signal.values for signal in signals])
         notes |= {labels.note: None} if labels.note else {}
-        for sensor in labels.sensors:
-            content = read(sensor.place)
-            if sensor.scale.unit is None and not content.unit:
-                raise UnusableError("states no unit; give it", "unit")
-            given = labels.rate(content.values.size)
-            signal = acceleration(content, *sensor.scale, given, "sample_rate_hz")
-            if signal.fs is None:
+        for sensor, signal in zip(labels.sensors, signals, strict=True):
+            rate = signal.fs or labels.rate(signal.values.size)
+            if rate is None:
                 raise UnusableError("states no sample rate; give it", "sample_rate_hz")
             if labels.long_rate_hz:
-                notes[f"its {content.values.size} samples are taken as recorded at {signal.fs:g} Hz"] = None
-            read_parts[-1].append(signal.values)
-            rates.add(signal.fs)
+                notes[f"its {signal.values.size} samples are taken as recorded at {rate:g} Hz"] = None
+            rates.add(rate)
             speeds.append(signal.rpm)
             notes |= dict.fromkeys(
                 f"channel {sensor.name}: {note}" if labels.channels else note for note in signal.warnings

@@ -3,7 +3,7 @@
 import math
 import unicodedata
 from pathlib import Path, PureWindowsPath
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
@@ -12,7 +12,7 @@ from gen.corpus.fault_classes import fault_class
 from gen.physics.bearing import Bearing
 from gen.physics.bearing_text import bearing_of_label
 from gen.support.key_types import Keys, Millimetres, Name, Text, as_text, on_one_line
-from raceway.importing.acceleration import WITHOUT_UNITS, Place
+from raceway.importing.acceleration import WITHOUT_UNITS, Sensor
 from raceway.importing.conversion import VOLTAGES, Scale, Unit, unit_problem, volts_per_acceleration
 
 if TYPE_CHECKING:
@@ -49,14 +49,6 @@ Rpm = Annotated[float, Field(ge=0.001, le=1e7)]
 Hertz = Annotated[float, Field(ge=1, le=1e8)]
 Seconds = Annotated[float, Field(ge=0, le=1e12)]
 Sensitivity = Annotated[float, Field(ge=1e-6, le=1e6)]
-
-
-class Sensor(NamedTuple):
-    """A channel with all that is needed to read it."""
-
-    name: str
-    place: Place
-    scale: Scale
 
 
 class SensorKeys(Keys):
@@ -151,9 +143,9 @@ class Labels(SensorKeys):
         given = own if own.sensitivity_mv_per_g or own.sensitivity_mv_per_m_s2 or unit not in VOLTAGES else self
         sensitivity = volts_per_acceleration(given.sensitivity_mv_per_g, given.sensitivity_mv_per_m_s2)
         column = self.column if own.column is None else own.column
-        return Sensor(
-            name, Place(own.variable or self.variable, column, self.delimiter, self.decimal), Scale(unit, sensitivity)
-        )
+        rate = None if self.long_rate_hz else self.sample_rate_hz
+        variable = own.variable or self.variable
+        return Sensor(name, variable, column, self.delimiter, self.decimal, Scale(unit, sensitivity), rate)
 
     @model_validator(mode="after")
     def _belong_together(self) -> Self:

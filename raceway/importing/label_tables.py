@@ -22,7 +22,7 @@ from gen.support.units import unit_suffix
 from gen.support.yaml_files import parse_yaml, read_yaml
 from raceway.importing.label_keys import Labels
 from raceway.importing.numerals import decimal_marks, is_number, number_in
-from raceway.importing.refused_files import UnusableError, guarded, reason_of
+from raceway.importing.refused_files import guarded, told_of
 from raceway.importing.text_files import text_of
 
 _TABLES = (".csv", ".txt", ".tsv")
@@ -139,20 +139,16 @@ def keys_of_yaml(path: Path) -> dict[str, Any]:
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
     """Lines of a table that are not empty, with their numbers from 1, as spreadsheets count; the first has the keys."""
-    try:
-        with guarded(path, "CSV"):
-            text = text_of(path).decode()
-            first, _, rest = text.partition("\n")
-            said = re.fullmatch("sep=(.)", first)
-            text = f"\n{rest}" if said else text  # a spreadsheet says its mark
-            head = next((line for line in text.split("\n") if line.strip(f" {_MARKS}")), "")
-            mark = said[1] if said else next((mark for mark in _MARKS if mark in head), ",")
-            cells = ([cell.strip(" \xa0") for cell in line] for line in csv.reader(io.StringIO(text), delimiter=mark))
-            filled = ((number, line) for number, line in enumerate(cells, 1) if any(line))
-            lines = [*islice(filled, limit("recording_files") + 2)]
-    except (UnusableError, OSError) as error:
-        reason = error if isinstance(error, UnusableError) else reason_of(error)
-        raise CorpusError(f"{path}: {reason}.") from None
+    with told_of(path, {}), guarded(path, "CSV"):
+        text = text_of(path).decode()
+        first, _, rest = text.partition("\n")
+        said = re.fullmatch("sep=(.)", first)
+        text = f"\n{rest}" if said else text  # a spreadsheet says its mark
+        head = next((line for line in text.split("\n") if line.strip(f" {_MARKS}")), "")
+        mark = said[1] if said else next((mark for mark in _MARKS if mark in head), ",")
+        cells = ([cell.strip(" \xa0") for cell in line] for line in csv.reader(io.StringIO(text), delimiter=mark))
+        filled = ((number, line) for number, line in enumerate(cells, 1) if any(line))
+        lines = [*islice(filled, limit("recording_files") + 2)]
     check_limit("recording_files", len(lines) - 1, f"{path}: names", CorpusError)
     if len(lines) < 2:
         message = f"{path}: has no rows; write one with keys such as path, fault and specimen, and below it one for each file."

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
 FloatArray = NDArray[np.floating]
@@ -74,6 +75,23 @@ def guarded(path: Path, kind: str) -> Iterator[None]:
         reason = f" ({str(error).splitlines()[0][:120]})" if isinstance(error, _WITH_REASON) and str(error) else ""
         message = f"is truncated, damaged or not a {kind} file{reason}"
         raise UnusableError(message) from error
+
+
+@contextmanager
+def told_of(path: Path, options: Mapping[str, str]) -> Iterator[None]:
+    """Turn what makes a file unusable into a sentence on it, which names the options of a caller.
+
+    Raises
+    ------
+    CorpusError
+        If the file cannot be used.
+    """
+    try:
+        yield
+    except UnusableError as reason:
+        raise CorpusError(f"{path}: {reason.told(options)}.") from None
+    except (OSError, MemoryError) as error:
+        raise CorpusError(f"{path}: {reason_of(error)}.") from None
 
 
 def reason_of(error: OSError | MemoryError) -> str:

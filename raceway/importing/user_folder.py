@@ -9,15 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gen.support.errors import CorpusError
-from raceway.importing.acceleration import (
-    SUFFIXES,
-    Reader,
-    RefusedError,
-    is_known,
-    read_signal,
-    reader,
-)
+from raceway.importing.acceleration import SUFFIXES, Sensor, Signal, is_known, reader
+from raceway.importing.conversion import Scale, volts_per_acceleration
 from raceway.importing.recorded import ACCELERATION, Recorded
+from raceway.importing.refused_files import UnusableError, told_of
 
 if TYPE_CHECKING:
     from raceway.importing.reading_options import Reading
@@ -26,7 +21,7 @@ _FEWEST = 8  # samples of a spectrum
 OPTIONS = {
     "column": "--channel",
     "variable": "--channel",
-    "rate": "--rate",
+    "sample_rate_hz": "--rate",
     "unit": "--unit",
     "delimiter": "--delimiter",
     "decimal": "--decimal",
@@ -87,52 +82,50 @@ def read_recording(
     Without a choice the axes of one sensor are all read. Options that are ``given_up`` are left out if the file contradicts them. The
     diagnosis itself warns of an implausible rms.
     """
-    read, notes = reader(path), list[str]()
-    asked = reading.channels
-    while True:
+    with told_of(path, OPTIONS):
+        return _read(path, reading, given_up)
+
+
+def _read(path: Path, reading: "Reading", given_up: Sequence[str]) -> "tuple[Recorded, Reading, tuple[str, ...]]":
+    read, asked, notes = reader(path, "m/s2"), reading.channels, list[str]()
+    signals: dict[str, Signal] = {}
+    while not signals:
         try:
-            recorded, used, told = _read(path, reading, read)
-        except RefusedError as error:
-            axes, option = error.reason.axes, error.reason.contradicted
-            if axes and not reading.channels:
-                reading = reading._replace(channels=axes)
+            signals = {channel or "": read(_sensor(path, reading, channel)) for channel in reading.channels or (None,)}
+        except UnusableError as reason:
+            option = reason.contradicted
+            if reason.axes and not reading.channels:
+                reading = reading._replace(channels=reason.axes)
             elif option in given_up:
                 value = getattr(reading, option)
                 said = value if isinstance(value, str) else f"{value:g}"
-                notes.append(f"{path.name}: it states otherwise than --{option} {said}, and is read as it states.")
+                notes.append(f"it states otherwise than --{option} {said}, and is read as it states")
                 reading = reading._replace(**{option: None})
             else:
                 raise
-        else:
-            if not asked and len(reading.channels) == 1:
-                (name,) = reading.channels
-                notes.append(f"{path.name}: {name} is read, which alone may be acceleration.")
-                recorded = recorded._replace(signals={"": recorded.signals[name]})
-            return recorded, used, (*told, *reversed(notes))
-
-
-def _read(path: Path, reading: "Reading", read: Reader) -> "tuple[Recorded, Reading, tuple[str, ...]]":
-    signals = {}
-    notes: list[str] = []
-    for channel in reading.channels or (None,):
-        number = int(channel) if channel is not None and channel.isdecimal() else channel
-        named = path.suffix.lower() == ".mat" and isinstance(number, str)
-        place = {"variable": number, "column": None} if named else {"variable": reading.variable, "column": number}
-        how = place | {name: getattr(reading, name) for name in ("unit", "sensitivity", "rate", "delimiter", "decimal")}
-        signal = read_signal(path, **how, read=read, options=OPTIONS)  # type: ignore[arg-type]
-        if signal.fs is None:
-            raise CorpusError(f"{path}: does not state its sample rate; give it with --rate HZ.")
-        signals[channel or ""] = signal
-        notes += [note for note in signal.warnings if "its rms" not in note]
-    shortest = min(signal.values.size for signal in signals.values())
+    if not asked and len(signals) == 1 and reading.channels:
+        notes.append(f"{reading.channels[0]} is read, which alone may be acceleration")
+        signals = {"": signals[reading.channels[0]]}
+    first, shortest = next(iter(signals.values())), min(signal.values.size for signal in signals.values())
+    if first.fs is None:
+        raise UnusableError("does not state its sample rate; give it with --rate HZ")
     if shortest < _FEWEST:
-        raise CorpusError(f"{path}: holds {shortest} samples, and a diagnosis needs {_FEWEST} at least; record 10 s.")
+        raise UnusableError(f"holds {shortest} samples, and a diagnosis needs {_FEWEST} at least; record 10 s")
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}
     unit = "unit of the file" if reading.unit is None and path.suffix.lower() == ".wav" else ACCELERATION
     units = " and ".join(dict.fromkeys(signal.unit for signal in signals.values()))
-    first = next(iter(signals.values()))
+    told = [note for signal in signals.values() for note in signal.warnings if "its rms" not in note] + notes[::-1]
     return (
         Recorded(cut, first.fs, str(path), unit, first.rpm),
         reading._replace(unit=units),
-        tuple(dict.fromkeys(notes)),
+        tuple(f"{path.name}: {note}." for note in dict.fromkeys(told)),
     )
+
+
+def _sensor(path: Path, reading: "Reading", channel: str | None) -> Sensor:
+    """How a channel is read; a name is a variable of a MATLAB file, and else a column."""
+    number = int(channel) if channel is not None and channel.isdecimal() else channel
+    named = path.suffix.lower() == ".mat" and isinstance(number, str)
+    variable, column = (number, None) if named else (reading.variable, number)
+    scale = Scale(reading.unit, volts_per_acceleration(reading.sensitivity, None))
+    return Sensor(channel or "", variable, column, reading.delimiter, reading.decimal, scale, reading.rate)

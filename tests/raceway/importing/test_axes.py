@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from raceway.importing.acceleration import RefusedError, read_signal
+from raceway.importing.acceleration import Sensor, read_signal, reader
 from raceway.importing.axes import axes_of
 from raceway.importing.header import Header, unit_said
+from raceway.importing.refused_files import UnusableError
 from tests.raceway.importing.file_writers import T, X, Y, array, mat, text, wav
 
 Z = np.roll(X, 7)
@@ -67,9 +68,9 @@ def test_a_file_of_several_signals_names_its_axes_as_they_are_chosen(name, conte
         content(path)
     else:
         path.write_text(content, encoding="utf-8")
-    with pytest.raises(RefusedError) as refused:
-        read_signal(path)
-    assert refused.value.reason.axes == axes
+    with pytest.raises(UnusableError) as refused:
+        reader(path, None)(Sensor())
+    assert refused.value.axes == axes
     columns = [int(one) if one.isdecimal() else one for one in axes]
     named = name == "fields.mat"
     found = [read_signal(path, **{"variable" if named else "column": one}).values for one in columns]
