@@ -96,7 +96,7 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
         If there is none or several, if its numbers are flawed or have two readings, or if times are not evenly spaced, or frequencies.
     """
     header, columns = table.header, table.columns
-    times = [n for n, values in columns.items() if header.is_of_time(n) or is_even(values) or has_gaps(values)]
+    times = [n for n, values in columns.items() if header.is_of_time(n) or is_even(values) or is_nearly_even(values)]
     if column is None:
         signals = [n for n in columns if n not in times]
     else:
@@ -160,19 +160,16 @@ def is_even(values: FloatArray) -> bool:
     return float(np.abs(values - line).max()) <= max(_resolution(values), _JITTER * (line[1] - line[0]))
 
 
-def has_gaps(values: FloatArray) -> bool:
-    """Whether values rise by one step, and here and there by several: a counter or times where samples are lost.
+def is_nearly_even(values: FloatArray) -> bool:
+    """Whether nearly all steps are alike, as in a counter or times where samples are lost.
 
-    >>> has_gaps(np.delete(np.arange(100), 40)), has_gaps(np.arange(100)), has_gaps(np.array([0, 1, 3, 9, 10, 17, 18, 19]))
-    (True, False, False)
+    >>> is_nearly_even(np.delete(np.arange(100), 40)), is_nearly_even(np.array([0, 1, 3, 9, 10, 17, 18, 19]))
+    (True, False)
     """
     steps = np.diff(values)
-    usual = np.median(steps) if steps.size else 0.0
-    if not usual > 0:
-        return False
-    counts = steps / usual
-    whole = np.abs(counts - np.round(counts)) < 1e-3
-    return bool(np.all(whole & (counts > 0.5)) and 0 < np.count_nonzero(counts > 1.5) < _MANY * counts.size)
+    usual = float(np.median(steps)) if steps.size else 0.0
+    alike = np.count_nonzero(np.abs(steps - usual) < _JITTER * usual)
+    return usual > 0 and bool(alike > (1 - _MANY) * steps.size)
 
 
 def _resolution(values: FloatArray) -> float:

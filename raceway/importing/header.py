@@ -37,7 +37,8 @@ class Header(NamedTuple):
     """What the lines before the numbers state.
 
     ``names`` are those of all columns, and ``units`` their units as written, empty if they are not stated; both are empty without names.
-    ``unit`` is that of all columns; ``rates`` are sample rates [Hz], and ``rates_of`` those of single columns.
+    ``unit`` is that of all columns; ``rates`` are sample rates [Hz], and ``rates_of`` those of single columns;
+    ``samples`` are the most that one states, if any.
     """
 
     names: tuple[str, ...] = ()
@@ -45,6 +46,7 @@ class Header(NamedTuple):
     unit: str = ""
     rates: tuple[float, ...] = ()
     rates_of: Mapping[int, float] = {}
+    samples: int = 0
 
     def name(self, column: int) -> str:
         """Number and name of a column."""
@@ -93,17 +95,19 @@ def header_of(rows: Sequence[Sequence[str]], least: int, most: int) -> Header:
 
 
 def _of_labview(lines: Sequence[list[str]], names: tuple[str, ...], units: tuple[str, ...]) -> Header:
-    """Header whose lines state unit and step of each column, in the place of the column."""
+    """Header whose lines state unit, step and samples of each column, in the place of the column."""
     said = {fields[0]: fields for fields in lines}
+    samples = max((int(field) for field in said.get("Samples", ()) if field.isdecimal()), default=0)
     if "Time" not in said.get("X_Dimension", ()):
-        return Header(names, units)
+        return Header(names, units, samples=samples)
     labels = [*said.get("Y_Unit_Label", ()), *[""] * len(names)]
     units = tuple(
         "s" if name == "X_Value" else unit if not label or known_unit(unit) else label
         for name, unit, label in zip(names, units, labels, strict=False)
     )
     steps = enumerate(said.get("Delta_X", ())[1:], 1)
-    return Header(names, units, rates_of={n: rate for n, step in steps if (rate := rate_of_step(step))})
+    rates = {n: rate for n, step in steps if (rate := rate_of_step(step))}
+    return Header(names, units, rates_of=rates, samples=samples)
 
 
 def _uncommented(fields: Sequence[str]) -> list[str]:
@@ -147,14 +151,11 @@ def unit_said(name: str) -> str:
     bracketed = _IN_BRACKETS.search(name)
     if bracketed and bracketed[2] not in ("X", "Y"):  # Origin numbers its columns A(X), B(Y)
         return (bracketed[1] or bracketed[2] or "").strip() or name
-    if _is_unit(name):
-        return name
     before, slash, after = name.partition("/")
-    if slash and _is_unit(after.strip()) and not _is_unit(re.split(r"[\s_,;]+", before.strip())[-1]):
-        return after.strip()
-    if slash and not _CHANNEL.fullmatch(after):
-        return name
-    return name if _ends_in_unit(name) else ""
+    if slash:
+        plain = _is_unit(after.strip()) and not unit_said(before.strip())
+        return after.strip() if plain else "" if _CHANNEL.fullmatch(after) else name
+    return name if _is_unit(re.split(r"[\s_,;]+", name)[-1]) else ""
 
 
 def key_of(unit: str) -> str:
@@ -169,12 +170,6 @@ def known_unit(unit: str) -> Unit | None:
 
 def _is_unit(text: str) -> bool:
     return key_of(text) in UNITS or key_of(text) in SECONDS or _OTHERS.fullmatch(key_of(text)) is not None
-
-
-def _ends_in_unit(text: str) -> bool:
-    """Whether the last of several words is a unit."""
-    *before, last = re.split(r"[\s_,;]+", text.strip())
-    return bool(before) and _is_unit(last)
 
 
 def _common_unit(lines: Sequence[list[str]], names: tuple[str, ...]) -> str:

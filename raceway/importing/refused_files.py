@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
-FloatArray = NDArray[np.floating]
+FloatArray = NDArray[np.float64]
 
 _WITH_REASON = (ValueError, OSError, EOFError, Warning)  # of a library; the text of others is about its code
 

@@ -42,7 +42,7 @@ def read_sheet(path: Path, sheet: str | None) -> NumberTable:
             rows = book.get_sheet_by_name(name).to_python(skip_empty_area=False)
         text = io.StringIO()
         csv.writer(text, delimiter="\t", lineterminator="\n").writerows([_text(cell) for cell in row] for row in rows)
-        table = read_table(text.getvalue().encode(), "\t", ".", _place)
+        table = read_table(text.getvalue().encode(), "\t", ".")
         return table._replace(notes=(*notes, *table.notes))
 
 
@@ -117,12 +117,3 @@ def _text(cell: Any) -> str:
         return cell.isoformat(" ") if isinstance(cell, datetime) else cell.isoformat()
     text = " ".join(str(cell).split())
     return f"'{text}" if is_number(text) else text
-
-
-def _place(number: int, column: int) -> str:
-    letters = ""
-    column += 1
-    while column:
-        column, letter = divmod(column - 1, 26)
-        letters = chr(ord("A") + letter) + letters
-    return f"cell {letters}{number}"

@@ -8,7 +8,7 @@ taken for a header or for the end: text or a gap among the rows is refused. The 
 
 import io
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from raceway.importing.header import Header, header_of
 from raceway.importing.numerals import AS_PYTHON, PATTERNS, decimal_marks, is_number
 from raceway.importing.refused_files import FloatArray, UnusableError, guarded
-from raceway.importing.text_files import BLANK, TextLine, first_lines, is_value, mark_between, split, text_of
+from raceway.importing.text_files import BLANK, first_lines, is_value, mark_between, split, text_of
 
 _MOST_COLUMNS, _AXES = 64, 3  # of a table without names; beyond three axes of a sensor they may be windows
 _LEAST_LENGTH, _LEAST_OF_CHANNELS = 8, 100  # of the longer axis, which is time, in widths of the shorter one
@@ -30,8 +30,6 @@ _NO_VALUE = re.compile(
     re.IGNORECASE,
 )
 _DIGIT = re.compile(r"[-+.,]?\d")
-Where = Callable[[int, int], str]
-"""Words on where a field is, by the number of its line and of its column."""
 
 
 class NumberTable(NamedTuple):
@@ -62,7 +60,7 @@ def read_text(path: Path, mark: str | None = None, decimal: str | None = None) -
     """
     content = text_of(path)
     with guarded(path, "delimited text"):
-        return read_table(content, mark or mark_between(first_lines(content)), decimal, lambda line, _: f"line {line}")
+        return read_table(content, mark or mark_between(first_lines(content)), decimal)
 
 
 def table_of(values: NDArray[Any]) -> NumberTable:
@@ -106,45 +104,55 @@ def is_flawed_row(fields: Iterable[str]) -> bool:
     )
 
 
-class Body(NamedTuple):
-    """Rows of a text from the line with a ``number`` on, and a sentence on what is left out after them."""
+class _Text(NamedTuple):
+    """A table in UTF-8 with a mark between its columns."""
 
     content: bytes
-    number: int
     mark: str
-    place: Where
-    notes: tuple[str, ...] = ()
 
     @property
     def height(self) -> int:
         """Number of lines."""
         return self.content.count(b"\n")
 
-    def parsed(self, width: int, point: str) -> pd.DataFrame:
-        """Columns of numbers, and of texts where not all rows have plain numbers."""
+    def flaw(self, number: int) -> UnusableError:
+        """Reason why the line with a number from 1 cannot be used."""
+        text = " ".join(next(split([self.content.split(b"\n", number)[number - 1].decode()], self.mark)).fields)
+        where = f"line {number} ({text!r:.60}), where {self.height - number + 1} lines would be lost"
+        return UnusableError(f"has no row like the others in {where}; correct the file, or cut it there")
+
+    def without_notes(self) -> "tuple[_Text, tuple[str, ...]]":
+        """Text without the notes and empty lines at its end, and a sentence on them."""
+        end, notes = len(self.content), list[str]()
+        while end:
+            line = self.content.rfind(b"\n", 0, end - 1) + 1
+            fields = next(split([self.content[line:end].decode()], self.mark)).fields
+            if is_row(fields) or is_flawed_row(fields):
+                break
+            notes += [" ".join(fields)] if any(fields) else []
+            end = line
+        text = self._replace(content=self.content[:end])
+        if len(notes) > _MOST_NOTES:
+            message = f"has more than {_MOST_NOTES} lines of text from line {text.height + 1} on; correct the file, or cut it there"
+            raise UnusableError(message)
+        return text, (f"text after the numbers is left out: {notes[-1]!r:.60}, lines: {len(notes)}",) if notes else ()
+
+    def parsed(self, start: int, width: int, point: str) -> pd.DataFrame:
+        """Columns of numbers from a line on, and of texts where not all rows have plain numbers."""
         try:
             return pd.read_csv(
-                io.BytesIO(self.content), sep=r"\s+" if self.mark == BLANK else self.mark, decimal=point, header=None,
-                names=range(width), skipinitialspace=True, skip_blank_lines=False, na_filter=False, low_memory=False,
+                io.BytesIO(self.content.split(b"\n", start - 1)[-1]), sep=r"\s+" if self.mark == BLANK else self.mark, decimal=point,
+                header=None, names=range(width), skipinitialspace=True, skip_blank_lines=False, na_filter=False, low_memory=False,
                 float_precision="round_trip",
             )  # fmt: skip
         except pd.errors.ParserError as error:
             line = re.search(r"in line (\d+)", str(error))
             if line is None:
                 raise
-            raise self.flaw(int(line[1]) - 1, 0) from None
-
-    def flaw(self, row: int, column: int) -> UnusableError:
-        """Reason why a row, counted from 0, cannot be used."""
-        line = self.content.split(b"\n", row + 1)[row].decode()
-        text = " ".join(next(split([f"{line}\n"], self.mark)).fields)
-        where = (
-            f"in {self.place(self.number + row, column)} ({text!r:.60}), where {self.height - row} lines would be lost"
-        )
-        return UnusableError(f"has no row like the others {where}; correct the file, or cut it there")
+            raise self.flaw(start + int(line[1]) - 1) from None
 
 
-def read_table(content: bytes, mark: str, decimal: str | None, place: Where) -> NumberTable:
+def read_table(content: bytes, mark: str, decimal: str | None) -> NumberTable:
     """Columns of a table in UTF-8 with a ``mark`` between them; ``decimal`` is by default the mark that suits its first lines.
 
     Raises
@@ -160,89 +168,50 @@ def read_table(content: bytes, mark: str, decimal: str | None, place: Where) -> 
     # the lines above the first row are its header, and those below the last one notes
     above = [line for line in lines[:first] if any(line.fields)]
     rows = [line.fields for line in lines[first:] if is_row(line.fields)]
-    body = _body(content, lines[first].number, mark, place)
-    if body.height == len(rows) and len(rows[0]) >= _LEAST_LENGTH * len(rows):  # a signal in each row
+    start, (text, notes) = lines[first].number, _Text(content, mark).without_notes()
+    height = text.height - start + 1
+    if height == len(rows) and len(rows[0]) >= _LEAST_LENGTH * len(rows):  # a signal in each row
         turned = "".join("\t".join(column) + "\n" for column in zip(*rows, strict=True))
-        return read_table(turned.encode(), "\t", decimal, place)
+        return read_table(turned.encode(), "\t", decimal)
     least = max(n for n, field in enumerate(rows[0], 1) if field)
     header = header_of([line.fields for line in above], least, len(rows[0]))
     width = max(len(header.names), *map(len, rows))
     columns = [[fields[n] if n < len(fields) else "" for fields in rows] for n in range(width)]
     starts = {n: [*filter(is_number, fields)] for n, fields in enumerate(columns) if any(map(is_number, fields))}
-    _check_beginning(above, rows, columns, starts, body)
+    # a row must not be taken for the end of the header, nor a line of the header for the first row
+    last = above[-1].fields if above else []
+    if last and (is_flawed_row(last) or all(n < len(last) and is_number(last[n]) for n in starts)):
+        raise text.flaw(above[-1].number)
+    if any(not columns[n][0] and all(columns[n][1:]) for n in starts):
+        raise text.flaw(start)
+    if [*filter(None, rows[0])] == [str(height - 1)]:
+        message = f"has {rows[0][0]} in line {start}, which is the number of the rows below; delete that line"
+        raise UnusableError(message)
+    if 0 < header.samples < height:
+        message = f"has {height} rows and states {header.samples} samples: it holds several blocks; save each in a file of its own"
+        raise UnusableError(message)
     # one column whose numbers have one reading tells the decimal mark of all
     marks = {n: decimal_marks(numbers) for n, numbers in starts.items() if re.search("[.,]", "".join(numbers))}
     point = decimal or ("," if "," in marks.values() and "." not in marks.values() else ".")
-    frame = body.parsed(width, point)
+    frame = text.parsed(start, width, point)
     read = {n: _numbers(frame[n], point) for n in starts}
+    # text begins a row, or between blanks moves the fields after it
+    tested = frame if mark == BLANK else frame[[0]]
+    row = min((_first_text(column, read.get(n), mark == BLANK) for n, column in tested.items()), default=height)  # type: ignore[arg-type]
+    if row < height:
+        raise text.flaw(start + row)
     # a column is used up to the first row in which it holds no number, and refused if it is asked for
     wrong = {n: int(np.argmin(np.isfinite(values))) for n, values in read.items() if not np.isfinite(values).all()}
-    row = min(wrong.values()) if wrong and mark == BLANK else _first_text(frame[0], read.get(0))
-    if row is not None:  # text begins the row, or a missing field between blanks moves the others
-        raise body.flaw(row, 0)
-    flaws = {n: body.flaw(row, n) for n, row in wrong.items()}
-    return NumberTable(
-        read | {n: read[n][: wrong[n]] for n in wrong}, header, flaws, {} if decimal else marks, body.notes
-    )
+    flaws = {n: text.flaw(start + row) for n, row in wrong.items()}
+    cut = {n: values[: wrong.get(n)] for n, values in read.items()}
+    return NumberTable(cut, header, flaws, {} if decimal else marks, notes)
 
 
-def _body(content: bytes, number: int, mark: str, place: Where) -> Body:
-    """Rows from the line with a number on, without notes and empty lines at the end."""
-    content = content.split(b"\n", number - 1)[-1]
-    end, notes = len(content), list[str]()
-    while end:
-        line = content.rfind(b"\n", 0, end - 1) + 1
-        fields = next(split([content[line:end].decode()], mark)).fields
-        if is_row(fields) or is_flawed_row(fields):
-            break
-        notes += [" ".join(fields)] if any(fields) else []
-        end = line
-    told = f"text after the numbers is left out: {notes[-1]!r:.60}, lines: {len(notes)}" if notes else ""
-    body = Body(content[:end], number, mark, place, (told,) if told else ())
-    if len(notes) > _MOST_NOTES:
-        where = place(number + body.height, 0)
-        raise UnusableError(
-            f"has more than {_MOST_NOTES} lines of text from {where} on; correct the file, or cut it there"
-        )
-    return body
-
-
-def _check_beginning(
-    above: Sequence[TextLine],
-    rows: Sequence[Sequence[str]],
-    columns: Sequence[Sequence[str]],
-    numeric: Iterable[int],
-    body: Body,
-) -> None:
-    """Refuse a row of numbers that is taken for the last line of the header, and a header that is taken for the first row."""
-    last = above[-1].fields if above else []
-    where = body.place(body.number, 0)
-    if last and (is_flawed_row(last) or all(n < len(last) and is_number(last[n]) for n in numeric)):
-        where = body.place(above[-1].number, 0)
-        raise UnusableError(f"has text among numbers in {where}, where the rows begin; correct that line, or delete it")
-    if any(not columns[n][0] and all(columns[n][1:]) for n in numeric):
-        raise UnusableError(
-            f"has a gap in {where}, where the rows begin; delete that line if it has no samples, or fill it"
-        )
-    if [*filter(None, rows[0])] == [str(body.height - 1)]:
-        message = f"has {rows[0][0]} in {where}, which is the number of the rows below; delete that line"
-        raise UnusableError(message)
-    samples = next((line.fields[1:] for line in above if line.fields[0] == "Samples"), [])
-    most = max((int(field) for field in samples if field.isdecimal()), default=0)
-    if most and above[0].fields[0].startswith("LabVIEW") and body.height > most:
-        message = (
-            f"has {body.height} rows and states {most} samples: it holds several blocks; save each in a file of its own"
-        )
-        raise UnusableError(message)
-    if body.mark == BLANK and any(field in ("-", "+") for fields in rows for field in fields):
-        raise UnusableError(f"has signs apart from their numbers from {where} on; export them side by side")
-
-
-def _first_text(column: "pd.Series[Any]", numbers: FloatArray | None) -> int | None:
-    """First row of the first column that holds neither a number nor a time stamp, nor is empty."""
+def _first_text(column: "pd.Series[Any]", numbers: FloatArray | None, gaps: bool) -> int:
+    """First row of a column that holds neither a number nor a time stamp; with ``gaps`` also one that is empty."""
     rows = [*range(len(column))] if numbers is None else np.flatnonzero(~np.isfinite(numbers)).tolist()
-    texts = column.iloc[rows].astype(str).str.strip()
-    return next((row for row, text in zip(rows, texts, strict=True) if text and not is_value(text)), None)
+    texts = zip(rows, column.iloc[rows].astype(str).str.strip(), strict=True)
+    return next((row for row, text in texts if (text or gaps) and not is_value(text)), len(column))
 
 
 def _numbers(column: "pd.Series[Any]", point: str) -> FloatArray:

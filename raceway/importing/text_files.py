@@ -14,7 +14,6 @@ START = 400  # lines that tell the columns
 BLANK = " "  # stands for any number of blanks and tabs
 _BEGINNING = 2_000_000  # bytes
 _LONGEST_LINE = 50_000_000  # bytes
-_ONE_COLUMN = "\x1f"
 _MARKS = ("\t", ";", ",", BLANK)
 _BLANKS = re.compile(r"[ \t]+")
 _EASTERN = re.compile(rb"[\x80-\xff]{3}")  # two letters with accents may stand side by side, but not three
@@ -125,14 +124,14 @@ def mark_between(lines: Sequence[str]) -> str:
         message = f"has no row of numbers among its first {len(lines)} lines; export numbers, or give the mark between columns"
         raise UnusableError(message, "delimiter")
     best = [mark for mark in _MARKS if len(rows[mark]) == most]
-    parting = [mark for mark in best if any(sum(map(bool, fields)) > 1 for fields in rows[mark])]
-    if not parting:  # but there may be empty fields
-        return next((mark for mark in best if any(len(fields) > 1 for fields in rows[mark])), _ONE_COLUMN)
-    whole = not any(set(field) & {".", ","} for fields in rows[parting[0]] for field in fields if is_number(field))
-    if len(parting) < len(best) or (parting[0] == "," and whole):  # 0,5 may be one number or two
+    numbers = {mark: [[*filter(is_number, fields)] for fields in rows[mark]] for mark in best}
+    mark = next((mark for mark in best if max(map(len, rows[mark])) > 1), best[0])
+    # 0,5 may be one number or two, and 512,37 too, where no number has a point
+    whole = mark == "," and not {*".,"} & {*"".join(map("".join, numbers[mark]))}
+    if whole or any(numbers[other] != numbers[mark] for other in best):
         message = "has commas or blanks between digits, which may stand between columns or in numbers; give the mark between columns"
         raise UnusableError(message, "delimiter")
-    return parting[0]
+    return mark
 
 
 def _is_plain_row(fields: Sequence[str]) -> bool:

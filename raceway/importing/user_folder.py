@@ -126,6 +126,6 @@ def _sensor(path: Path, reading: "Reading", channel: str | None) -> Sensor:
     """How a channel is read; a name is a variable of a MATLAB file, and else a column."""
     number = int(channel) if channel is not None and channel.isdecimal() else channel
     named = path.suffix.lower() == ".mat" and isinstance(number, str)
-    variable, column = (number, None) if named else (reading.variable, number)
+    variable, column = (channel, None) if named else (reading.variable, number)
     scale = Scale(reading.unit, volts_per_acceleration(reading.sensitivity, None))
     return Sensor(channel or "", variable, column, reading.delimiter, reading.decimal, scale, reading.rate)

@@ -76,7 +76,7 @@ REFUSED = {  # content or writer, what is given, part of the sentence
     "count_of_rows.csv": (f"{N}\n" + text(X), AT, "has 640 in line 1, which is the number of the rows below; delete that line."),
     "count_below_a_name.csv": (f"x [g]\n{N}\n" + text(X), AT, "has 640 in line 2, which is the number of the rows below"),
     "sign_apart.txt": (text(T, [f"{'- ' if x < 0 else '+ '}{abs(x)}" for x in X], mark=" "), {"column": 2, "delimiter": " ", **AT},
-        "has signs apart from their numbers from line 1 on; export them side by side."),
+        "has no row like the others in line 1 ('0 - 0.745831')"),
     "windows.npy": (array(np.stack([X[:520]] * 16, axis=1)), {"column": 0}, "windows cannot be told from channels"),
     "volts.csv": (text(VOLTS, form=".3f"), AT, "give the decimal mark with --decimal."),
     "table.mat": (table_7_3, {}, "holds T, which is a table; save its columns as arrays of numbers."),
