@@ -122,7 +122,7 @@ def _shown(
         if record is None:
             raise click.UsageError(f"{source} is a corpus: give the number of a record with --record")
         return shown_record(source, record, next(iter(reading.channels), 0), options["band"])
-    if bearing is None or speeds is None:
+    if bearing is None or (speeds is None and reading.speed_column is None):
         raise click.UsageError(f"{source} is a recording: give --bearing and --rpm, which tell where its lines lie")
     from raceway.importing.user_folder import read_recording
 
@@ -131,5 +131,7 @@ def _shown(
     for note in notes:
         notice(f"warning: {note}")
     (signal,) = recorded.signals.values()
-    rates = rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])
+    # the mean of a measured course is exact
+    low, high = (recorded.rpm or 0.0,) * 2 if speeds is None or reading.speed_column is not None else speeds
+    rates = rpm_to_hertz(low), rpm_to_hertz(high)
     return shown_recording(source.name, signal, recorded.fs, rates, bearing_orders(bearing), options["band"])

@@ -20,6 +20,7 @@ sheets          sheets of spreadsheets, as tables in text
 table           header, rows and notes of a table, parsed once by pandas
 header          names, units and sample rate in the header of a table
 numerals        numbers in text, and the decimal mark that suits them
+speed_course    recordings sampled again at equal angles of the shaft
 axes            columns that hold the axes of one sensor
 columns         choice of a column, and the sample rate that times tell
 array_files     NumPy, WAV, Parquet, TDMS and universal files

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from raceway.importing.array_files import read_numpy, read_parquet, read_tdms, read_uff, read_wav
-from raceway.importing.columns import signal_of
+from raceway.importing.columns import place_of, signal_of
 from raceway.importing.conversion import (
     Scale,
     Unit,
@@ -16,10 +16,11 @@ from raceway.importing.conversion import (
     unit_problem,
     volts_per_acceleration,
 )
-from raceway.importing.header import known_unit
+from raceway.importing.header import key_of, known_unit
 from raceway.importing.matlab import read_variable
 from raceway.importing.refused_files import FloatArray, UnusableError, told_of
 from raceway.importing.sheets import read_sheet
+from raceway.importing.speed_course import at_equal_angles
 from raceway.importing.table import NumberTable, read_text
 
 WITHOUT_UNITS = (".mat", ".npz", ".npy", ".wav")
@@ -45,6 +46,7 @@ _SIGNATURES = {
     rb"TDSm": ".tdms",
 }
 _ZIPPED = (".npz", ".ods")
+_OF_VARIABLES = (".mat", ".npz")
 _AS_HERE: Mapping[str, str] = MappingProxyType({"sample_rate_hz": "rate"})
 
 
@@ -54,6 +56,8 @@ class Sensor(NamedTuple):
     ``variable`` is the name in a MATLAB file, by default that of the only signal in it, or the sheet of a spreadsheet, by default the
     active one; ``column`` the name in the header of a table, or a number from 0; ``delimiter`` and ``decimal`` are the mark between the
     columns of a text and its decimal mark; ``rate`` is the sample rate [Hz].
+    ``speed_column`` holds the speed of the shaft in a ``speed_unit``, which for a tacho is the number of its pulses in a
+    turn; in a MATLAB file its name is that of a variable.
     """
 
     name: str = ""
@@ -63,6 +67,8 @@ class Sensor(NamedTuple):
     decimal: str | None = None
     scale: Scale = Scale(None)
     rate: float | None = None
+    speed_column: int | str | None = None
+    speed_unit: str | None = None
 
 
 class Signal(NamedTuple):
@@ -88,6 +94,8 @@ def read_signal(
     unit: Unit | None = None,
     sensitivity: float | None = None,
     rate: float | None = None,
+    speed_column: int | str | None = None,
+    speed_unit: str | None = None,
     options: Mapping[str, str] = _AS_HERE,
 ) -> Signal:
     """Read a recording from a file of the user.
@@ -111,6 +119,11 @@ def read_signal(
         Of the sensor [mV/g], for a voltage.
     rate : float, optional
         Sample rate [Hz]; by default that of the times or the header. It is used even if a WAV file states another.
+    speed_column : int or str, optional
+        Column with the speed of the shaft at each sample, or a tacho, by its number or name; of a MATLAB file a variable. The recording is
+        then sampled again at equal angles of the shaft, at its mean speed.
+    speed_unit : str, optional
+        ``"rpm"`` or ``"Hz"``; by default that in the header. Of a tacho the number of its pulses in a turn, such as ``"1"``.
     options : mapping, optional
         Names of the options that give ``variable``, ``column``, ``delimiter``, ``decimal``, ``unit`` and ``rate``, for error messages.
 
@@ -127,7 +140,9 @@ def read_signal(
     """
     scale = Scale(unit, volts_per_acceleration(sensitivity, None))
     with told_of(path, options):
-        signal = reader(path, "m/s2")(Sensor("", variable, column, delimiter, decimal, scale, rate))
+        signal = reader(path, "m/s2")(
+            Sensor("", variable, column, delimiter, decimal, scale, rate, speed_column, speed_unit)
+        )
     return signal._replace(warnings=tuple(f"{path.name}: {note}." for note in signal.warnings))
 
 
@@ -139,11 +154,20 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
     """
     tables: dict[tuple[str | None, ...], NumberTable] = {}
 
-    def read(sensor: Sensor) -> Signal:
-        which = sensor.variable, sensor.delimiter, sensor.decimal
+    def table_at(variable: str | None, sensor: Sensor) -> NumberTable:
+        which = variable, sensor.delimiter, sensor.decimal
         if which not in tables:
             tables[which] = _table(path, *which)
-        table = tables[which]
+        return tables[which]
+
+    def read(sensor: Sensor) -> Signal:
+        table, speed = table_at(sensor.variable, sensor), sensor.speed_column
+        beside, place = table, -1
+        if speed is not None:
+            if isinstance(speed, str) and path.suffix.lower() in _OF_VARIABLES:
+                beside, speed = table_at(speed, sensor), 0
+            place = place_of(beside, speed, "speed_column")
+            table = table.without(place) if beside is table else table
         content = signal_of(table, sensor.column)
         fs, of_rate = content.rate(sensor.rate)
         unit, of_unit = content.stated_unit(sensor.scale.unit, assumed)
@@ -156,7 +180,14 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
             raise UnusableError(problem, contradicted="sensitivity" if of_file else "")
         signal = accelerations(content.values, scale)
         doubtful = doubts(content.values, signal, scale, absolute=table.absolute)
-        return Signal(signal, fs, (*table.notes, *of_rate, *of_unit, *doubtful), unit, table.rpm)
+        told = *table.notes, *of_rate, *of_unit, *doubtful
+        if place < 0:
+            return Signal(signal, fs, told, unit, table.rpm)
+        if fs is None:
+            raise UnusableError("states no sample rate; give it", "sample_rate_hz")
+        unit_of_speed = sensor.speed_unit or key_of(beside.header.unit_of(place))
+        signal, rpm, of_course = at_equal_angles(signal, fs, beside.columns[place], unit_of_speed)
+        return Signal(signal, fs, (*told, of_course), unit, rpm)
 
     return read
 

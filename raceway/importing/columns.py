@@ -97,16 +97,7 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
     """
     header, columns = table.header, table.columns
     times = [n for n, values in columns.items() if header.is_of_time(n) or is_even(values) or is_nearly_even(values)]
-    if column is None:
-        signals = [n for n in columns if n not in times]
-    else:
-        signals = header.places(column)
-        if len(signals) > 1:
-            message = f"has several columns {column} ({_listed(header, signals)}); choose one by its number"
-            raise UnusableError(message, "column")
-        if not signals or signals[0] not in columns:
-            message = f"has the columns {_listed(header, [*columns])}, and no numbers in {column}; choose one"
-            raise UnusableError(message, "column")
+    signals = [n for n in columns if n not in times] if column is None else [place_of(table, column, "column")]
     if len(signals) > 1:
         message = f"has {len(columns)} columns ({_listed(header, [*columns])}) and none is chosen; choose one"
         raise UnusableError(message, "column", axes=tuple(map(header.key, axes_of(header, signals))))
@@ -114,13 +105,7 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
         message = f"has times or a counter in column {_listed(header, signals or times)}, and no signal; choose another"
         raise UnusableError(message, "column")
     # times are checked also where the signal is chosen: a gap in them is one in the signal
-    used = [*signals, *times]
-    flaw = next((table.flaws[n] for n in used if n in table.flaws), None)
-    if flaw is not None:
-        raise flaw
-    if {table.marks[n] for n in used if n in table.marks} == {".,"}:
-        message = "has numbers that can be read in two ways, such as 1.234; give the decimal mark"
-        raise UnusableError(message, "decimal")
+    _check_numbers(table, [*signals, *times])
     own_rate = header.rates_of.get(signals[0])
     rates = [(rate, "header") for rate in (header.rates if own_rate is None else (own_rate,))]
     for place in times:
@@ -135,12 +120,42 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
     own = header.unit_of(signals[0])
     name = header.name(signals[0])
     named = f"column {name if own in name else f'{name} in {own}'}" if own else header.unit
-    wrong = np.flatnonzero(~np.isfinite(columns[signals[0]]))
-    if wrong.size:
-        count = f"{wrong.size} samples of {columns[signals[0]].size}"
-        message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
-        raise UnusableError(message)
     return Values(columns[signals[0]], tuple(rates), own or header.unit, named, table)
+
+
+def place_of(table: NumberTable, column: int | str, key: str) -> int:
+    """Number of the column of numbers that a ``key`` names.
+
+    Raises
+    ------
+    UnusableError
+        If there is none or several, or if its numbers are flawed or have two readings.
+    """
+    places = table.header.places(column)
+    if len(places) > 1:
+        message = f"has several columns {column} ({_listed(table.header, places)}); choose one by its number"
+        raise UnusableError(message, key)
+    if not places or places[0] not in table.columns:
+        message = f"has the columns {_listed(table.header, [*table.columns])}, and no numbers in {column}; choose one"
+        raise UnusableError(message, key)
+    _check_numbers(table, places)
+    return places[0]
+
+
+def _check_numbers(table: NumberTable, used: Sequence[int]) -> None:
+    """Refuse columns that are flawed, or whose numbers have two readings."""
+    flaw = next((table.flaws[n] for n in used if n in table.flaws), None)
+    if flaw is not None:
+        raise flaw
+    if {table.marks[n] for n in used if n in table.marks} == {".,"}:
+        message = "has numbers that can be read in two ways, such as 1.234; give the decimal mark"
+        raise UnusableError(message, "decimal")
+    for n in used:
+        wrong = np.flatnonzero(~np.isfinite(table.columns[n]))
+        if wrong.size:
+            count = f"{wrong.size} samples of {table.columns[n].size}"
+            message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
+            raise UnusableError(message)
 
 
 def is_even(values: FloatArray) -> bool:

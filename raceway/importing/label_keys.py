@@ -45,6 +45,7 @@ def _separates(mark: str) -> str:
     return mark
 
 
+Column = Annotated[int | str, BeforeValidator(_column)]
 Rpm = Annotated[float, Field(ge=0.001, le=1e7)]
 Hertz = Annotated[float, Field(ge=1, le=1e8)]
 Seconds = Annotated[float, Field(ge=0, le=1e12)]
@@ -55,7 +56,7 @@ class SensorKeys(Keys):
     """Keys that a file and each of its channels can have."""
 
     variable: Name | None = None
-    column: Annotated[int | str, BeforeValidator(_column)] | None = None
+    column: Column | None = None
     unit: Unit | None = None
     sensitivity_mv_per_g: Sensitivity | None = None
     sensitivity_mv_per_m_s2: Sensitivity | None = None
@@ -86,6 +87,8 @@ class Labels(SensorKeys):
     bearing: Annotated[Bearing, BeforeValidator(bearing_of_label)]
     shaft_rpm: Rpm | None = None
     nominal_rpm: Rpm | None = None
+    speed_column: Column | None = None
+    speed_unit: Name | None = None
     load_n: Annotated[float, Field(ge=0, le=1e9)] | None = None
     motor_load_w: Annotated[float, Field(ge=0, le=1e9)] | None = None
     width_mm: Millimetres | None = None
@@ -131,6 +134,8 @@ class Labels(SensorKeys):
 
     def speed(self, stated: float | None) -> tuple[float, list[str]]:
         """Speed [rpm] of a file that states one or none, and a sentence without its end if the nominal one is used."""
+        if self.speed_column is not None:
+            return stated or math.nan, []
         if self.shaft_rpm is not None or self.nominal_rpm is None:
             return self.shaft_rpm or math.nan, []
         if stated is not None and abs(stated / self.nominal_rpm - 1) <= _SPEED_TOLERANCE:
@@ -145,12 +150,18 @@ class Labels(SensorKeys):
         column = self.column if own.column is None else own.column
         rate = None if self.long_rate_hz else self.sample_rate_hz
         variable = own.variable or self.variable
-        return Sensor(name, variable, column, self.delimiter, self.decimal, Scale(unit, sensitivity), rate)
+        place = name, variable, column, self.delimiter, self.decimal
+        return Sensor(*place, Scale(unit, sensitivity), rate, self.speed_column, self.speed_unit)
 
     @model_validator(mode="after")
     def _belong_together(self) -> Self:
-        if self.shaft_rpm is None and self.nominal_rpm is None:
+        speed = self.shaft_rpm or self.nominal_rpm
+        if speed is None and self.speed_column is None:
             raise ValueError("shaft_rpm: is missing; give it.")
+        if self.speed_column is not None and (speed or self.recording):
+            raise ValueError(
+                "speed_column: tells the speed of one file; leave shaft_rpm, nominal_rpm and recording out."
+            )
         if self.sample_rate_hz is None and self.path.lower().endswith(".npy"):
             raise ValueError("sample_rate_hz: is missing; give it.")
         if (

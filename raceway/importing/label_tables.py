@@ -167,7 +167,7 @@ def value_of(where: str, key: str, text: Any, marks: str = "") -> Any:
     if key == "channels":
         return parse_yaml(text, where, CorpusError)
     if key not in _NUMBERS or not is_number(text):
-        return int(text) if key == "column" and text.isdecimal() else text
+        return int(text) if key in ("column", "speed_column") and text.isdecimal() else text
     number = number_in(text, marks if len(marks) == 1 else "")
     if number is None:
         raise CorpusError(

@@ -23,6 +23,8 @@ class Reading(NamedTuple):
     rate: float | None
     delimiter: str | None
     decimal: str | None = None
+    speed_column: str | None = None
+    speed_unit: str | None = None
 
 
 def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
@@ -106,4 +108,16 @@ _decimal: Decorator = click.option(
     type=click.Choice(DECIMAL_MARKS),
     help="Decimal mark of a text, if its numbers can be read in two ways, such as 1.234.",
 )
-reading_options = gathered("reading", Reading, _rate, _unit, _sensitivity, _channels, _variable, _delimiter, _decimal)
+_speed_column: Decorator = click.option(
+    "--speed-column",
+    metavar="NAME",
+    help="Column, by name or number from 0, or variable of a MATLAB file with the speed at each sample or a tacho: the recording is "
+    "sampled again at equal angles of its shaft.",
+)
+_speed_unit: Decorator = click.option(
+    "--speed-unit",
+    metavar="UNIT",
+    help="Unit of --speed-column: rpm or Hz, by default that in the header; or the pulses of a tacho in a turn, such as 1.",
+)
+_places = (_channels, _variable, _delimiter, _decimal, _speed_column, _speed_unit)
+reading_options = gathered("reading", Reading, _rate, _unit, _sensitivity, *_places)

@@ -49,6 +49,10 @@ class NumberTable(NamedTuple):
     absolute: bool = True
     rpm: float | None = None
 
+    def without(self, column: int) -> "NumberTable":
+        """Table without a column."""
+        return self._replace(columns={n: values for n, values in self.columns.items() if n != column})
+
 
 def read_text(path: Path, mark: str | None = None, decimal: str | None = None) -> NumberTable:
     """Table in a text, with a ``mark`` between its columns and a ``decimal`` mark, which are by default those that suit its first lines.

@@ -25,6 +25,8 @@ OPTIONS = {
     "unit": "--unit",
     "delimiter": "--delimiter",
     "decimal": "--decimal",
+    "speed_column": "--speed-column",
+    "speed_unit": "--speed-unit",
 }
 
 
@@ -124,8 +126,14 @@ def _read(path: Path, reading: "Reading", given_up: Sequence[str]) -> "tuple[Rec
 
 def _sensor(path: Path, reading: "Reading", channel: str | None) -> Sensor:
     """How a channel is read; a name is a variable of a MATLAB file, and else a column."""
-    number = int(channel) if channel is not None and channel.isdecimal() else channel
+    number = _place(channel)
     named = path.suffix.lower() == ".mat" and isinstance(number, str)
     variable, column = (channel, None) if named else (reading.variable, number)
     scale = Scale(reading.unit, volts_per_acceleration(reading.sensitivity, None))
-    return Sensor(channel or "", variable, column, reading.delimiter, reading.decimal, scale, reading.rate)
+    place = channel or "", variable, column, reading.delimiter, reading.decimal
+    return Sensor(*place, scale, reading.rate, _place(reading.speed_column), reading.speed_unit)
+
+
+def _place(column: str | None) -> int | str | None:
+    """Number of a column, or its name."""
+    return int(column) if column is not None and column.isdecimal() else column

@@ -25,7 +25,7 @@ VALUES = {
     "long_samples": 9,
     "long_rate_hz": 48000, "width_mm": 1.25, "depth_um": 20, "angle_deg": -90, "n_spalls": 2, "sample_rate_hz": 12800, "resample_hz": 6400,
     "delimiter": "\t", "channel": "drive end", "decimal": ",",
-    "title": "Pump; 7", "origin": "Plant, spring", "variable": "X*_DE", "column": "ax",
+    "title": "Pump; 7", "origin": "Plant, spring", "variable": "X*_DE", "column": "ax", "speed_column": 3, "speed_unit": "60",
     "unit": "mV", "sensitivity_mv_per_g": 50.5, "sensitivity_mv_per_m_s2": 10.2,
     "channels": '[{"name": "x", "column": 0}, {"name": "y", "column": "ay"}]',
 }  # fmt: skip
@@ -46,10 +46,9 @@ def refusal(folder, *rows, **options):
 @pytest.mark.parametrize("key", Labels.model_fields)
 def test_every_key_is_a_column_and_a_key_of_all_rows(tmp_path, key):
     value = VALUES[key]
-    rest = {name: one for name, one in BASE.items() if name != key}
+    rest = {name: common for name, common in BASE.items() if name != key}
     rest |= {"age_s": 5} if key in ("rul_s", "event") else {}
-    if key == "sensitivity_mv_per_m_s2":
-        del rest["sensitivity_mv_per_g"]
+    rest.pop({"sensitivity_mv_per_m_s2": "sensitivity_mv_per_g", "speed_column": "shaft_rpm"}.get(key), None)
     (column,) = read(tmp_path, rest | {key: value}, mark=";")
     assert column != Labels.model_validate({**BASE, "path": "a.npy"})
     (given_to_all,) = read(tmp_path, rest, common={key: str(value)})
@@ -93,7 +92,7 @@ def test_a_quantity_out_of_range_is_told_with_its_place(tmp_path, key):
         tmp_path, *rows
     )
     assert refusal(tmp_path, *rows, mark=";").count("\n") == 0
-    rest = [{name: one for name, one in BASE.items() if name != key}]
+    rest = [{name: common for name, common in BASE.items() if name != key}]
     assert f"labels.yaml: {key}: -1000000000.0 is not allowed here" in refusal(tmp_path, *rest, **{key: -1e9})
     (tmp_path / "labels.yaml").unlink()
     assert f"common key {key}: '-1e9' is not allowed here" in refusal(tmp_path, *rest, common={key: "-1e9"}).replace(
@@ -103,7 +102,7 @@ def test_a_quantity_out_of_range_is_told_with_its_place(tmp_path, key):
 
 @pytest.mark.parametrize("key", [key for key, field in Labels.model_fields.items() if field.is_required()])
 def test_a_missing_key_is_told_with_the_places_where_it_can_be_given(tmp_path, key):
-    rest = {name: one for name, one in BASE.items() if name != key}
+    rest = {name: common for name, common in BASE.items() if name != key}
     expected = f"labels.csv, row 2, column {key}: is missing; give it there, or for all files in labels.yaml."
     assert refusal(tmp_path, rest, rest) == expected
 

@@ -1,0 +1,70 @@
+"""A measured course of the speed: the recording is sampled again at equal angles of its shaft.
+
+``speed or tacho at each sample -> angle -> as many samples in a turn as the mean speed has``
+
+A fault line then lies at its order as at a constant speed, and what moves is the resonances: a band of frequencies is smeared as widely
+as the speed varies.
+"""
+
+import numpy as np
+
+from gen.support.units import from_si, rpm_to_hertz
+from raceway.importing.refused_files import FloatArray, UnusableError
+
+_SMEARED = 2 ** (1 / 3)  # highest over lowest speed: a third of an octave, as narrow as bands of features are
+_UNEVEN = 1.6  # ratio of the times between neighbouring pulses: one is missed or double
+_HERTZ = {"hz": 1.0, "1/s": 1.0} | dict.fromkeys(("rpm", "1/min", "min-1", "r/min", "u/min"), rpm_to_hertz(1.0))
+
+
+def at_equal_angles(signal: FloatArray, fs: float, course: FloatArray, unit: str) -> tuple[FloatArray, float, str]:
+    """Signal at equal angles, shape (time,), its mean speed [rpm], and a sentence without its end.
+
+    ``course`` is the speed at each sample, shape (time,), in a ``unit`` of speed, or a tacho whose unit is the number of its pulses in a
+    turn. The sample rate is kept, and what the filter lacks at both ends is cut.
+
+    Raises
+    ------
+    UnusableError
+        If the course is none of a shaft that turns all the time.
+    """
+    from features.signal.orders import CROSSINGS, angles_from_speed, angles_from_tacho, resample_to_angle
+
+    factor, pulses = _HERTZ.get(unit.casefold()), int(unit) if unit.isdecimal() else 0
+    if factor is None and pulses < 1:
+        raise UnusableError(
+            "has a speed in no known unit; give rpm, Hz, or the pulses in a turn of a tacho", "speed_unit"
+        )
+    if course.size != signal.size:
+        raise UnusableError(f"has {course.size} speeds and {signal.size} samples; export one for each sample")
+    slow = np.flatnonzero(~(course > 0))
+    if factor and slow.size:
+        message = f"has a speed of {course[slow[0]]:g} {unit} at sample {slow[0] + 1}; cut the recording where its shaft does not turn"
+        raise UnusableError(message)
+    try:
+        angle = angles_from_speed(course * factor, fs) if factor else angles_from_tacho(course, pulses)
+        turns = angle / (2 * np.pi)
+        mean = (turns[-1] - turns[0]) * fs / (course.size - 1)
+        # two samples in each turn of a wheel that turns as much faster as the sample rate asks
+        even = resample_to_angle(signal, angle * (fs / (2 * mean)), 2)
+    except ValueError as error:
+        raise UnusableError(f"has no course of a speed: {error}") from None
+    if pulses:
+        places = np.interp(
+            np.arange(np.ceil(turns[0] * pulses), turns[-1] * pulses), turns * pulses, np.arange(turns.size)
+        )
+        ratio = np.diff(places)[1:] / np.diff(places)[:-1]
+        odd = np.flatnonzero(np.maximum(ratio, 1 / ratio) > _UNEVEN)
+        if odd.size:
+            raise UnusableError(
+                f"has a tacho with a missed or a double pulse at {places[odd[0] + 1] / fs:.4g} s; correct it"
+            )
+    rates = np.gradient(turns) * fs
+    low, high = float(rates.min()), float(rates.max())
+    told = (
+        f"it is sampled again at equal angles of its shaft, which turns at {from_si(low, 'rpm'):.5g} to {from_si(high, 'rpm'):.5g} rpm, "
+        f"{from_si(mean, 'rpm'):.5g} rpm in the mean"
+    )
+    if high > _SMEARED * low:
+        told += "; so wide a range smears resonances over bands of frequencies: trust its orders alone, or cut it into shorter ones"
+    end = int(np.ceil(CROSSINGS * high / mean))
+    return np.asarray(even[end:-end], dtype=np.float64), float(from_si(mean, "rpm")), told

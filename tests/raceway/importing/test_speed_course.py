@@ -1,0 +1,129 @@
+"""A recording of a varying speed, with its measured course beside it, has its fault lines at their orders."""
+
+import numpy as np
+import pytest
+import scipy.io
+
+import gen
+from features.signal.demodulation import amplitude_spectrum
+from gen.corpus import open_corpus
+from gen.support.errors import CorpusError
+from raceway.importing import read_signal
+from raceway.importing.speed_course import at_equal_angles
+from raceway.importing.user_folder import OPTIONS
+from tests.diagnoses import told
+from tests.labels import import_labelled
+from tests.raceway.importing.file_writers import FS, N, X, text
+from tests.run_ups import lines
+
+RATE, SECONDS, RPM = 12_000, 4.0, 1500.0
+BPFO = gen.bearing_orders("6205").bpfo
+SHARE = np.linspace(0.8, 1.2, round(RATE * SECONDS))
+LABELS = {"bearing": "6205", "fault": "outer", "specimen": "A", "unit": "m/s2", "sample_rate_hz": RATE}
+
+
+@pytest.fixture(scope="module")
+def run_up():
+    """Acceleration of a bearing with a spall on its outer race while the speed rises by half."""
+    profile = {"kind": "ramp", "from_percent": 80, "to_percent": 120}
+    keys = {"sample_rate_hz": RATE, "duration_s": SECONDS, "speed_profile": profile, "seed": 1, "shaft_rpm": RPM}
+    return gen.record(gen.outer(width_mm=1.0), bearing="6205", **keys).acceleration.values[0].astype(float)
+
+
+def pulses(turns, per_turn=1):
+    """Tacho that is high in a tenth of the time between pulses."""
+    return ((turns * per_turn) % 1 < 0.1).astype(float)
+
+
+def height_of_line(signal, rate, order):
+    """Highest line of the envelope within 1 % of an order, over the median of its neighbours."""
+    frequencies, amplitude = amplitude_spectrum(np.abs(signal - signal.mean())[np.newaxis], 1.0 * RATE)
+    near = amplitude[0, np.abs(frequencies / rate / order - 1) < 0.01].max()
+    return near / np.median(amplitude[0, np.abs(frequencies / rate / order - 1) < 0.3])
+
+
+@pytest.mark.parametrize(("course", "unit"), [("speed", "rpm"), ("speed", "Hz"), ("tacho", "1"), ("tacho", "16")])
+def test_a_run_up_shows_its_fault_line_with_its_course_and_not_without(run_up, course, unit):
+    turns = np.cumsum(SHARE) * RPM / 60 / RATE
+    values = pulses(turns, int(unit)) if course == "tacho" else SHARE * RPM / (60 if unit == "Hz" else 1)
+    even, rpm, sentence = at_equal_angles(run_up, RATE, values, unit)
+    assert rpm == pytest.approx(RPM, rel=2e-3)
+    assert even.size == pytest.approx(run_up.size, rel=0.01)
+    assert height_of_line(even, rpm / 60, BPFO) > 100
+    assert height_of_line(run_up, rpm / 60, BPFO) < 10
+    assert "which turns at 1200 to 1800 rpm, 1500 rpm in the mean; so wide a range" in sentence or course == "tacho"
+
+
+def test_lines_of_the_shaft_keep_their_height_and_stand_at_their_order():
+    rate = 24 * (1 + 0.1 * np.sin(np.linspace(0, 20, 40_000)))
+    even, rpm, sentence = at_equal_angles(lines(rate, (1, 7)), FS, rate, "Hz")
+    frequencies, amplitude = amplitude_spectrum(even[np.newaxis], FS)
+    for order in (1, 7):
+        near = np.abs(frequencies * 60 / rpm - order) < 0.1
+        assert amplitude[0, near].max() == pytest.approx(1, rel=0.02)
+        assert frequencies[near][amplitude[0, near].argmax()] == pytest.approx(order * rpm / 60, rel=2e-3)
+    assert "so wide a range" not in sentence
+
+
+def test_the_diagnosis_of_a_run_up_is_right_with_its_course(run_up, model, tmp_path):
+    path = tmp_path / "run_up.csv"
+    path.write_text(text(run_up, SHARE * RPM, mark=",", header="x [m/s2],speed [rpm]\n"))
+    found = told(path, "--bearing", "6205", "--rate", RATE, "--speed-column", "speed", "--model", model)
+    assert found["verdict"] == "outer"
+    assert found["shaft_rpm"] == pytest.approx(RPM, rel=1e-2)
+    assert any("equal angles of its shaft" in sentence for sentence in found["warnings"])
+    assert (
+        told(path, "--bearing", "6205", "--rate", RATE, "--channel", 0, "--rpm", RPM, "--model", model)["verdict"]
+        != "outer"
+    )
+
+
+def test_an_import_has_the_mean_speed_as_its_label(run_up, tmp_path):
+    scipy.io.savemat(tmp_path / "a.mat", {"x": run_up, "speed": SHARE * RPM})
+    row = {"path": "a.mat", "variable": "x", "speed_column": "speed", "speed_unit": "rpm"}
+    done = import_labelled(tmp_path, [row], **LABELS)
+    with open_corpus(done.path) as corpus:
+        np.testing.assert_allclose(corpus.shaft_rate, RPM / 60, rtol=1e-4)
+        assert corpus.sizes["record"] == 7
+    assert (
+        "a.mat:x: it is sampled again at equal angles of its shaft, which turns at 1200 to 1800 rpm" in done.warnings[0]
+    )
+    for keys in ({"shaft_rpm": 1500}, {"recording": "r"}):
+        with pytest.raises(CorpusError, match="speed_column: tells the speed of one file; leave shaft_rpm, nominal"):
+            import_labelled(tmp_path, [row | keys], **LABELS)
+
+
+TURNS = np.arange(N) / 40
+MISSED = np.where((TURNS > 7.5) & (TURNS < 8.5), 0, pulses(TURNS))
+REFUSED = {  # header of the column, its values, unit, part of the sentence
+    "unit": ("speed", X + 20, None, "has a speed in no known unit; give rpm, Hz, or the pulses in a turn of a tacho with --speed-unit."),
+    "other unit": ("speed [m/s]", X + 20, None, "has a speed in no known unit"),
+    "rest": ("speed [Hz]", np.r_[X[:99] + 20, 0, X[100:] + 20], None, "has a speed of 0 Hz at sample 100; cut the recording where"),
+    "backwards": ("speed [Hz]", -20 - X, None, "at sample 1; cut the recording where its shaft does not turn."),
+    "gap": ("speed [Hz]", [*np.round(X[:-1] + 20, 3).tolist(), ""], None, "has no row like the others in line 641"),
+    "no pulses": ("tacho", X * 0 + 1, "1", "has no course of a speed: tacho: record 0 has 0 pulses"),
+    "missed pulse": ("tacho", MISSED, "1", "has a tacho with a missed or a double pulse at 0.02"),
+    "no such column": ("n", X + 20, "Hz", "and no numbers in speed; choose one with --speed-column."),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_course_that_is_none_is_refused_with_one_sentence(tmp_path, name):
+    header, values, unit, sentence = REFUSED[name]
+    (tmp_path / "a.csv").write_text(text(X, values, header=f"x [g];{header}\n"))
+    with pytest.raises(CorpusError) as refused:
+        read_signal(
+            tmp_path / "a.csv",
+            rate=FS,
+            speed_column="tacho" if header == "tacho" else "speed",
+            speed_unit=unit,
+            options=OPTIONS,
+        )
+    assert sentence in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_course_that_is_shorter_than_its_signal_is_refused(tmp_path):
+    scipy.io.savemat(tmp_path / "a.mat", {"x": X, "speed": X[:-9] + 20})
+    with pytest.raises(CorpusError, match="has 631 speeds and 640 samples; export one for each sample"):
+        read_signal(tmp_path / "a.mat", variable="x", rate=FS, speed_column="speed", speed_unit="Hz")
