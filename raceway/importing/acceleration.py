@@ -6,6 +6,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
+import numpy as np
+
 from raceway.importing.array_files import read_numpy, read_parquet, read_tdms, read_uff, read_wav
 from raceway.importing.columns import place_of, signal_of
 from raceway.importing.conversion import (
@@ -160,9 +162,10 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
             tables[which] = _table(path, *which)
         return tables[which]
 
+    @np.errstate(all="ignore")
     def read(sensor: Sensor) -> Signal:
         table, speed = table_at(sensor.variable, sensor), sensor.speed_column
-        beside, place = table, -1
+        beside, place = table, 0
         if speed is not None:
             if isinstance(speed, str) and path.suffix.lower() in _OF_VARIABLES:
                 beside, speed = table_at(speed, sensor), 0
@@ -181,13 +184,16 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
         signal = accelerations(content.values, scale)
         doubtful = doubts(content.values, signal, scale, absolute=table.absolute)
         told = *table.notes, *of_rate, *of_unit, *doubtful
-        if place < 0:
-            return Signal(signal, fs, told, unit, table.rpm)
-        if fs is None:
-            raise UnusableError("states no sample rate; give it", "sample_rate_hz")
-        unit_of_speed = sensor.speed_unit or key_of(beside.header.unit_of(place))
-        signal, rpm, of_course = at_equal_angles(signal, fs, beside.columns[place], unit_of_speed)
-        return Signal(signal, fs, (*told, of_course), unit, rpm)
+        rpm = table.rpm
+        if speed is not None:
+            if fs is None:
+                raise UnusableError("states no sample rate; give it", "sample_rate_hz")
+            unit_of_speed = sensor.speed_unit or key_of(beside.header.unit_of(place))
+            signal, rpm, of_course = at_equal_angles(signal, fs, beside.columns[place], unit_of_speed)
+            told = *told, of_course
+        if not np.isfinite(signal).all():
+            raise UnusableError("has values beyond the range of numbers; check its unit")
+        return Signal(signal, fs, told, unit, rpm)
 
     return read
 

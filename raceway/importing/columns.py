@@ -184,7 +184,7 @@ def is_nearly_even(values: FloatArray) -> bool:
     steps = np.diff(values)
     usual = float(np.median(steps)) if steps.size else 0.0
     alike = np.count_nonzero(np.abs(steps - usual) < _JITTER * usual)
-    return usual > 0 and bool(alike > (1 - _MANY) * steps.size)
+    return usual > 0 and bool(np.all(steps >= 0)) and bool(alike > (1 - _MANY) * steps.size)
 
 
 def _resolution(values: FloatArray) -> float:
@@ -213,6 +213,6 @@ def _rate_of(times: FloatArray) -> float | None:
 
 def _listed(header: Header, columns: Sequence[int]) -> str:
     """Numbers and names of columns."""
-    shown = [header.name(n)[:60] for n in columns[:_MOST_NAMED]]
+    shown = [header.name(n) for n in columns[:_MOST_NAMED]]
     more = len(columns) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more else "")

@@ -50,7 +50,7 @@ class Header(NamedTuple):
 
     def name(self, column: int) -> str:
         """Number and name of a column."""
-        return f"{column} {self.names[column]}".rstrip() if self.names else f"{column}"
+        return f"{column} {self.names[column][:60]}".rstrip() if self.names else f"{column}"
 
     def unit_of(self, column: int) -> str:
         """Unit of a column as it is written."""
@@ -73,6 +73,11 @@ class Header(NamedTuple):
         column = column.translate(_NARROW)
         exact = [n for n, name in enumerate(self.names) if name == column]
         return exact or [n for n, name in enumerate(map(_without_unit, self.names)) if name == column]
+
+    def widened(self, width: int) -> "Header":
+        """Header of a table whose rows have more fields than its names."""
+        more = [""] * (width - len(self.names))
+        return self._replace(names=(*self.names, *more), units=(*self.units, *more)) if self.names else self
 
     def key(self, column: int) -> str:
         """Shortest text that means a column and no other: its name without or with the unit, or its number."""

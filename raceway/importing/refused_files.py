@@ -38,6 +38,7 @@ class UnusableError(Exception):
     def told(self, options: Mapping[str, str]) -> str:
         """Reason with the name of the option that gives the key."""
         reason, key = self.args
+        reason = "".join(letter if letter.isprintable() else "?" for letter in reason)
         return f"{reason} with {options.get(key, key)}" if key else reason.removesuffix(".")
 
     def __str__(self) -> str:

@@ -9,6 +9,8 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from gen.support.limits import check_limit
 from raceway.importing.numerals import is_number
 from raceway.importing.refused_files import UnusableError, guarded, optional
@@ -19,6 +21,7 @@ _ODS_TAG = re.compile(rb"<table:table-(row|cell)\b([^>]*)>")
 _REPEATED = re.compile(rb"number-(?:row|column)s-repeated\s*=\s*[\"'](\d+)[\"']")
 _CELL_BYTES = 32  # that the library takes for each cell of the rectangle around all cells
 _MOST_ROWS = 1_048_576
+_OLD_BYTES = 7_300_000  # of an old Excel file whose head lists all of its tables of sectors
 _CHUNK = 4_000_000  # bytes
 
 
@@ -34,7 +37,7 @@ def read_sheet(path: Path, sheet: str | None) -> NumberTable:
     library = optional("python_calamine")
     with guarded(path, "spreadsheet"):
         # old Excel files have at most 65,536 rows of 256 columns
-        active = _check_size(path) if zipfile.is_zipfile(path) else 0
+        active = _check_size(path) if zipfile.is_zipfile(path) else _check_chains(path)
         with library.CalamineWorkbook.from_path(str(path)) as book:
             shown = library.SheetVisibleEnum.Visible, library.SheetTypeEnum.WorkSheet
             visible = [one.name for one in book.sheets_metadata if (one.visible, one.typ) == shown]
@@ -74,6 +77,31 @@ def _check_size(path: Path) -> int:
             return 0
         found = re.search(rb"\bactiveTab\s*=\s*[\"'](\d{1,5})[\"']", archive.read("xl/workbook.xml"))
         return int(found[1]) if found else 0
+
+
+def _check_chains(path: Path) -> int:
+    """Number of the active sheet, 0, of an old Excel file; the library would follow a ring of its sectors until memory ends."""
+    with path.open("rb") as stream:
+        content = stream.read(_OLD_BYTES)
+    if not content.startswith(b"\xd0\xcf\x11\xe0"):
+        return 0
+    size = 4096 if content[30] == 12 else 512
+    head = np.frombuffer(content[:512].ljust(512, b"\0"), "<u4")
+    counts, tables = head[[10, 11, 16, 18]], head[19:]
+    following = np.concatenate(
+        [
+            np.frombuffer(content[(n + 1) * size : (n + 2) * size].ljust(size, b"\0"), "<u4")
+            for n in tables[tables < len(content)].tolist()
+        ]
+    )
+    # each sector leads to the one after it, and the last to an end, which leads to itself
+    end = following.size
+    place = np.append(np.minimum(following, end), end)
+    for _ in range(end.bit_length()):
+        place = place[place]
+    if np.any(place < end) or counts.max() > len(content) // size or head[17] < len(content):
+        raise UnusableError("is damaged, or an old Excel file above 6.8 MB; save it as .xlsx")
+    return 0
 
 
 def _blocks(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterator[bytes]:

@@ -180,6 +180,7 @@ def read_table(content: bytes, mark: str, decimal: str | None) -> NumberTable:
     least = max(n for n, field in enumerate(rows[0], 1) if field)
     header = header_of([line.fields for line in above], least, len(rows[0]))
     width = max(len(header.names), *map(len, rows))
+    header = header.widened(width)
     columns = [[fields[n] if n < len(fields) else "" for fields in rows] for n in range(width)]
     starts = {n: [*filter(is_number, fields)] for n, fields in enumerate(columns) if any(map(is_number, fields))}
     # a row must not be taken for the end of the header, nor a line of the header for the first row

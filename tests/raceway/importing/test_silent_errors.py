@@ -81,7 +81,7 @@ REFUSED = {  # content or writer, what is given, part of the sentence
     "volts.csv": (text(VOLTS, form=".3f"), AT, "give the decimal mark with --decimal."),
     "table.mat": (table_7_3, {}, "holds T, which is a table; save its columns as arrays of numbers."),
     "rates.mat": (mat(x=X, fs=12800, sample_rate=25600), {}, "give the sample rate with --rate."),
-    "old.xls": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), {}, "is truncated, damaged or not a spreadsheet file"),
+    "old.xls": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), {}, "is damaged, or an old Excel file above 6.8 MB; save it as .xlsx."),
     "many_rows.xlsx": (workbook({"a": "<row><c><v>1</v></c></row>" * 1_100_000}), {},
         "rows, and one of Excel has at most 1048576; export it again."),
     "overload_in_times.csv": (changed(PLAIN, 600, "OVL,0.5"), {}, "has no row like the others in line 600"),

@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-TARGETS = ("recipes", "labels", "corpora")
+TARGETS = ("recipes", "labels", "recordings", "corpora")
 SECONDS_EACH = 20
 MEMORY = 8_000_000_000  # bytes of address space
 
@@ -67,6 +67,8 @@ def _work(module, contents, numbers, seed, place, at, told):
         signal.alarm(SECONDS_EACH)
         try:
             suffix, content = _mutated(module, contents, number, seed)
+            for last in place.glob("mutated*"):
+                last.unlink()
             path = place / f"mutated{suffix}"
             path.write_bytes(content)
             module.check(path)
