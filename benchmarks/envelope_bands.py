@@ -20,7 +20,7 @@ from features.signal.demodulation import ZERO_PADDING, analytic_band, envelope_s
 from features.signal.lines import combs
 from features.signal.spectra import fourier_coefficients, whiten_by_psd, whiten_cepstrally
 from features.table.band import DEFAULT_BAND
-from features.table.indicators import FLOOR_WIDTH, WHITENING_WIDTH
+from features.table.record_batch import FLOOR_WIDTH, WHITENING_WIDTH
 
 FAMILIES = ("outer", "inner", "ball")
 CLEAR = 1.0  # nepers

@@ -18,8 +18,11 @@ import gen
 from features.signal.demodulation import analytic_band
 from features.signal.spectra import band_energies, fourier_coefficients, psd
 from features.table.band import DEFAULT_BAND
-from features.table.definitions import FITTED, LINES, RAW, RIVALS, SHAPES, VIEWS, Feature, define_features
-from features.table.indicators import Orders, bands_of, levels_and_shape
+from features.table.definitions import GROUPS, define_features
+from features.table.envelope_groups import VIEWS, without_view
+from features.table.feature_group import Feature
+from features.table.indicators import Orders
+from features.table.record_batch import bands_of, levels_and_shape
 from gen.support.units import from_si
 from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, picture
 
@@ -28,16 +31,10 @@ _HEADER = ("feature", "unit", "range", "meaning", "formula", "depends on", "sour
 TURNS, HIGHEST_ORDER = 2, 13.0  # drawn shaft revolutions and orders
 
 
-def _in_every_view(features: Sequence[Feature]) -> list[Feature]:
-    return [feature._replace(name=f"VIEW_{feature.name}") for feature in features]
-
-
 TABLES: Mapping[str, Sequence[Feature]] = {
-    "lines": (*_in_every_view((*LINES, *RIVALS)), *FITTED),
-    "shape": (*_in_every_view(SHAPES), *RAW),
-    "bands": define_features(("bands",)),
-    "time": define_features(("time",)),
+    group: [*dict.fromkeys(map(without_view, define_features((group,))))] for group in GROUPS
 }
+"""Features of each built-in group; those of all views are one."""
 
 
 def with_tables(page: str) -> str:

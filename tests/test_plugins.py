@@ -10,7 +10,8 @@ from importlib.metadata import EntryPoint
 import numpy as np
 import pytest
 
-from features.table.definitions import GROUPS, Feature, FeatureGroup
+from features.table.definitions import GROUPS
+from features.table.feature_group import Feature, FeatureGroup
 from features.table.indicators import Orders, indicators
 from gen.mechanisms.chain.drift import Drift
 from gen.mechanisms.chain.sensor_fault import SensorFault
@@ -224,11 +225,11 @@ def test_a_mechanism_that_breaks_a_rule_is_named_when_it_is_loaded(monkeypatch, 
     ("group", "said"),
     [
         (
-            FeatureGroup((Feature("cepstral_bpfo_comb", "a name of another", "x"),), lambda x, *_: x[:, :1]),
+            FeatureGroup((Feature("cepstral_bpfo_comb", "a name of another", "x"),), lambda batch: batch.x[:, :1]),
             "cepstral_bpfo_comb is taken",
         ),
         (
-            FeatureGroup((Feature("mine", "values in one dimension", "x"),), lambda x, *_: x[:, 0]),
+            FeatureGroup((Feature("mine", "values in one dimension", "x"),), lambda batch: batch.x[:, 0]),
             r"the shape \(2,\) and not \(2, 1\)",
         ),
     ],

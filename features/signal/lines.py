@@ -51,7 +51,7 @@ def highest_order(orders: Orders) -> FloatArray:
 
 
 def read_lines(level: FloatArray, bins_per_order: FloatArray, orders: Orders) -> FloatArray:
-    """Levels of the lines of `features.table.definitions.LINES`, shape (record, line).
+    """Levels of the lines of `features.table.envelope_groups.LINES`, shape (record, line).
 
     Parameters
     ----------

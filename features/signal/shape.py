@@ -18,7 +18,7 @@ SLOW_ORDERS = 0.8  # order of the shaft below which a modulation is slow
 def envelope_shape(
     power: FloatArray, weighted: FloatArray, spectrum: FloatArray, rate: float, shaft_rate: FloatArray
 ) -> FloatArray:
-    """Shape of the envelope of analytic signals, in the order of `features.table.definitions.SHAPES`, shape (record, 3).
+    """Shape of the envelope of analytic signals, in the order of `features.table.envelope_groups.SHAPES`, shape (record, 3).
 
     Impulsiveness is ``ln(E|z|^4 / (E|z|^2)^2)``, ln 2 for Gaussian noise. Slow fluctuation is the relative standard
     deviation of ``|z|^2`` averaged over half a revolution. Slow share is the fraction of the power of the envelope,
@@ -71,7 +71,7 @@ def _fluctuation(power: FloatArray, span: int) -> float:
 
 
 def time_statistics(x: FloatArray) -> FloatArray:
-    """Statistics of records without their mean, in the order of `features.table.definitions.TIMES`, shape (record, 8).
+    """Statistics of records without their mean, in the order of `features.table.waveform_groups.TIMES`, shape (record, 8).
 
     Root mean square and peak are in the unit of x; the others do not depend on gain. The shape factor is the rms over the
     mean modulus, the impulse factor the peak over the mean modulus, and the clearance factor the peak over the squared

@@ -8,9 +8,13 @@ module             responsibility
 band               band of frequencies that features are computed from [pure]
 channels           channel of a corpus by name or number
 durations          durations of the records of a table [pure]
-definitions        name, unit, meaning, formula and range of every feature [pure]
+record_batch       records computed together, whitened bands and envelopes that groups share [pure]
+feature_group      the form of a feature group, built-in or of a plug-in [pure]
+envelope_groups    groups of fault lines and of shape, in envelopes of whitened bands [pure]
+waveform_groups    groups of band energies and of time statistics [pure]
+definitions        all groups; name, unit, meaning, formula and range of every feature [pure]
 class_features     features that tell a fault class, by its lines [pure]
-indicators         the feature vector of records, in four groups [pure]
+indicators         the feature vector of records, in chosen groups [pure]
 speed_search       shaft speed of a recording, from its windows [pure]
 recording_speeds   shaft speed of every recording of a corpus, and warnings of wrong labels
 corpus_features    corpus -> feature table, part by part

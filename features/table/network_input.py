@@ -16,7 +16,7 @@ from features.signal.lines import FAMILIES, Orders, families
 from features.signal.rows import FloatArray, centre, row_kernel
 from features.signal.spectra import fourier_coefficients
 from features.table.band import DEFAULT_BAND
-from features.table.indicators import BATCH, SHORTEST, bands_of, levels_and_shape, usable_records
+from features.table.record_batch import BATCH, SHORTEST, bands_of, levels_and_shape, usable_records
 
 CELLS = 48  # per multiple of an order
 MULTIPLES = 3.3  # end of the grid

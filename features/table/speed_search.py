@@ -16,7 +16,7 @@ from features.signal.rows import FloatArray, centre, squared_modulus
 from features.signal.spectra import fourier_coefficients
 from features.signal.speed import TOLERANCE, ShaftSpeed, find_speed, levels_at, line_orders, near_label
 from features.table.band import DEFAULT_BAND
-from features.table.indicators import BATCH, FLOOR_WIDTH, LOWEST_RATE, SHORTEST, bands_of, usable_records
+from features.table.record_batch import BATCH, FLOOR_WIDTH, LOWEST_RATE, SHORTEST, bands_of, usable_records
 
 LONGEST = 1.0  # seconds; the lines of a longer signal are narrower than a candidate, and wander with the speed
 

@@ -21,7 +21,8 @@ from features.signal.shape import envelope_shape, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd
 from features.table.band import DEFAULT_BAND
 from features.table.class_features import COMBS, class_features
-from features.table.indicators import FLOOR_WIDTH, Orders
+from features.table.indicators import Orders
+from features.table.record_batch import FLOOR_WIDTH
 from gen.corpus.fault_classes import fault_class
 
 LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their amplifiers differ

@@ -7,7 +7,8 @@ import numpy as np
 
 from features.signal.rows import FloatArray
 from features.table.band import DEFAULT_BAND
-from features.table.indicators import LOWEST_RATE, SHORTEST, Orders
+from features.table.indicators import Orders
+from features.table.record_batch import LOWEST_RATE, SHORTEST
 from gen.support.units import from_si
 
 CLIPPED_SHARE = 1e-3  # of the samples at the highest or lowest value, from which a signal counts as clipped

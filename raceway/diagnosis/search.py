@@ -32,7 +32,8 @@ from features.signal.speed import (
 )
 from features.signal.speed import TOLERANCE as LABEL_TOLERANCE
 from features.table.band import DEFAULT_BAND
-from features.table.indicators import SHORTEST, Orders
+from features.table.indicators import Orders
+from features.table.record_batch import SHORTEST
 from features.table.speed_search import LONGEST, level_spectra
 from gen.corpus.fault_classes import fault_class
 from gen.support.units import rpm_to_hertz

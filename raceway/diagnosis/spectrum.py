@@ -22,7 +22,7 @@ from features.signal.impulsive import band_kurtosis, equal_bands
 from features.signal.rows import FloatArray
 from features.signal.spectra import fourier_coefficients, whiten_by_psd
 from features.table.band import DEFAULT_BAND
-from features.table.indicators import WHITENING_WIDTH
+from features.table.record_batch import WHITENING_WIDTH
 
 SEGMENT_TURNS = (20, 40)  # least and most shaft revolutions of a segment; 40 resolve a twentieth of an order
 SEGMENT_SECONDS = 0.5  # its least length [s]

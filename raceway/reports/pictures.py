@@ -23,7 +23,8 @@ from features.signal.rows import FloatArray, squared_modulus
 from features.signal.spectra import fourier_coefficients, psd, whiten_by_psd
 from features.table.band import DEFAULT_BAND, Band
 from features.table.class_features import COMBS
-from features.table.indicators import WHITENING_WIDTH, Orders
+from features.table.indicators import Orders
+from features.table.record_batch import WHITENING_WIDTH
 from gen.corpus import GENERATOR, check_result, write_durably
 from gen.corpus.fault_classes import HEALTHY, SHAFT, fault_class, fundamentals
 from gen.support.errors import CorpusError

@@ -6,7 +6,8 @@ from typing import Any, ClassVar, Literal
 import click
 import numpy as np
 
-from features.table.definitions import Feature, FeatureGroup
+from features.table.feature_group import Feature, FeatureGroup
+from features.table.record_batch import Batch
 from gen.corpus.fault_classes import BPFO, FaultClass
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
@@ -71,10 +72,10 @@ class StuckBits(SensorFault):
 
 
 # a group of features
-def crossings(x: np.ndarray, fs: float, shaft_rate: np.ndarray, orders: Any, band: Any) -> np.ndarray:
+def crossings(batch: Batch) -> np.ndarray:
     """Values, shape (record, feature), of signals of shape (record, time)."""
-    changes = np.diff(np.signbit(x), axis=-1).mean(axis=-1)
-    return np.stack([changes, changes * fs / shaft_rate], axis=-1)
+    changes = np.diff(np.signbit(batch.x), axis=-1).mean(axis=-1)
+    return np.stack([changes, changes * batch.fs / batch.shaft_rate], axis=-1)
 
 
 CROSSINGS = FeatureGroup(

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from features.signal.lines import FAMILIES, Orders, combs, families, fitted_combs, read_lines, single_lines
-from features.table.definitions import LINES
+from features.table.envelope_groups import LINES
 
 ORDERS = Orders(*(np.array([order]) for order in (0.3983, 3.5848, 5.4152, 2.3567)))
 BINS_PER_ORDER = 60.0
