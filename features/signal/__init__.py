@@ -10,6 +10,7 @@ rows         compilation of loops over records, sums in a fixed order, windows
 spectra      power spectra, cepstra, Fourier coefficients, whitening
 demodulation analytic signals of bands, envelope spectra and their floor
 orders       signals at equal angles of the shaft in place of equal times, their spectra and averages
+tacho        angle of the shaft from the pulses of a tacho, with those that it missed
 velocity     rms velocity of ISO 20816-3
 lines        levels of fault lines and combs at orders of the shaft
 speed        shaft speed that fits fault lines and shaft harmonics together

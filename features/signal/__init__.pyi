@@ -1,11 +1,11 @@
 from .velocity import velocity_rms as velocity_rms
 from .orders import (
     angles_from_speed as angles_from_speed,
-    angles_from_tacho as angles_from_tacho,
     order_map as order_map,
     order_spectrum as order_spectrum,
     resample_to_angle as resample_to_angle,
 )
+from .tacho import angles_from_tacho as angles_from_tacho
 from .tracking import SpeedCourse as SpeedCourse, track_speed as track_speed
 from .cyclic import (
     Coherence as Coherence,

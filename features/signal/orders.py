@@ -18,9 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
-from features.signal.arguments import as_records, check_finite, check_positive, check_whole, like
+from features.signal.arguments import as_records, check_positive, check_whole, like
 from features.signal.demodulation import amplitude_spectrum
 from features.signal.rows import FloatArray, brief, row_kernel
 
@@ -28,7 +27,6 @@ CROSSINGS = 32  # zero crossings of the sinc function to each side
 BETA = 8.0  # of the Kaiser window: orders above half the samples per turn are 80 dB down
 PASS_SHARE = 0.92  # -6 dB point over half the lower sample rate; flat within 0.1 % up to 0.84 of it
 TABLE_STEPS = 512  # table values from one zero crossing to the next; linear between them, which errs by 5e-6
-REARMED = 0.1  # of the range of a tacho, by which it must fall below the threshold before it counts again
 
 
 class OrderMap(NamedTuple):
@@ -118,64 +116,6 @@ def angles_from_speed(shaft_rate: ArrayLike, fs: float) -> FloatArray:
     angle = np.zeros(rate.shape)
     np.cumsum((rate[:, 1:] + rate[:, :-1]) * (np.pi / fs), axis=1, out=angle[:, 1:])
     return like(shaft_rate, angle)
-
-
-def angles_from_tacho(tacho: ArrayLike, pulses_per_turn: int = 1, threshold: float | None = None) -> FloatArray:
-    """Angle of the shaft at each sample [rad], 0 at the first pulse, shape (record, time).
-
-    A pulse is where the tacho rises through the threshold, interpolated linearly between two samples. A cubic spline
-    joins the angles of the pulses; before the first and after the last one the speed is constant.
-
-    Parameters
-    ----------
-    tacho
-        Signals of a tachometer or keyphasor, shape (record, time). One that rises through the threshold again counts
-        only after it has fallen below it by a tenth of its range, so that noise gives no pulses.
-    pulses_per_turn
-        Pulses in a turn of the shaft.
-    threshold
-        In the unit of the tacho; by default the middle of the range of each record.
-
-    Raises
-    ------
-    ValueError
-        If a record has fewer than two pulses.
-    """
-    check_whole(pulses_per_turn=pulses_per_turn)
-    signals = as_records(tacho, "tacho").astype(float, copy=False)
-    low, high = signals.min(axis=1), signals.max(axis=1)
-    level = 0.5 * (low + high)
-    if threshold is not None:
-        check_finite(threshold=threshold)
-        level[:] = threshold
-    time, angle = np.arange(signals.shape[1], dtype=float), np.empty(signals.shape)
-    for row, signal in enumerate(signals):
-        pulses = _pulses(signal, level[row], level[row] - REARMED * (high[row] - low[row]))
-        if len(pulses) < 2:
-            raise ValueError(
-                f"tacho: record {row} has {len(pulses)} pulses above {level[row]:.4g}; give two or more, or a threshold."
-            )
-        course = CubicSpline(pulses, 2 * np.pi / pulses_per_turn * np.arange(len(pulses)))
-        first, last = int(np.ceil(pulses[0])), int(pulses[-1]) + 1
-        angle[row, first:last] = course(time[first:last])
-        for beyond, end in ((slice(0, first), pulses[0]), (slice(last, None), pulses[-1])):
-            angle[row, beyond] = course(end) + course(end, 1) * (time[beyond] - end)
-    return like(tacho, angle)
-
-
-@row_kernel
-def _pulses(signal: FloatArray, threshold: float, rearmed: float) -> FloatArray:
-    """Places at which a signal rises through a threshold after it was below another one, in samples, shape (pulse,)."""
-    places = np.empty(len(signal))
-    count, armed = 0, signal[0] < threshold
-    for n in range(1, len(signal)):
-        if armed and signal[n] >= threshold:
-            places[count] = n - (signal[n] - threshold) / (signal[n] - signal[n - 1])
-            count += 1
-            armed = False
-        elif signal[n] < rearmed:
-            armed = True
-    return places[:count]
 
 
 def order_spectrum(y: ArrayLike, per_turn: int) -> tuple[FloatArray, FloatArray]:
