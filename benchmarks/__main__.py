@@ -64,14 +64,14 @@ def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(SUBJECTS)}; by default all")
     parser.add_argument("--pages", action="store_true", help="only make the tables of docs/running.md again")
-    given = parser.parse_args(arguments)
-    if unknown := set(given.names) - set(SUBJECTS):
+    options = parser.parse_args(arguments)
+    if unknown := set(options.names) - set(SUBJECTS):
         parser.error(f"{', '.join(sorted(unknown))}: no such benchmark; choose from {', '.join(SUBJECTS)}, against.")
-    if given.pages:
+    if options.pages:
         performance_pages.write_page()
         return
     lines: list[Line] = []
-    for name in given.names or SUBJECTS:
+    for name in options.names or SUBJECTS:
         for line in SUBJECTS[name]():
             print(f"{line.name}: {line.ratio:.3g}" if isinstance(line, Row) else line.why, file=sys.stderr)
             lines.append(line)

@@ -53,40 +53,40 @@ class Mechanism(NamedTuple):
 def read_mechanisms(path: Path = MECHANISMS) -> list[Mechanism]:
     """Mechanisms of a file, in its order."""
     listed = YAML(typ="safe").load(path)
-    return [Mechanism(one["name"], one.get("without") or one["with"], "without" in one) for one in listed]
+    return [Mechanism(entry["name"], entry.get("without") or entry["with"], "without" in entry) for entry in listed]
 
 
 def variants(mechanisms: Sequence[Mechanism]) -> dict[str, Changes]:
     """Changes of the recipe by the name of the variant: none of the mechanisms, each alone, all that are kept, all but one."""
-    kept = [one for one in mechanisms if one.is_kept]
-    none = {key: value for one in kept for key, value in one.changes.items()}
-    found: dict[str, Changes] = {"none of these": none}
-    for one in mechanisms:
-        others = {key: value for other in kept if other != one for key, value in other.changes.items()}
-        found[f"only {one.name}"] = others if one.is_kept else {**none, **one.changes}
-    found["the recipe"] = {}
-    for one in mechanisms:
-        found[f"{'without' if one.is_kept else 'with'} {one.name}"] = one.changes
-    return found
+    kept = [mechanism for mechanism in mechanisms if mechanism.is_kept]
+    none = {key: value for mechanism in kept for key, value in mechanism.changes.items()}
+    changes: dict[str, Changes] = {"none of these": none}
+    for mechanism in mechanisms:
+        others = {key: value for other in kept if other != mechanism for key, value in other.changes.items()}
+        changes[f"only {mechanism.name}"] = others if mechanism.is_kept else {**none, **mechanism.changes}
+    changes["the recipe"] = {}
+    for mechanism in mechanisms:
+        changes[f"{'without' if mechanism.is_kept else 'with'} {mechanism.name}"] = mechanism.changes
+    return changes
 
 
 def changed(recipe: Mapping[str, Any], changes: Changes) -> dict[str, Any]:
     """Copy of a recipe with some changes."""
-    made = copy.deepcopy(dict(recipe))
+    altered = copy.deepcopy(dict(recipe))
     if any(path.startswith("faults.") for path in changes):
-        made["faults"] = fault_entries(made["faults"])
+        altered["faults"] = fault_entries(altered["faults"])
     for path, value in changes.items():
         section, *keys = path.split(".")
         if path == "faults.+":
-            made["faults"] += copy.deepcopy(value)
+            altered["faults"] += copy.deepcopy(value)
         elif section == "faults":
             kind, *below = keys
-            for entry in made["faults"]:
+            for entry in altered["faults"]:
                 if entry["kind"] == kind:
                     _set(entry, below, value)
         else:
-            _set(made, [section, *keys], value)
-    return made
+            _set(altered, [section, *keys], value)
+    return altered
 
 
 def _set(section: dict[str, Any], keys: list[str], value: Any) -> None:
@@ -100,16 +100,16 @@ def _set(section: dict[str, Any], keys: list[str], value: Any) -> None:
 
 def real_tables(real: Path, folder: Path) -> dict[str, xr.Dataset]:
     """Feature tables of the sets in ``real``; UESTC with its labelled speeds and with the true ones."""
-    found = {}
+    folders = {}
     if (real / "cwru").is_dir():
-        found["wang"] = import_set("cwru", real / "cwru", folder / "wang", subset="wang").path
-        found["cwru"] = import_set("cwru", real / "cwru", folder / "cwru").path
+        folders["wang"] = import_set("cwru", real / "cwru", folder / "wang", subset="wang").path
+        folders["cwru"] = import_set("cwru", real / "cwru", folder / "cwru").path
     if (real / "mfpt").is_dir():
-        found["mfpt"] = import_set("mfpt", real / "mfpt", folder / "mfpt").path
+        folders["mfpt"] = import_set("mfpt", real / "mfpt", folder / "mfpt").path
     if (real / "uestc").is_dir():
-        found["uestc"] = import_set("uestc", real / "uestc", folder / "uestc").path
-        found["uestc, true speeds"] = import_generic(UESTC, folder / "true", folder=real / "uestc").path
-    return {name: feature_table(path, groups=GROUPS) for name, path in found.items()}
+        folders["uestc"] = import_set("uestc", real / "uestc", folder / "uestc").path
+        folders["uestc, true speeds"] = import_generic(UESTC, folder / "true", folder=real / "uestc").path
+    return {name: feature_table(path, groups=GROUPS) for name, path in folders.items()}
 
 
 def scores_of(recipe: Mapping[str, Any], seed: int, tests: Mapping[str, xr.Dataset], workers: int) -> dict[str, Scores]:
@@ -142,20 +142,20 @@ def plain(scores: Scores) -> dict[str, float]:
 COLUMNS = {"balanced accuracy": "BA", "AUC": "AUC", "log-loss": "log-loss", "false alarms": "false alarms"}
 
 
-def table(found: Mapping[str, Mapping[str, Sequence[Mapping[str, float]]]]) -> Iterator[str]:
+def table(figures_of: Mapping[str, Mapping[str, Sequence[Mapping[str, float]]]]) -> Iterator[str]:
     """Markdown table of means over the seeds, one row per variant.
 
-    ``found`` has the figures by variant and test, one mapping per seed.
+    ``figures_of`` has the figures by variant and test, one mapping per seed.
     """
     columns = [
         (test, figure)
-        for test, figures in next(iter(found.values())).items()
+        for test, figures in next(iter(figures_of.values())).items()
         for figure in COLUMNS
         if figure in figures[0]
     ]
     yield "| variant | " + " | ".join(f"{test} {COLUMNS[figure]}" for test, figure in columns) + " |"
     yield "|---|" + "---:|" * len(columns)
-    for variant, tests in found.items():
+    for variant, tests in figures_of.items():
         cells = [f"{np.mean([figures[figure] for figures in tests[test]]):.3f}" for test, figure in columns]
         yield f"| {variant} | " + " | ".join(cells) + " |"
 
@@ -176,7 +176,7 @@ def main() -> None:
     if options.real is None:
         parser.error("give the folder that holds cwru, mfpt and uestc, or name it in RACEWAY_REAL.")
     recipe = changed(shipped, {} if options.full else SMALL)
-    found = {}
+    figures_of = {}
     with tempfile.TemporaryDirectory() as name:
         tests = real_tables(options.real, Path(name))
         if not tests:
@@ -184,15 +184,15 @@ def main() -> None:
         for variant, changes in variants(read_mechanisms()).items():
             if options.only and options.only not in variant:
                 continue
-            made = [
+            scores_of_seeds = [
                 scores_of(changed(recipe, changes), seed, tests, options.workers)
                 for seed in range(FIRST_SEED, FIRST_SEED + options.seeds)
             ]
-            found[variant] = {test: [plain(scores[test]) for scores in made] for test in tests}
+            figures_of[variant] = {test: [plain(scores[test]) for scores in scores_of_seeds] for test in tests}
             print(f"{variant} done", file=sys.stderr, flush=True)
             if options.json:
-                options.json.write_text(json.dumps(found, indent=1), encoding="utf-8")
-    print("\n".join(table(found)))
+                options.json.write_text(json.dumps(figures_of, indent=1), encoding="utf-8")
+    print("\n".join(table(figures_of)))
 
 
 if __name__ == "__main__":

@@ -74,7 +74,7 @@ ADDITIONS: Mapping[str, Addition] = {
 
 def added_columns(corpus: Path) -> dict[str, np.ndarray]:
     """Columns of every addition for the records of a corpus, shape (record, family)."""
-    found: dict[str, list[np.ndarray]] = {name: [] for name in ADDITIONS}
+    heights: dict[str, list[np.ndarray]] = {name: [] for name in ADDITIONS}
     with open_corpus(corpus) as opened:
         fs, shaft_rate = float(opened["sample_rate"][0]), opened["shaft_rate"].values
         rates = shaft_rate[:, None] * families(Orders(*(opened[name].values for name in Orders._fields)))
@@ -82,18 +82,18 @@ def added_columns(corpus: Path) -> dict[str, np.ndarray]:
             rows = slice(start, start + BLOCK)
             x = np.asarray(irfft(fourier_coefficients(opened[SIGNAL][rows, 0].values, fs, FS / 2), norm="forward"))
             for name, addition in ADDITIONS.items():
-                found[name].append(addition(x, shaft_rate[rows], rates[rows]))
-    return {name: np.concatenate(parts) for name, parts in found.items()}
+                heights[name].append(addition(x, shaft_rate[rows], rates[rows]))
+    return {name: np.concatenate(parts) for name, parts in heights.items()}
 
 
 def tables(corpus: Path) -> dict[str, xr.Dataset]:
     """The default table of a corpus, and that with each addition."""
-    made = {"default set": feature_table(corpus, GROUPS)}
-    features, rest = made["default set"]["features"], made["default set"].drop_dims("feature")
+    tables = {"default set": feature_table(corpus, GROUPS)}
+    features, rest = tables["default set"]["features"], tables["default set"].drop_dims("feature")
     for name, columns in added_columns(corpus).items():
         added = features[:, : columns.shape[1]].copy(data=columns).assign_coords(feature=["outer", "inner", "ball"])
-        made[name] = rest.assign(features=xr.concat([features, added], "feature"))
-    return made
+        tables[name] = rest.assign(features=xr.concat([features, added], "feature"))
+    return tables
 
 
 def main() -> None:
@@ -102,7 +102,7 @@ def main() -> None:
     parser.add_argument("real", type=Path)
     parser.add_argument("--seeds", type=int, default=5)
     options = parser.parse_args()
-    found: dict[str, list[dict[str, Any]]] = {}
+    rows: dict[str, list[dict[str, Any]]] = {}
     with tempfile.TemporaryDirectory() as name:
         real = {title: tables(corpus) for title, corpus in real_corpora(options.real, Path(name)).items()}
         for seed, corpus in enumerate(corpora(RECIPE, 0.5, options.seeds, Path(name), 2)):
@@ -112,12 +112,12 @@ def main() -> None:
                 for title, tested in real.items():
                     on_real = figures(model.score(tested[addition]))
                     scored |= {f"{title}, {unit}": on_real[unit] for unit in ("window", "recording")}
-                found.setdefault(addition, []).append(scored)
-    default = found["default set"]
+                rows.setdefault(addition, []).append(scored)
+    default = rows["default set"]
     print(f"| | {' | '.join(default[0])} |\n|---|{'---:|' * len(default[0])}")
-    for addition, each in found.items():
+    for addition, each in rows.items():
         less = [dict.fromkeys(default[0], 0.0)] * len(default) if each is default else default
-        cells = [[one[key] - other[key] for one, other in zip(each, less, strict=True)] for key in default[0]]
+        cells = [[own[key] - other[key] for own, other in zip(each, less, strict=True)] for key in default[0]]
         sign = "" if each is default else "+"
         texts = [f"{np.mean(v):{sign}.3f} ({min(v):{sign}.3f} to {max(v):{sign}.3f})" for v in cells]
         print(f"| {addition} | {' | '.join(texts)} |")

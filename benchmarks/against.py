@@ -24,12 +24,14 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--recipe", default="domain_randomised", help="name or file; by default %(default)s")
     parser.add_argument("--records", type=int, default=1500)
     parser.add_argument("--pairs", type=int, default=3)
-    given = parser.parse_args(arguments)
-    if not (given.checkout / "raceway" / "cli.py").exists():
-        parser.error(f"{given.checkout}: holds no checkout of Raceway; give the folder that has raceway/cli.py.")
-    found = compared(given.checkout.resolve(), given.recipe, given.records, given.pairs)
-    print(f"{found.what}: {found.value:.4g} records/s, {found.alternative}: {found.alternative_value:.4g} records/s")
-    print(f"ratio {found.ratio:.3f}, median of {found.pairs} pairs")
+    options = parser.parse_args(arguments)
+    if not (options.checkout / "raceway" / "cli.py").exists():
+        parser.error(f"{options.checkout}: holds no checkout of Raceway; give the folder that has raceway/cli.py.")
+    measured = compared(options.checkout.resolve(), options.recipe, options.records, options.pairs)
+    print(
+        f"{measured.what}: {measured.value:.4g} records/s, {measured.alternative}: {measured.alternative_value:.4g} records/s"
+    )
+    print(f"ratio {measured.ratio:.3f}, median of {measured.pairs} pairs")
 
 
 def compared(checkout: Path, recipe: Path | str, records: int, pairs: int) -> Row:
@@ -39,9 +41,9 @@ def compared(checkout: Path, recipe: Path | str, records: int, pairs: int) -> Ro
         measures = {name: _rate(where, path, records, folder) for name, where in (("ours", ROOT), ("theirs", checkout))}
         for measure in measures.values():
             measure()  # compiles the kernels
-        found = interleaved(pairs, **measures)
+        rates = interleaved(pairs, **measures)
     what = f"{path.stem}, recipe to validated parts, {records:,} records, per core"
-    return row(f"against {path.stem}", what, "records/s", found["ours"], _name(checkout), found["theirs"])
+    return row(f"against {path.stem}", what, "records/s", rates["ours"], _name(checkout), rates["theirs"])
 
 
 def _rate(checkout: Path, recipe: Path, records: int, folder: str) -> Callable[[], float]:
@@ -69,5 +71,5 @@ def _rate(checkout: Path, recipe: Path, records: int, folder: str) -> Callable[[
 def _name(checkout: Path) -> str:
     """Commit of a checkout."""
     command = ["git", "-C", str(checkout), "rev-parse", "--short=10", "HEAD"]
-    found = subprocess.run(command, check=False, capture_output=True, text=True)
-    return f"commit {found.stdout.strip()}" if found.returncode == 0 else "the other checkout"
+    run = subprocess.run(command, check=False, capture_output=True, text=True)
+    return f"commit {run.stdout.strip()}" if run.returncode == 0 else "the other checkout"

@@ -54,14 +54,14 @@ class HealthyRecording(NamedTuple):
     """Recording of a healthy bearing, as `diagnose_recording` takes it, and the condition of its machine."""
 
     recorded: Recorded
-    given: Given
+    facts: Given
     condition: str
 
     def compared_with(self, other: "HealthyRecording") -> str:
         """Kind of reference that another recording is."""
         condition, speed = (
             "same" if same else "other"
-            for same in (self.condition == other.condition, self.given.rates == other.given.rates)
+            for same in (self.condition == other.condition, self.facts.rates == other.facts.rates)
         )
         return f"{condition} condition, {speed} speed"
 
@@ -69,46 +69,48 @@ class HealthyRecording(NamedTuple):
 def healthy_recordings(file: Path, axes: Iterable[str]) -> list[HealthyRecording]:
     """Recordings of some axes of ``limerick``."""
     bearings = {BEARING: Orders(*map(np.asarray, orders(CATALOGUE[BEARING])))}
-    found = []
+    recordings = []
     with xr.open_dataset(file) as opened:
         for place in range(opened.sizes["recording"]):
-            one = opened.isel(recording=place)
-            signals = {axis: GRAVITY * one["acceleration"].values[AXES.index(axis)] for axis in axes}
-            rate = rpm_to_hertz(float(one["shaft_rpm"]))
+            recording = opened.isel(recording=place)
+            signals = {axis: GRAVITY * recording["acceleration"].values[AXES.index(axis)] for axis in axes}
+            rate = rpm_to_hertz(float(recording["shaft_rpm"]))
             recorded = Recorded(signals, float(opened.attrs["sample_rate_hz"]), f"recording {place}")
-            found.append(HealthyRecording(recorded, Given(bearings, (rate, rate)), str(one["condition"].values)))
-    return found
+            recordings.append(
+                HealthyRecording(recorded, Given(bearings, (rate, rate)), str(recording["condition"].values))
+            )
+    return recordings
 
 
 def of_machines(title: str, each: list[HealthyRecording], model: Model, references: int) -> Iterator[Answered]:
     """Answers to healthy recordings: alone, and with ``references`` others of each kind, drawn at random."""
     rng = np.random.default_rng(0)
-    for one in each:
+    for tested in each:
         kinds: dict[str, list[HealthyRecording]] = {}
         for other in each:
-            if other is not one:
-                kinds.setdefault(one.compared_with(other), []).append(other)
-        found = diagnose_recording(one.recorded, one.given, model)
-        yield Answered(title, ALONE, one.condition, HEALTHY, found.verdict, found.probabilities)
+            if other is not tested:
+                kinds.setdefault(tested.compared_with(other), []).append(other)
+        diagnosis = diagnose_recording(tested.recorded, tested.facts, model)
+        yield Answered(title, ALONE, tested.condition, HEALTHY, diagnosis.verdict, diagnosis.probabilities)
         for kind, others in sorted(kinds.items()):
             for chosen in rng.choice(len(others), min(references, len(others)), replace=False):
-                found = diagnose_recording(one.recorded, one.given, model, healthy=[others[chosen].recorded])
-                yield Answered(title, kind, one.condition, HEALTHY, found.verdict, found.probabilities)
+                diagnosis = diagnose_recording(tested.recorded, tested.facts, model, healthy=[others[chosen].recorded])
+                yield Answered(title, kind, tested.condition, HEALTHY, diagnosis.verdict, diagnosis.probabilities)
 
 
 def of_corpus(title: str, corpus: Path, model: Model) -> Iterator[Answered]:
     """Answers to all recordings of a set, alone and with each other recording of it that is healthy."""
     each = list(recordings(corpus))
-    recorded = [Recorded({"": one.x.ravel()}, one.fs) for one in each]
-    healthy = [place for place, one in enumerate(each) if one.fault == HEALTHY]
-    for place, one in enumerate(each):
-        given = Given({"own": Orders(*map(np.asarray, one.orders))}, (one.label, one.label))
+    recorded = [Recorded({"": recording.x.ravel()}, recording.fs) for recording in each]
+    healthy = [place for place, recording in enumerate(each) if recording.fault == HEALTHY]
+    for place, recording in enumerate(each):
+        facts = Given({"own": Orders(*map(np.asarray, recording.orders))}, (recording.label, recording.label))
         for reference in (None, *healthy):
             if reference != place:
                 references = [] if reference is None else [recorded[reference]]
-                found = diagnose_recording(recorded[place], given, model, healthy=references)
+                diagnosis = diagnose_recording(recorded[place], facts, model, healthy=references)
                 kind = ALONE if reference is None else "one healthy recording"
-                yield Answered(title, kind, "", one.fault, found.verdict, found.probabilities)
+                yield Answered(title, kind, "", recording.fault, diagnosis.verdict, diagnosis.probabilities)
 
 
 def outcome(answer: Answered) -> str:
@@ -124,11 +126,11 @@ def scores(answers: Iterable[Answered]) -> dict[str, float]:
     """Balanced accuracy and log-loss of the probabilities."""
     right: dict[str, list[bool]] = {}
     losses = []
-    for one in answers:
-        right.setdefault(one.fault, []).append(
-            max(one.probabilities, key=lambda name: one.probabilities[name]) == one.fault
+    for answer in answers:
+        right.setdefault(answer.fault, []).append(
+            max(answer.probabilities, key=lambda name: answer.probabilities[name]) == answer.fault
         )
-        losses.append(-np.log(max(one.probabilities.get(one.fault, 0.0), LEAST)))
+        losses.append(-np.log(max(answer.probabilities.get(answer.fault, 0.0), LEAST)))
     balanced = np.mean([np.mean(hits) for hits in right.values()])
     return {"balanced accuracy": round(float(balanced), 3), "log-loss": round(float(np.mean(losses)), 3)}
 
@@ -136,10 +138,10 @@ def scores(answers: Iterable[Answered]) -> dict[str, float]:
 def counted(answers: Iterable[Answered]) -> list[dict[str, Any]]:
     """One row for each set, axis and kind of reference; and, of machines without a reference, for each condition."""
     groups: dict[tuple[str, str, str], list[Answered]] = {}
-    for one in answers:
-        groups.setdefault((one.title, one.reference, ALL), []).append(one)
-        if one.condition and one.reference == ALONE:
-            groups.setdefault((one.title, one.reference, one.condition), []).append(one)
+    for answer in answers:
+        groups.setdefault((answer.title, answer.reference, ALL), []).append(answer)
+        if answer.condition and answer.reference == ALONE:
+            groups.setdefault((answer.title, answer.reference, answer.condition), []).append(answer)
     titles = list(dict.fromkeys(title for title, _, _ in groups))
 
     def place(key: tuple[str, str, str]) -> tuple[int, bool, str, bool, str]:
@@ -150,7 +152,7 @@ def counted(answers: Iterable[Answered]) -> list[dict[str, Any]]:
     for title, reference, condition in sorted(groups, key=place):
         held = groups[title, reference, condition]
         machines = bool(held[0].condition)
-        counts = Counter(one.verdict if machines else outcome(one) for one in held)
+        counts = Counter(answer.verdict if machines else outcome(answer) for answer in held)
         row = {
             "set": title,
             "reference": reference,

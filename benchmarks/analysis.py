@@ -68,17 +68,17 @@ def cases(samples: int) -> dict[str, tuple[tuple, str, Work]]:
 def rows(pairs: int = 3, *, samples: int = 60_000) -> Iterator[Line]:
     """Lines of the table."""
     x = np.random.default_rng(0).standard_normal((1, samples)).astype(np.float32)
-    for name, (given, alternative, theirs) in cases(samples).items():
+    for name, (arguments, alternative, theirs) in cases(samples).items():
         ours = getattr(signal, name.split()[0])
-        ours(x, *given)  # compiles
-        found = interleaved(pairs, ours=partial(speed, ours, x, *given), scipy=partial(speed, theirs, x[0]))
-        yield row(f"analysis {name}", f"{samples:,} samples", "1/s", found["ours"], alternative, found["scipy"])
+        ours(x, *arguments)  # compiles
+        speeds = interleaved(pairs, ours=partial(speed, ours, x, *arguments), scipy=partial(speed, theirs, x[0]))
+        yield row(f"analysis {name}", f"{samples:,} samples", "1/s", speeds["ours"], alternative, speeds["scipy"])
 
 
-def speed(work: Callable[..., Any], *given: Any) -> float:
+def speed(work: Callable[..., Any], *arguments: Any) -> float:
     """Calls per second of CPU time."""
     start, calls = time.process_time(), 0
     while (spent := time.process_time() - start) < 0.04:
-        work(*given)
+        work(*arguments)
         calls += 1
     return calls / spent

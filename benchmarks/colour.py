@@ -29,13 +29,13 @@ def distances(corpus: Path) -> dict[str, list[float]]:
     _, first = np.unique(number, return_index=True)
     energies = group_means(feature_rows(table, COUNTED).to_numpy(), number)
     fault, speed = table["fault"].values[first], np.log(table["shaft_rate"].values[first])
-    found: dict[str, list[float]] = {}
-    for one in range(len(fault)):
-        healthy = np.flatnonzero((fault == HEALTHY) & (np.arange(len(fault)) != one))
+    of_class: dict[str, list[float]] = {}
+    for tested in range(len(fault)):
+        healthy = np.flatnonzero((fault == HEALTHY) & (np.arange(len(fault)) != tested))
         if healthy.size:
-            nearest = healthy[np.abs(speed[healthy] - speed[one]).argmin()]
-            found.setdefault(FAULTS[fault[one]], []).append(float(distance(energies[one] - energies[nearest])))
-    return found
+            nearest = healthy[np.abs(speed[healthy] - speed[tested]).argmin()]
+            of_class.setdefault(FAULTS[fault[tested]], []).append(float(distance(energies[tested] - energies[nearest])))
+    return of_class
 
 
 def main() -> None:
@@ -47,9 +47,9 @@ def main() -> None:
     print("|---|---|---:|---:|---:|---:|")
     with tempfile.TemporaryDirectory() as name:
         for title, corpus in real_corpora(options.real, Path(name)).items():
-            for fault, found in distances(corpus).items():
-                values = " | ".join(f"{value:.1f}" for value in np.quantile(found, [0, 0.5, 1]))
-                print(f"| {title} | {fault} | {len(found)} | {values} |")
+            for fault, of_class in distances(corpus).items():
+                values = " | ".join(f"{value:.1f}" for value in np.quantile(of_class, [0, 0.5, 1]))
+                print(f"| {title} | {fault} | {len(of_class)} | {values} |")
 
 
 if __name__ == "__main__":

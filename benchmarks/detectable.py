@@ -59,14 +59,14 @@ def cases(recipe: Recipe, pairs: int) -> list[Case]:
     truth = recipe.truth.model_copy(update={"twins": True, "undetected": "keep"})
     faults = tuple(fault for fault in recipe.faults if fault.kind != "healthy")
     changes = {"corpus": corpus, "truth": truth, "faults": faults, "records": 2 * pairs}
-    made = make_records(recipe.model_copy(update=changes), range(2 * pairs))
-    found = []
-    for healthy, faulty in zip(made[::2], made[1::2], strict=True):
+    simulated = make_records(recipe.model_copy(update=changes), range(2 * pairs))
+    cases = []
+    for healthy, faulty in zip(simulated[::2], simulated[1::2], strict=True):
         if isinstance(healthy, Measured) and isinstance(faulty, Measured) and (orders := lines_of_faults(faulty.run)):
             (other,) = measure([replace(healthy.run, scenario=OtherNoise(healthy.scenario.recipe))])
             per_unit = counts_per_unit(recipe) or 1.0
-            record, twin, again = (one.signal[0] / per_unit for one in (faulty, healthy, other))
-            found.append(
+            record, twin, again = (response.signal[0] / per_unit for response in (faulty, healthy, other))
+            cases.append(
                 Case(
                     faulty.scenario.fault,
                     bool(faulty.detectable),
@@ -78,7 +78,7 @@ def cases(recipe: Recipe, pairs: int) -> list[Case]:
                     faulty.run.motion.means[0],
                 )
             )
-    return found
+    return cases
 
 
 def _impulses(scenario: Scenario) -> NDArray[np.float32]:
@@ -110,7 +110,7 @@ class Line(NamedTuple):
 
 def envelope_lines(signal: FloatArray, fs: float, frequency: float) -> list[Line]:
     """Lines at a frequency [Hz] and twice and three times it, in all frequencies and in each quarter of them, by Hilbert transforms."""
-    duration, found = len(signal) / fs, []
+    duration, lines = len(signal) / fs, []
     for low, high in ((0.01, 0.99), (0.01, 0.25), (0.25, 0.5), (0.5, 0.75), (0.75, 0.99)):
         band = butter(4, (low, high), "bandpass", output="sos")
         envelope = np.abs(hilbert(sosfiltfilt(band, signal))) ** 2
@@ -119,8 +119,8 @@ def envelope_lines(signal: FloatArray, fs: float, frequency: float) -> list[Line
             places = np.arange(math.ceil(0.99 * middle - 1), math.floor(1.01 * middle + 1) + 1)
             places = places[(places > 0) & (places < (high - low) * len(signal) / 4)]
             if len(places):
-                found.append(Line(float(spectrum[places].max()), len(places), (high - low) * len(signal) / 2))
-    return found
+                lines.append(Line(float(spectrum[places].max()), len(places), (high - low) * len(signal) / 2))
+    return lines
 
 
 def noise_alarms(signal: FloatArray, fs: float, frequency: float) -> list[bool]:
@@ -142,23 +142,23 @@ def _finds_line(case: Case, fs: float, frequency: float) -> bool:
     louder = np.mean(case.record**2) / np.mean(case.twin**2)
     clear = noise_alarms(case.record, fs, frequency)
     return any(
-        is_clear and one.size * louder > 2 * other.size
-        for is_clear, one, other in zip(clear, record, twin, strict=True)
+        is_clear and own.size * louder > 2 * other.size
+        for is_clear, own, other in zip(clear, record, twin, strict=True)
     )
 
 
-def report(made: Sequence[Case], fs: float) -> Iterator[str]:
+def report(cases: Sequence[Case], fs: float) -> Iterator[str]:
     """Lines of both tables."""
-    alarms = sum(rule_alarms(case, fs) for case in made)
-    of_noise = sum(any(noise_alarms(case.twin, fs, case.orders[0] * case.shaft_rate)) for case in made)
+    alarms = sum(rule_alarms(case, fs) for case in cases)
+    of_noise = sum(any(noise_alarms(case.twin, fs, case.orders[0] * case.shaft_rate)) for case in cases)
     yield "| healthy records | alarms of the rule | alarms of a test against noise alone |"
     yield "|---:|---:|---:|"
-    yield f"| {len(made)} | {alarms} | {of_noise} |"
+    yield f"| {len(cases)} | {alarms} | {of_noise} |"
     yield ""
     yield "| class | records | fault can be seen | analyst sees it | agreement |"
     yield "|---|---:|---:|---:|---:|"
-    for fault in (*dict.fromkeys(case.fault for case in made), "all"):
-        some = [case for case in made if fault in (case.fault, "all")]
+    for fault in (*dict.fromkeys(case.fault for case in cases), "all"):
+        some = [case for case in cases if fault in (case.fault, "all")]
         told = np.array([(case.detectable, analyst_sees(case, fs)) for case in some])
         shares = f"{told[:, 0].mean():.2f} | {told[:, 1].mean():.2f} | {np.mean(told[:, 0] == told[:, 1]):.2f}"
         yield f"| {fault} | {len(some)} | {shares} |"

@@ -94,16 +94,16 @@ def main() -> None:
                     own = FAMILIES.index(recording.fault)
                     levels = dict(comb_levels(recording))
                     if max(values[own] for values in levels.values()) > CLEAR:
-                        found = {cell: int(np.argmax(values)) == own for cell, values in levels.items()}
-                        right.setdefault(title, []).append(found)
-                        right["all"].append(found)
+                        hits = {cell: int(np.argmax(values)) == own for cell, values in levels.items()}
+                        right.setdefault(title, []).append(hits)
+                        right["all"].append(hits)
     print(
         "| set | recordings | whitening | fixed band, % | kurtogram, % | comb band, % |\n|---|---:|---|---:|---:|---:|"
     )
-    for title, found in right.items():
+    for title, hits in right.items():
         for whitening in WHITENINGS:
-            rates = [100 * np.mean([one[whitening, band] for one in found]) for band in ("fixed", "kurtogram", "comb")]
-            print(f"| {title} | {len(found)} | {whitening} | {' | '.join(f'{rate:.1f}' for rate in rates)} |")
+            rates = [100 * np.mean([hit[whitening, band] for hit in hits]) for band in ("fixed", "kurtogram", "comb")]
+            print(f"| {title} | {len(hits)} | {whitening} | {' | '.join(f'{rate:.1f}' for rate in rates)} |")
 
 
 if __name__ == "__main__":

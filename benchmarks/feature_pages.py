@@ -41,7 +41,7 @@ def with_tables(page: str) -> str:
     """A page with its tables made again."""
     tables = {name: _features(features) for name, features in TABLES.items()}
     tables["views"] = _markdown(("view", "meaning"), ((f"`{view}`", meaning) for view, meaning in VIEWS.items()))
-    return _TABLE.sub(lambda found: f"{found[1]}\n{tables[found[2]]}\n{found[3]}", page)
+    return _TABLE.sub(lambda marker: f"{marker[1]}\n{tables[marker[2]]}\n{marker[3]}", page)
 
 
 def _features(features: Sequence[Feature]) -> str:

@@ -35,7 +35,7 @@ def rows(pairs: int = 3, *, records: int = 128, theirs: int = 16) -> Iterator[Li
     def extract(record: np.ndarray) -> int:
         return tsfel.time_series_features_extractor(domains, record, fs=FS, verbose=0).shape[1]
 
-    found = interleaved(
+    measured = interleaved(
         pairs,
         ours=lambda: records / seconds(indicators, x, FS, rates, nominal),
         tsfel=lambda: theirs / seconds(lambda: [extract(record) for record in x[:theirs]]),
@@ -45,9 +45,9 @@ def rows(pairs: int = 3, *, records: int = 128, theirs: int = 16) -> Iterator[Li
         "features tsfel",
         f"all groups ({len(feature_names())})",
         "records/s",
-        found["ours"],
+        measured["ours"],
         alternative,
-        found["tsfel"],
+        measured["tsfel"],
     )
 
 
@@ -62,8 +62,8 @@ def noise_corpus(folder: Path, records: int, samples: int, codec: Codec = "zlib"
     (folder / "parts").mkdir(parents=True)
     first = folder / "parts" / part_name(0)
     dataset = make_dataset(counts, FS, ("a",), columns, counts_per_unit=1e3, attributes=texts)
-    made = write_part(dataset, first, codec)
-    parts = [made._replace(name=part_name(number)) for number in range(records // PER_PART)]
+    written = write_part(dataset, first, codec)
+    parts = [written._replace(name=part_name(number)) for number in range(records // PER_PART)]
     for part in parts[1:]:
         shutil.copy(first, first.with_name(part.name))
     finish_corpus(folder, parts, title="noise")

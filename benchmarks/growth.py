@@ -85,9 +85,9 @@ def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, s
     ending = []
     finish = vars(making)["_finish"]
 
-    def timed(*given: Any) -> Any:
+    def timed(*arguments: Any) -> Any:
         start = time.process_time()
-        done = finish(*given)
+        done = finish(*arguments)
         ending.append(time.process_time() - start)
         return done
 

@@ -60,12 +60,12 @@ def rows(
     with tempfile.TemporaryDirectory() as folder:
         theirs = {"plain": _c_rate(recipe, records, Path(folder))} if compiler() else {}
         ours = {"ours": kernel_rate(recipe, records), "full": kernel_rate(full, full_records)}
-        found = interleaved(pairs, **ours, **theirs)
+        speeds = interleaved(pairs, **ours, **theirs)
     if theirs:
-        yield row("kernel plain", "seed model, one core", UNIT, found["ours"], PLAIN, found["plain"])
+        yield row("kernel plain", "seed model, one core", UNIT, speeds["ours"], PLAIN, speeds["plain"])
     else:
         yield Skipped("kernel plain", "there is no C compiler (cc) on this machine.")
-    yield row("kernel full", "full model: 6 DOF and every term", UNIT, found["full"], "our seed model", found["ours"])
+    yield row("kernel full", "full model: 6 DOF and every term", UNIT, speeds["full"], "our seed model", speeds["ours"])
 
 
 def kernel_rate(recipe: Path | str, records: int) -> Rate:
@@ -153,9 +153,9 @@ def compiled(lanes: int, spall: int, folder: Path, filters: Decimation) -> Outpu
     factor = filters.first.factor
     steps = factor * filters.last.factor
     sizes = (f"-DSTEPS={steps}", f"-DFIRST={factor}", f"-DFIRST_TAPS={len(first)}", f"-DLAST_TAPS={len(last)}")
-    given = (f"-DLANES={lanes}", f"-DSPALL={spall}", *sizes)
-    library = folder / f"{''.join(given)}.so"
-    subprocess.run(["cc", *FLAGS, *given, "-c", "-o", library.with_suffix(".o"), HERE / "plain.c"], check=True)
+    flags = (f"-DLANES={lanes}", f"-DSPALL={spall}", *sizes)
+    library = folder / f"{''.join(flags)}.so"
+    subprocess.run(["cc", *FLAGS, *flags, "-c", "-o", library.with_suffix(".o"), HERE / "plain.c"], check=True)
     # linking with -ffast-math would disable subnormal numbers in the whole process
     subprocess.run(["cc", "-shared", "-o", library, library.with_suffix(".o"), "-lm"], check=True)
     march = ctypes.CDLL(str(library)).march
@@ -163,9 +163,9 @@ def compiled(lanes: int, spall: int, folder: Path, filters: Decimation) -> Outpu
     march.restype = None
 
     def outputs(batch: CBatch, dt: float, samples: int) -> Single:
-        made = np.empty((-(-samples // BLOCK) * BLOCK, 4, lanes), np.float32)
-        march(batch.state.copy(), batch.turn.copy(), batch.params, dt, len(made), first, last, made)
-        return made[:samples]
+        states = np.empty((-(-samples // BLOCK) * BLOCK, 4, lanes), np.float32)
+        march(batch.state.copy(), batch.turn.copy(), batch.params, dt, len(states), first, last, states)
+        return states[:samples]
 
     return outputs
 

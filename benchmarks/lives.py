@@ -55,9 +55,9 @@ def lives_of_corpus(path: Path) -> Lives:
         order = np.lexsort((records["age"].values, bearing))
         fs, count = float(records["sample_rate"][0]), records.sizes["record"]
         blocks = (records[SIGNAL][first : first + BLOCK].values for first in range(0, count, BLOCK))
-        found = np.concatenate([indicators(block.astype(float), fs) for block in blocks]).reshape(count, -1)
+        values = np.concatenate([indicators(block.astype(float), fs) for block in blocks]).reshape(count, -1)
         age, rul, event, stage = (records[name].values for name in ("age", "rul", "event", "stage"))
-        return Lives(found, age, rul, event == 1, bearing, stage > 0).some(order)
+        return Lives(values, age, rul, event == 1, bearing, stage > 0).some(order)
 
 
 def lives_of_file(path: Path) -> Lives:
@@ -65,12 +65,12 @@ def lives_of_file(path: Path) -> Lives:
     parts = []
     with xr.open_dataset(path) as opened:
         for number in range(opened.sizes["bearing"]):
-            one = opened.isel(bearing=number)
-            values = np.stack([one[name].transpose("snapshot", "channel").values for name in NAMES], axis=1)
-            known = np.log(values[np.isfinite(values).all(axis=(1, 2))].astype(float))
-            age = np.linspace(0, EVERY * (len(known) - 1), len(known))
-            same = np.ones(len(known), bool)
-            parts.append(Lives(known.reshape(len(known), -1), age, age[-1] - age, same, number * same, same))
+            bearing = opened.isel(bearing=number)
+            values = np.stack([bearing[name].transpose("snapshot", "channel").values for name in NAMES], axis=1)
+            logarithms = np.log(values[np.isfinite(values).all(axis=(1, 2))].astype(float))
+            age = np.linspace(0, EVERY * (len(logarithms) - 1), len(logarithms))
+            same = np.ones(len(logarithms), bool)
+            parts.append(Lives(logarithms.reshape(len(logarithms), -1), age, age[-1] - age, same, number * same, same))
     return Lives(*map(np.concatenate, zip(*parts, strict=True)))
 
 
@@ -104,13 +104,13 @@ def trained_on_the_others(lives: Lives) -> pd.DataFrame:
 
 def report(synthetic: Lives, real: Lives) -> Iterator[str]:
     """Both tables in Markdown."""
-    made, known = shape(synthetic), shape(real)
+    of_synthetic, of_real = shape(synthetic), shape(real)
     yield "| | synthetic: 5 %, median, 95 % | real: least, median, largest | distance |"
     yield "|---|---:|---:|---:|"
-    for name in made:
-        ends = made[name].quantile([0.05, 0.5, 0.95]), known[name].quantile([0, 0.5, 1])
+    for name in of_synthetic:
+        ends = of_synthetic[name].quantile([0.05, 0.5, 0.95]), of_real[name].quantile([0, 0.5, 1])
         texts = (", ".join(f"{value:.2f}" for value in each) for each in ends)
-        test = ks_2samp(made[name], known[name])
+        test = ks_2samp(of_synthetic[name], of_real[name])
         yield f"| {name} | {' | '.join(texts)} | {test.statistic:.2f} (p {test.pvalue:.2f}) |"
     yield ""
     yield "| trained on | estimate | error at 50 % | 75 % | 90 % | PHM 2012 | concordance |"

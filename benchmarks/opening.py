@@ -26,16 +26,16 @@ def rows(pairs: int = 5, *, parts: int = 50, records_per_part: int = 20) -> Iter
             generate(recipe, Path(folder) / name, records=parts * records_per_part).path for name in ("c", "c.nc")
         )
         record = parts * records_per_part // 2
-        found = interleaved(
+        seconds_of = interleaved(
             pairs,
             hashed=lambda: 1 / seconds(read_record, corpus, record),
             single=lambda: 1 / seconds(read_record, file, record),
             many=lambda: 1 / seconds(read_from_parts, corpus, record),
         )
     what, alternative = f"open {parts} parts, read a record", "xarray.open_mfdataset"
-    yield row("opening folder", what, "1/s", found["hashed"], alternative, found["many"])
+    yield row("opening folder", what, "1/s", seconds_of["hashed"], alternative, seconds_of["many"])
     what = "open one file of the same records, read one"
-    yield row("opening file", what, "1/s", found["single"], alternative, found["many"])
+    yield row("opening file", what, "1/s", seconds_of["single"], alternative, seconds_of["many"])
 
 
 def read_record(corpus: Path, record: int) -> np.ndarray:

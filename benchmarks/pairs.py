@@ -64,17 +64,17 @@ def row(name: str, what: str, unit: str, values: Series, alternative: str, other
     return Row(name, what, medians[0], unit, alternative, medians[1], statistics.median(ratios), len(ratios))
 
 
-def seconds(work: Callable[..., Any], *given: Any) -> float:
+def seconds(work: Callable[..., Any], *arguments: Any) -> float:
     """Wall time of a call [s]."""
     start = time.perf_counter()
-    work(*given)
+    work(*arguments)
     return time.perf_counter() - start
 
 
-def cpu_seconds(work: Callable[..., Any], *given: Any) -> float:
+def cpu_seconds(work: Callable[..., Any], *arguments: Any) -> float:
     """CPU time of all threads of this process in a call [s]; unlike wall time, it does not count other processes on the machine."""
     start = time.process_time()
-    work(*given)
+    work(*arguments)
     return time.process_time() - start
 
 

@@ -63,7 +63,7 @@ def _targets(results: Results) -> str:
     for target in TARGETS:
         must = ", ".join(f"{limit:g} ({vendor})" if vendor else f"{limit:g}" for vendor, limit in target.must.items())
         aim = "-" if target.aim is None else f"{target.aim:g}"
-        cells = [_reached(target, name, found.get(target.row)) for name, found in results.items()]
+        cells = [_reached(target, name, measured.get(target.row)) for name, measured in results.items()]
         rows.append([target.what, must, aim, *cells])
     return _markdown(["", "must", "aim", *results], rows)
 
@@ -80,12 +80,12 @@ def _reached(target: Target, processor: str, row: Mapping[str, Any] | None) -> s
 def _rows(results: Results, words: Sequence[str]) -> str:
     """Rows whose names begin with one of some words: the figures of every processor."""
     names = dict.fromkeys(
-        name for word in words for found in results.values() for name in found if name.split()[0] == word
+        name for word in words for rows in results.values() for name in rows if name.split()[0] == word
     )
     lines = []
     for name in names:
-        first = next(found[name] for found in results.values() if name in found)
-        cells = [_cell(found.get(name)) for found in results.values()]
+        first = next(rows[name] for rows in results.values() if name in rows)
+        cells = [_cell(rows.get(name)) for rows in results.values()]
         lines.append([f"{name}: {first['what']}", first["alternative"], *cells])
     return _markdown(["", "compared with", *results], lines)
 
@@ -103,9 +103,9 @@ def _machines(results: Results) -> str:
     for name, rows in results.items():
         counts: dict[tuple[str, ...], int] = {}
         for row in rows.values():
-            known = tuple(str(row["facts"][key]) for key in ("processor", "cores", "python", "numba", "numpy"))
-            counts[known] = counts.get(known, 0) + 1
-        lines += [[name, *known, str(count)] for known, count in counts.items()]
+            computer = tuple(str(row["facts"][key]) for key in ("processor", "cores", "python", "numba", "numpy"))
+            counts[computer] = counts.get(computer, 0) + 1
+        lines += [[name, *computer, str(count)] for computer, count in counts.items()]
     return _markdown(["", "processor", "cores", "Python", "numba", "NumPy", "rows"], lines)
 
 
@@ -137,7 +137,7 @@ def tables(results: Results) -> Iterator[tuple[str, Callable[[], str]]]:
 def with_tables(page: str, results: Results) -> str:
     """A page with its tables made again."""
     makers = dict(tables(results))
-    return _TABLE.sub(lambda found: f"{found[1]}\n{makers[found[2]]()}\n{found[3]}", page)
+    return _TABLE.sub(lambda marker: f"{marker[1]}\n{makers[marker[2]]()}\n{marker[3]}", page)
 
 
 def write_page(page: Path = PAGE) -> None:

@@ -46,13 +46,13 @@ def throughput_rows(pairs: int, recipe: Path = FULL, sizes: tuple[int, int] = SI
                 return cpu_seconds(lambda: generate(whole, Path(corpus) / "corpus", records=records))
 
         made(small)  # compiles
-        found = interleaved(
+        seconds_of = interleaved(
             pairs,
             kernel=_kernel_alone(whole, small),
             ours=lambda: (large - small) / (made(large) - made(small)),
         )
     what = "recipe to validated parts, full model, one worker"
-    yield row("pipeline parts", what, "records/s", found["ours"], "the kernel alone", found["kernel"])
+    yield row("pipeline parts", what, "records/s", seconds_of["ours"], "the kernel alone", seconds_of["kernel"])
 
 
 def _kernel_alone(recipe: Path, records: int) -> Callable[[], float]:
@@ -70,14 +70,14 @@ def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_pe
         small = variant(recipe, folder / "small.yaml", corpus=corpus, storage=storage)
 
         def speed(workers: int, wanted: int = records) -> float:
-            with tempfile.TemporaryDirectory(dir=folder) as made:
-                line = ("-m", "raceway", "generate", small, "-o", Path(made) / "corpus", "--records", wanted)
+            with tempfile.TemporaryDirectory(dir=folder) as target:
+                line = ("-m", "raceway", "generate", small, "-o", Path(target) / "corpus", "--records", wanted)
                 return wanted / seconds(run_python, *line, "--workers", workers)
 
         speed(1, 2 * records_per_part)  # compiles
-        found = interleaved(pairs, two=lambda: speed(2), one=lambda: speed(1))
+        speeds = interleaved(pairs, two=lambda: speed(2), one=lambda: speed(1))
     what = f"raceway generate of {records:,} one-second records, full model, two workers, wall time"
-    yield row("pipeline workers", what, "records/s", found["two"], "one worker", found["one"])
+    yield row("pipeline workers", what, "records/s", speeds["two"], "one worker", speeds["one"])
 
 
 def corpus_cost(recipe: Path, folder: Path, records: int) -> dict[str, float]:
@@ -93,8 +93,8 @@ def growth_rows(pairs: int, recipe: Path = SHORT, scales: tuple[int, int] = SCAL
         costs = {scale: lambda scale=scale: corpus_cost(recipe, Path(temporary), scale) for scale in scales}
         runs = [{scale: cost() for scale, cost in costs.items()} for _ in range(pairs)]
     for unit, name, what in (("ms", "growth cost", "short record"), ("MB", "growth memory", "peak of the process")):
-        found = [[run[scale][unit] for run in runs] for scale in scales]
-        yield row(name, f"{what}, {large}", unit, found[1], small, found[0])
+        slopes = [[run[scale][unit] for run in runs] for scale in scales]
+        yield row(name, f"{what}, {large}", unit, slopes[1], small, slopes[0])
 
 
 def variant(recipe: Path, path: Path, **sections: dict[str, Any]) -> Path:

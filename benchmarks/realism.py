@@ -34,58 +34,60 @@ TARGETS = (
 
 def real_corpora(real: Path, folder: Path) -> list[Path]:
     """Import the sets that are in ``real``."""
-    found = []
+    folders = []
     if (real / "cwru").is_dir():
-        found.append(import_set("cwru", real / "cwru", folder / "cwru").path)
+        folders.append(import_set("cwru", real / "cwru", folder / "cwru").path)
     if (real / "mfpt").is_dir():
-        found.append(import_set("mfpt", real / "mfpt", folder / "mfpt").path)
+        folders.append(import_set("mfpt", real / "mfpt", folder / "mfpt").path)
     if (real / "uestc").is_dir():
-        found.append(import_generic(UESTC, folder / "uestc", folder=real / "uestc").path)
-    return found
+        folders.append(import_generic(UESTC, folder / "uestc", folder=real / "uestc").path)
+    return folders
 
 
-def table(found: Comparison, before: Comparison | None = None) -> Iterator[str]:
+def table(comparison: Comparison, before: Comparison | None = None) -> Iterator[str]:
     """Markdown table of AUCs: each cell has the value before, the value, and in brackets the range of the real sets."""
-    classes = list(found.auc)
+    classes = list(comparison.auc)
     yield f"| measure | unit | {' | '.join(classes)} |"
     yield "|---|---|" + "---:|" * len(classes)
     for measure in MEASURES:
-        cells = [_cell(found, before, fault, measure.name) for fault in classes]
+        cells = [_cell(comparison, before, fault, measure.name) for fault in classes]
         yield f"| {measure.name} | {measure.unit} | {' | '.join(cells)} |"
 
 
-def _cell(found: Comparison, before: Comparison | None, fault: str, measure: str) -> str:
-    value = found.auc[fault].get(measure)
+def _cell(comparison: Comparison, before: Comparison | None, fault: str, measure: str) -> str:
+    value = comparison.auc[fault].get(measure)
     if value is None:
         return ""
     earlier = None if before is None else before.auc.get(fault, {}).get(measure)
     held = [
-        table[fault][measure] for table in found.yardstick.values() if table.get(fault, {}).get(measure) is not None
+        table[fault][measure]
+        for table in comparison.yardstick.values()
+        if table.get(fault, {}).get(measure) is not None
     ]
     spread = f" ({min(held):.2f}-{max(held):.2f})" if held else ""
     return f"{'' if earlier is None else f'{earlier:.2f} → '}{value:.2f}{spread}"
 
 
-def medians(found: Comparison) -> Iterator[str]:
+def medians(comparison: Comparison) -> Iterator[str]:
     """Markdown table of the medians of the synthetic, the pooled real, and each real set, with the numbers of windows."""
-    sets = ["synthetic", "real", *(windows.name for windows in found.real)]
+    sets = ["synthetic", "real", *(windows.name for windows in comparison.real)]
     yield f"| class | measure | {' | '.join(sets)} | windows |"
     yield "|---|---|" + "---:|" * len(sets) + "---|"
-    for fault, measures in found.quantiles.items():
+    for fault, measures in comparison.quantiles.items():
         for name, quantiles in measures.items():
             cells = [f"{quantiles[key][1]:.3g}" if key in quantiles else "" for key in sets]
-            counts = ", ".join(str(found.counts[fault][name].get(key, 0)) for key in sets if key != "real")
+            counts = ", ".join(str(comparison.counts[fault][name].get(key, 0)) for key in sets if key != "real")
             yield f"| {fault} | {name} | {' | '.join(cells)} | {counts} |"
 
 
-def verdicts(found: Comparison) -> Iterator[str]:
+def verdicts(comparison: Comparison) -> Iterator[str]:
     """One sentence per target: the range that is wanted, and the values outside it."""
     for what, measures, classes, lowest, highest in TARGETS:
         values = {
             f"{measure} of {fault}": value
             for fault in classes
             for measure in measures
-            if (value := found.auc.get(fault, {}).get(measure)) is not None
+            if (value := comparison.auc.get(fault, {}).get(measure)) is not None
         }
         missed = [f"{name} {value:.2f}" for name, value in values.items() if not lowest <= value <= highest]
         state = f"missed by {', '.join(missed)}" if missed else "met" if values else "not measured"
@@ -112,16 +114,16 @@ def main() -> None:
         real = real_corpora(options.real, folder)
         if not real:
             parser.error(f"{options.real}: holds none of cwru, mfpt and uestc; give the folder that holds them.")
-        made = folder / "synthetic"
-        generate(options.recipe, made, workers=options.workers, records=options.records, seed=options.seed)
+        synthetic = folder / "synthetic"
+        generate(options.recipe, synthetic, workers=options.workers, records=options.records, seed=options.seed)
         print("generated", file=sys.stderr, flush=True)
-        found = compare(made, real)
+        comparison = compare(synthetic, real)
         before = None if options.against is None else compare(options.against, real)
-    print("\n".join(table(found, before)), end="\n\n")
-    print("\n".join(medians(found)), end="\n\n")
-    print("\n".join(verdicts(found)))
+    print("\n".join(table(comparison, before)), end="\n\n")
+    print("\n".join(medians(comparison)), end="\n\n")
+    print("\n".join(verdicts(comparison)))
     if options.json:
-        options.json.write_text(json.dumps(found.plain(), indent=1), encoding="utf-8")
+        options.json.write_text(json.dumps(comparison.plain(), indent=1), encoding="utf-8")
 
 
 if __name__ == "__main__":

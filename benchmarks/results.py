@@ -22,13 +22,13 @@ Rows = dict[str, dict[str, Any]]
 
 def facts() -> dict[str, Any]:
     """Processor, versions and settings that the values depend on."""
-    found = machine() | {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS")}
+    facts = machine() | {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS")}
     for name in ("xarray", "netCDF4", "h5py", "dask", "tsfel"):
         try:
-            found[name] = version(name)
+            facts[name] = version(name)
         except PackageNotFoundError:
-            found[name] = None
-    return found
+            facts[name] = None
+    return facts
 
 
 def machine() -> dict[str, Any]:
@@ -85,11 +85,11 @@ def every_result(folder: Path = FOLDER) -> dict[str, Rows]:
     return {path.stem.removeprefix(PREFIX): json.loads(path.read_text(encoding="utf-8")) for path in paths}
 
 
-def keep(lines: Iterable[Line], path: Path, known: Mapping[str, Any]) -> None:
+def keep(lines: Iterable[Line], path: Path, facts: Mapping[str, Any]) -> None:
     """Replace the rows of ``lines`` in a file, and keep its other rows."""
     rows: Rows = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     for line in lines:
         if isinstance(line, Row):
-            rows[line.name] = {key: value for key, value in line._asdict().items() if key != "name"} | {"facts": known}
+            rows[line.name] = {key: value for key, value in line._asdict().items() if key != "name"} | {"facts": facts}
     text = ",\n".join(f" {json.dumps(name)}: {json.dumps(row)}" for name, row in rows.items())
     path.write_text(f"{{\n{text}\n}}\n", encoding="utf-8")

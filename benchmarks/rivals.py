@@ -31,12 +31,12 @@ def rows(
         "ivp": lambda: sampled_s / cpu_seconds(adaptive, seed, state, sampled_s, dt * factor),
         "numpy": _numpy_speed(seed, state, dt, steps),
     }
-    found = interleaved(pairs, **measures)
-    simulated = [speed * dt for speed in found["ours"]]
+    measured = interleaved(pairs, **measures)
+    simulated = [speed * dt for speed in measured["ours"]]
     ivp = "solve_ivp, RK45, rtol 1e-6, one record"
-    yield row("kernel solve_ivp", "seed model, at the same sample times", "record-s/s", simulated, ivp, found["ivp"])
+    yield row("kernel solve_ivp", "seed model, at the same sample times", "record-s/s", simulated, ivp, measured["ivp"])
     batch = f"NumPy RK4, batch of {NUMPY_RECORDS} records"
-    yield row("kernel numpy", "seed model, one core", UNIT, found["ours"], batch, found["numpy"])
+    yield row("kernel numpy", "seed model, one core", UNIT, measured["ours"], batch, measured["numpy"])
 
 
 def slope(t: float, q: FloatArray, seed: Seed) -> FloatArray:
@@ -75,19 +75,19 @@ def step(t: float, q: FloatArray, dt: float, seed: Seed) -> tuple[FloatArray, Fl
 
 def numpy_march(seed: Seed, state: FloatArray, dt: float, steps: int) -> FloatArray:
     """Accelerations x1 y1 x2 y2 of a batch at the start of each step, shape (step, 4, record) [m s-2]."""
-    made, q = np.empty((steps, 4, state.shape[1])), state
+    states, q = np.empty((steps, 4, state.shape[1])), state
     for number in range(steps):
         q, before = step(number * dt, q, dt, seed)
-        made[number] = before[4:]
-    return made
+        states[number] = before[4:]
+    return states
 
 
 def adaptive(seed: Seed, state: FloatArray, duration: float, sample: float) -> FloatArray:
     """Accelerations of the first record at its samples, shape (4, sample) [m s-2]."""
-    one = Seed(*(float(values[0]) for values in seed))
+    lane = Seed(*(float(values[0]) for values in seed))
     times = sample * np.arange(round(duration / sample))
-    found = solve_ivp(lambda t, q: slope(t, q, one), (0, duration), state[:, 0], t_eval=times, rtol=1e-6, atol=ATOL)
-    return np.stack([slope(t, q, one)[4:] for t, q in zip(times, found.y.T, strict=True)], axis=1)
+    solution = solve_ivp(lambda t, q: slope(t, q, lane), (0, duration), state[:, 0], t_eval=times, rtol=1e-6, atol=ATOL)
+    return np.stack([slope(t, q, lane)[4:] for t, q in zip(times, solution.y.T, strict=True)], axis=1)
 
 
 def spalled(recipe: Path | str, records: int) -> tuple[Seed, FloatArray]:

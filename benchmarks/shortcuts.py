@@ -66,7 +66,7 @@ def read_records(corpus: Path | str) -> Shortcuts:
     waveforms = waveforms.take(np.flatnonzero(waveforms.labels["fault"].values != UNKNOWN_CODE))
     labels, fs = waveforms.labels, waveforms.labels["sample_rate"].values
     each = [in_signal(x.astype(float), fs) for x, fs in zip(waveforms, fs, strict=True)]
-    shortcuts = {name: np.stack([one[name] for one in each]) for name in each[0]}
+    shortcuts = {name: np.stack([of_record[name] for of_record in each]) for name in each[0]}
     for name, variables in STORED.items():
         if all(variable in labels for variable in variables):
             shortcuts[name] = np.stack([labels[variable].values for variable in variables], axis=1)
@@ -79,18 +79,18 @@ def permuted(records: Shortcuts, rng: np.random.Generator) -> NDArray[np.bool_]:
     """Labels after those of the specimens of each rig changed places, shape (record,)."""
     _, first, own = np.unique(records.specimen, return_index=True, return_inverse=True)
     label, rig = records.faulty[first], records.rig[first]
-    for one in np.unique(rig):
-        label[rig == one] = rng.permutation(label[rig == one])
+    for each in np.unique(rig):
+        label[rig == each] = rng.permutation(label[rig == each])
     return label[own]
 
 
 def score(values: FloatArray, faulty: NDArray[np.bool_], rig: NDArray[np.int_], seed: int) -> float:
     """AUC of extra trees on ``values`` of shape (record, number), with the records of a rig in one fold."""
     trees = ExtraTreesClassifier(100, min_samples_leaf=10, random_state=seed)
-    found = np.asarray(
+    scores = np.asarray(
         cross_val_predict(trees, values, faulty, groups=rig, cv=GroupKFold(FOLDS), method="predict_proba")
     )
-    return float(roc_auc_score(faulty, found[:, 1]))
+    return float(roc_auc_score(faulty, scores[:, 1]))
 
 
 def scores(records: Shortcuts, seed: int, permutations: int) -> Iterator[tuple[str, float, list[float]]]:
@@ -110,8 +110,8 @@ def read_source(source: str, seeds: int, records: int) -> Iterator[Shortcuts]:
     recipe = read_recipe(source, records=records)
     for seed in range(seeds):
         with tempfile.TemporaryDirectory() as folder:
-            made = generate(recipe, Path(folder) / "corpus", workers=2, seed=recipe.seed + seed)
-            yield read_records(made.path)
+            generated = generate(recipe, Path(folder) / "corpus", workers=2, seed=recipe.seed + seed)
+            yield read_records(generated.path)
 
 
 def main() -> None:
@@ -122,14 +122,14 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=1, help="number of seeds, of a recipe and of the trees")
     parser.add_argument("--permutations", type=int, default=5, help="of the labels, per seed")
     options = parser.parse_args()
-    found: dict[str, tuple[list[float], list[float]]] = {}
+    by_shortcut: dict[str, tuple[list[float], list[float]]] = {}
     for seed, records in enumerate(read_source(options.source, options.seeds, options.records)):
         for name, auc, null in scores(records, seed, options.permutations):
-            aucs, nulls = found.setdefault(name, ([], []))
+            aucs, nulls = by_shortcut.setdefault(name, ([], []))
             aucs.append(auc)
             nulls += null
     print("| shortcut | AUC | permuted labels |\n|---|---:|---:|")
-    for name, (aucs, nulls) in found.items():
+    for name, (aucs, nulls) in by_shortcut.items():
         print(f"| {name} | {spread(aucs)} | {spread(nulls)} |")
 
 

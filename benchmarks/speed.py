@@ -57,7 +57,7 @@ class Trial(NamedTuple):
 
     label: float
     true: float
-    found: ShaftSpeed
+    estimate: ShaftSpeed
 
 
 def real_corpora(real: Path, folder: Path) -> dict[str, Path]:
@@ -75,14 +75,14 @@ def recordings(corpus: Path) -> Iterator[Recording]:
         numbers = recording_numbers(opened)
         order = np.argsort(numbers, kind="stable")
         for rows in np.split(order, np.flatnonzero(np.diff(numbers[order])) + 1):
-            known = opened.isel(record=rows[0])
+            recording = opened.isel(record=rows[0])
             yield Recording(
                 x=opened[SIGNAL].isel(record=rows, channel=0).values,
-                fs=float(known["sample_rate"]),
-                label=float(known["shaft_rate"]),
-                true=_true_rate(known),
-                orders=tuple(float(known[name]) for name in Orders._fields),
-                fault=FAULTS[int(known["fault"])],
+                fs=float(recording["sample_rate"]),
+                label=float(recording["shaft_rate"]),
+                true=_true_rate(recording),
+                orders=tuple(float(recording[name]) for name in Orders._fields),
+                fault=FAULTS[int(recording["fault"])],
             )
 
 
@@ -107,19 +107,19 @@ def trials(recording: Recording) -> Iterator[Trial]:
             yield Trial(wrong, true, shaft_speed(x, fs, wrong, orders))
 
 
-def row(name: str, fault: str, found: list[list[Trial]]) -> str:
+def row(name: str, fault: str, trials: list[list[Trial]]) -> str:
     """Row of the table: first the labels as they are, then the moved ones."""
-    given = [of_one[0] for of_one in found]
-    moved = [trial for of_one in found for trial in of_one[1:]]
-    right = [trial for trial in given if not abs(trial.true / trial.label - 1) > RIGHT]
-    errors = [abs(t.found.rate / t.true - 1) for t in (*given, *moved) if t.found.clear and np.isfinite(t.true)]
-    deviations = [abs(t.found.rate - t.true) / t.found.uncertainty for t in moved if t.found.clear]
+    plain = [of_one[0] for of_one in trials]
+    moved = [trial for of_one in trials for trial in of_one[1:]]
+    right = [trial for trial in plain if not abs(trial.true / trial.label - 1) > RIGHT]
+    errors = [abs(t.estimate.rate / t.true - 1) for t in (*plain, *moved) if t.estimate.clear and np.isfinite(t.true)]
+    deviations = [abs(t.estimate.rate - t.true) / t.estimate.uncertainty for t in moved if t.estimate.clear]
     cells = [
-        f"{len(found)}",
-        _share([trial.found.clear for trial in given]),
-        _share([not trial.found.agrees for trial in right]),
-        _share([trial.found.clear for trial in moved]),
-        _share([trial.found.clear and abs(trial.found.rate / trial.true - 1) > WITHIN for trial in moved]),
+        f"{len(trials)}",
+        _share([trial.estimate.clear for trial in plain]),
+        _share([not trial.estimate.agrees for trial in right]),
+        _share([trial.estimate.clear for trial in moved]),
+        _share([trial.estimate.clear and abs(trial.estimate.rate / trial.true - 1) > WITHIN for trial in moved]),
         f"{100 * np.median(errors):.1f} ({100 * max(errors):.1f})" if errors else "",
         _share([deviation < 2 for deviation in deviations]),
     ]
@@ -132,12 +132,12 @@ def _share(cases: list[bool]) -> str:
 
 def report(corpus: Path, name: str) -> Iterator[str]:
     """One row per class of a corpus."""
-    found: dict[str, list[list[Trial]]] = {}
+    by_class: dict[str, list[list[Trial]]] = {}
     for recording in recordings(corpus):
-        found.setdefault(recording.fault, []).append(list(trials(recording)))
+        by_class.setdefault(recording.fault, []).append(list(trials(recording)))
     for fault in FAULTS:
-        if fault in found:
-            yield row(name, fault, found[fault])
+        if fault in by_class:
+            yield row(name, fault, by_class[fault])
 
 
 def main() -> None:

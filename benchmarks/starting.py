@@ -39,16 +39,19 @@ def command_rows(pairs: int) -> Iterator[Line]:
             "diagnose": ("-m", "raceway", "diagnose", str(recording), *machine),
             "import gen": ("-c", "import gen"),
         }
-        for given in commands.values():  # the first diagnosis trains the reference model
-            process_seconds(*given, check=False)
-        found = interleaved(
+        for command in commands.values():  # the first diagnosis trains the reference model
+            process_seconds(*command, check=False)
+        seconds_of = interleaved(
             pairs,
             alternative=lambda: process_seconds("-c", ALTERNATIVE),
-            **{name: lambda given=given: process_seconds(*given, check=False) for name, given in commands.items()},
+            **{
+                name: lambda command=command: process_seconds(*command, check=False)
+                for name, command in commands.items()
+            },
         )
-    for name, given in commands.items():
-        what = " ".join(given[1:]).replace(corpus, "CORPUS").replace(str(recording), "RECORDING")
-        yield row(f"starting {name}", f"{what}, CPU", "s", found[name], ALTERNATIVE, found["alternative"])
+    for name, command in commands.items():
+        what = " ".join(command[1:]).replace(corpus, "CORPUS").replace(str(recording), "RECORDING")
+        yield row(f"starting {name}", f"{what}, CPU", "s", seconds_of[name], ALTERNATIVE, seconds_of["alternative"])
 
 
 def first_record_rows(pairs: int, recipe: Path = FULL) -> Iterator[Line]:
@@ -62,12 +65,16 @@ def first_record_rows(pairs: int, recipe: Path = FULL) -> Iterator[Line]:
                 return process_seconds(*line, NUMBA_CACHE_DIR=str(cache))
 
         empty, filled = ((folder / f"cache-{pair}" for pair in range(pairs)) for _ in range(2))
-        found = interleaved(
+        seconds_of = interleaved(
             pairs,
             cold=lambda: first_record(next(empty)),
             warm=lambda: first_record(next(filled)),
             imports=lambda: process_seconds("-c", ALTERNATIVE),
         )
     what = "raceway generate of one record, full model"
-    yield row("start cold", f"{what}, nothing compiled", "s", found["cold"], "kernels in the cache", found["warm"])
-    yield row("start warm", f"{what}, kernels in the cache", "s", found["warm"], ALTERNATIVE, found["imports"])
+    yield row(
+        "start cold", f"{what}, nothing compiled", "s", seconds_of["cold"], "kernels in the cache", seconds_of["warm"]
+    )
+    yield row(
+        "start warm", f"{what}, kernels in the cache", "s", seconds_of["warm"], ALTERNATIVE, seconds_of["imports"]
+    )

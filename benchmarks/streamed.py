@@ -72,13 +72,13 @@ def part(whole: Known, start: int, records: int) -> Known:
 def network_scores(cnn: ModuleType, taught: Known, seed: int, tests: dict[str, Known]) -> list[float]:
     cnn.EPOCHS = round(EPOCHS * 3000 / len(taught.levels))
     network = cnn.train(taught.levels, taught.table["fault"].values, seed)
-    found: list[float] = []
+    values: list[float] = []
     for table, levels in tests.values():
         with cnn.torch.no_grad():
             parts = [network(part).softmax(1).numpy() for part in cnn.torch.from_numpy(levels).split(256)]
         rows = all_records(table, ())
-        found += figures(score(rows, predictions(np.concatenate(parts), CLASSES, rows.recording, UNCALIBRATED)))
-    return found
+        values += figures(score(rows, predictions(np.concatenate(parts), CLASSES, rows.recording, UNCALIBRATED)))
+    return values
 
 
 def ensemble_scores(taught: Known, seed: int, tests: dict[str, Known]) -> list[float]:
@@ -86,9 +86,9 @@ def ensemble_scores(taught: Known, seed: int, tests: dict[str, Known]) -> list[f
     return [value for test in tests.values() for value in figures(model.score(test.table))]
 
 
-def figures(found: Scores) -> list[float]:
+def figures(scores: Scores) -> list[float]:
     """Balanced accuracies by window and by recording."""
-    return [found.balanced_accuracy, (found.by_recording or found).balanced_accuracy]
+    return [scores.balanced_accuracy, (scores.by_recording or scores).balanced_accuracy]
 
 
 def main() -> None:
@@ -111,8 +111,10 @@ def main() -> None:
     whole = joined(streams)
     print(f"| trained on | {' | '.join(f'{name} | by recording' for name in tests)} |\n|---|{'---:|' * 2 * len(tests)}")
     for name, (records, step) in itertools.product(teach, WINDOWS.items()):
-        found = [teach[name](part(whole, k * step, records), k, tests) for k in range(3)]
-        cells = [f"{np.mean(seeds):.3f} ({min(seeds):.3f} to {max(seeds):.3f})" for seeds in zip(*found, strict=True)]
+        of_parts = [teach[name](part(whole, k * step, records), k, tests) for k in range(3)]
+        cells = [
+            f"{np.mean(seeds):.3f} ({min(seeds):.3f} to {max(seeds):.3f})" for seeds in zip(*of_parts, strict=True)
+        ]
         print(f"| {name}, {records:,} records | {' | '.join(cells)} |", flush=True)
 
 

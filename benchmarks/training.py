@@ -47,7 +47,7 @@ def loading_rows(pairs: int, folder: Path, batch: int) -> Iterator[Line]:
         def by_h5py(places: Places) -> np.ndarray:
             return np.stack([files[place // PER_PART][SIGNAL][place % PER_PART] for place in places]) * SCALE
 
-        found = interleaved(
+        seconds_of = interleaved(
             pairs,
             ours=lambda: rate(lambda places: joined(items, places), batches),
             zstd=lambda: rate(lambda places: joined(fast, places), batches),
@@ -56,10 +56,17 @@ def loading_rows(pairs: int, folder: Path, batch: int) -> Iterator[Line]:
             single=lambda: rate(lambda places: items[places[0]], order[:, None]),
         )
     what, ours = f"shuffled batches of {batch}", "batches, zlib"
-    yield row("training numpy", f"{what}, zlib", "1/s", found["ours"], "numpy, uncompressed", found["numpy"])
-    yield row("training h5py", f"{what}, zlib", "1/s", found["ours"], "h5py on the parts", found["h5py"])
-    yield row("training zstd", f"{what}, zstd", "1/s", found["zstd"], ours, found["ours"])
-    yield row("training one by one", "shuffled records one by one, zlib", "1/s", found["single"], ours, found["ours"])
+    yield row("training numpy", f"{what}, zlib", "1/s", seconds_of["ours"], "numpy, uncompressed", seconds_of["numpy"])
+    yield row("training h5py", f"{what}, zlib", "1/s", seconds_of["ours"], "h5py on the parts", seconds_of["h5py"])
+    yield row("training zstd", f"{what}, zstd", "1/s", seconds_of["zstd"], ours, seconds_of["ours"])
+    yield row(
+        "training one by one",
+        "shuffled records one by one, zlib",
+        "1/s",
+        seconds_of["single"],
+        ours,
+        seconds_of["ours"],
+    )
 
 
 def joined(items: LabelledRecords, places: Places) -> np.ndarray:

@@ -82,8 +82,8 @@ def with_reference(table: xr.Dataset, model: Model) -> Figures | None:
     if not len(recordings):
         return None
     chosen = (healthy & (table["recording"].values == number) for number in recordings)
-    found = [figures(model.score(table, reference=table.isel(record=rows))) for rows in chosen]
-    return {name: _mean([each[name] for each in found]) for name in found[0]}
+    of_references = [figures(model.score(table, reference=table.isel(record=rows))) for rows in chosen]
+    return {name: _mean([each[name] for each in of_references]) for name in of_references[0]}
 
 
 def pooled(tables: list[xr.Dataset]) -> xr.Dataset:
@@ -106,7 +106,7 @@ def measure(real: Path, seeds: int, recipe: str, window: float, workers: int) ->
     own: dict[str, Figures] = {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        labelled, found = real_tables(real, folder, window)
+        labelled, at_corrected_speeds = real_tables(real, folder, window)
         for seed, corpus in enumerate(corpora(recipe, window, seeds, folder, workers)):
             table = feature_table(corpus, GROUPS)
             models = {estimator: Model(estimator, seed=seed).fit(table) for estimator in ESTIMATORS}
@@ -117,14 +117,14 @@ def measure(real: Path, seeds: int, recipe: str, window: float, workers: int) ->
                     if estimator == BEST:
                         held = confusion.setdefault(test, {"true": scores.classes, "predicted": scores.model_classes})
                         held["windows"] = np.add(held.get("windows", 0), scores.confusion).tolist()
-                corrected.setdefault(test, []).append(figures(models[BEST].score(found[test])))
+                corrected.setdefault(test, []).append(figures(models[BEST].score(at_corrected_speeds[test])))
                 if (referred := with_reference(other, models[BEST])) is not None:
                     reference.setdefault(test, []).append(referred)
             for test, sets in TEACHERS.items():
                 for teaching in sets:
                     if "synthetic" not in teaching and seed > 0:
                         continue
-                    taught = pooled([labelled.get(one, table) for one in teaching])
+                    taught = pooled([labelled.get(name, table) for name in teaching])
                     scores = Model(BEST, seed=seed).fit(taught).score(labelled[test])
                     teachers[test].setdefault(" + ".join(teaching), []).append(figures(scores))
             if seed == 0:
@@ -149,8 +149,8 @@ def corpora(recipe: str, window: float, seeds: int, folder: Path, workers: int) 
 
 
 def _mean(values: list[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return float(np.mean(known)) if known else None
+    numbers = [value for value in values if value is not None]
+    return float(np.mean(numbers)) if numbers else None
 
 
 def _plain(value: Any) -> Any:
@@ -182,8 +182,8 @@ def main() -> None:
             f"{window:g}": measure(options.real, options.seeds, options.recipe, window, options.workers)
             for window in WINDOWS
         }
-        found = {"machine": machine(), "recipe": options.recipe, "seeds": options.seeds, "windows": _plain(each)}
-        lines = ",\n".join(f" {json.dumps(key)}: {json.dumps(value)}" for key, value in found.items())
+        results = {"machine": machine(), "recipe": options.recipe, "seeds": options.seeds, "windows": _plain(each)}
+        lines = ",\n".join(f" {json.dumps(key)}: {json.dumps(value)}" for key, value in results.items())
         text = f"{{\n{lines}\n}}\n"
         if options.recipe != RECIPE:
             print(text)

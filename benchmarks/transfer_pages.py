@@ -24,19 +24,19 @@ NAMES = {
 }
 
 
-def spread(found: Sequence[Mapping[str, float | None]], figure: str) -> str:
+def spread(seeds: Sequence[Mapping[str, float | None]], figure: str) -> str:
     """Mean over the seeds and, in brackets, the lowest; a dash if the figure is not known.
 
     >>> spread([{"window": 0.5}, {"window": 0.75}], "window")
     '0.625 (0.500)'
     """
-    values = [value for each in found if (value := each[figure]) is not None]
+    values = [value for each in seeds if (value := each[figure]) is not None]
     return f"{sum(values) / len(values):.3f} ({min(values):.3f})" if values else "-"
 
 
-def mean(found: Sequence[Mapping[str, float | None]], figure: str) -> str:
+def mean(seeds: Sequence[Mapping[str, float | None]], figure: str) -> str:
     """Mean over the seeds; a dash if the figure is not known."""
-    return spread(found, figure).partition(" ")[0]
+    return spread(seeds, figure).partition(" ")[0]
 
 
 def _longest(results: Results) -> Mapping[str, Any]:
@@ -53,14 +53,14 @@ def _summary(results: Results) -> str:
     """The four sets in short: zero-shot, and with one healthy recording."""
     heads = {"wang": "CWRU, Wang's subset", "cwru": "CWRU, all 64", "mfpt": "MFPT, 2 classes", "uestc": "UESTC"}
     rows: list[list[str]] = []
-    for window, found in results["windows"].items():
-        zero, reference = found["zero_shot"], found["reference"]
+    for window, scores in results["windows"].items():
+        zero, reference = scores["zero_shot"], scores["reference"]
         rows += [
             [f"{NAMES[name]}, {window} s", *(spread(zero[name][test], "window") for test in heads)]
             for name in ("envelope_rule", "ensemble")
         ]
-        known = [spread(reference[test], "window") if test in reference else "-" for test in heads]
-        rows.append([f"ensemble, with one healthy recording of the machine, {window} s", *known])
+        of_reference = [spread(reference[test], "window") if test in reference else "-" for test in heads]
+        rows.append([f"ensemble, with one healthy recording of the machine, {window} s", *of_reference])
     return _markdown(["", *heads.values()], rows)
 
 
@@ -70,11 +70,11 @@ def _zero_shot(results: Results) -> str:
     rows = [
         [
             f"{NAMES[name]}, {window} s",
-            *(spread(found[test], unit) for test in tests for unit in ("window", "recording")),
+            *(spread(scores[test], unit) for test in tests for unit in ("window", "recording")),
             mean([its["own_rigs"][name]], "window"),
         ]
         for window, its in results["windows"].items()
-        for name, found in its["zero_shot"].items()
+        for name, scores in its["zero_shot"].items()
     ]
     return _markdown(header, rows)
 
@@ -82,9 +82,12 @@ def _zero_shot(results: Results) -> str:
 def _details(results: Results) -> str:
     """Every figure of the default estimator; ``wang`` is a part of ``cwru``."""
     ways = {
-        f"{way}, {window} s": found
+        f"{way}, {window} s": scores
         for window, its in results["windows"].items()
-        for way, found in {"zero-shot": its["zero_shot"]["ensemble"], "one healthy recording": its["reference"]}.items()
+        for way, scores in {
+            "zero-shot": its["zero_shot"]["ensemble"],
+            "one healthy recording": its["reference"],
+        }.items()
     }
     header = [
         *("set", "way", "window", "recording", "false alarms", "of recordings"),
@@ -92,13 +95,16 @@ def _details(results: Results) -> str:
     ]
     rows = [
         [
-            *(test, way, spread(found[test], "window"), spread(found[test], "recording")),
-            *(mean(found[test], name) for name in ("false_alarms", "recording_false_alarms", "auc", "log_loss", "ece")),
-            *(mean(found[test], name) for name in ("coverage", "answered_accuracy")),
+            *(test, way, spread(scores[test], "window"), spread(scores[test], "recording")),
+            *(
+                mean(scores[test], name)
+                for name in ("false_alarms", "recording_false_alarms", "auc", "log_loss", "ece")
+            ),
+            *(mean(scores[test], name) for name in ("coverage", "answered_accuracy")),
         ]
         for test in ("cwru", "mfpt", "uestc")
-        for way, found in ways.items()
-        if test in found
+        for way, scores in ways.items()
+        if test in scores
     ]
     return _markdown(header, rows)
 
@@ -108,20 +114,20 @@ def _teachers(results: Results) -> str:
         [
             teaching.replace("synthetic", f"`{results['recipe']}`"),
             f"{test}, {window} s",
-            *(spread(found, name) for name in ("window", "recording")),
-            *(mean(found, name) for name in ("false_alarms", "auc", "log_loss")),
+            *(spread(scores, name) for name in ("window", "recording")),
+            *(mean(scores, name) for name in ("false_alarms", "auc", "log_loss")),
         ]
         for window, its in results["windows"].items()
         for test, teachers in its["teachers"].items()
-        for teaching, found in teachers.items()
+        for teaching, scores in teachers.items()
     ]
     return _markdown(["trained on", "tested on", "window", "recording", "false alarms", "AUC", "log-loss"], rows)
 
 
 def _confusion(results: Results, test: str) -> str:
-    found = _longest(results)["confusion"][test]
-    rows = [[name, *map(str, row)] for name, row in zip(found["true"], found["windows"], strict=True)]
-    return _markdown(["true", *found["predicted"]], rows)
+    confusion = _longest(results)["confusion"][test]
+    rows = [[name, *map(str, row)] for name, row in zip(confusion["true"], confusion["windows"], strict=True)]
+    return _markdown(["true", *confusion["predicted"]], rows)
 
 
 TABLES: Mapping[str, Callable[[Results], str]] = {
@@ -136,7 +142,7 @@ TABLES: Mapping[str, Callable[[Results], str]] = {
 
 def with_tables(page: str, results: Results) -> str:
     """A page with its tables made again."""
-    return _TABLE.sub(lambda found: f"{found[1]}\n{TABLES[found[2]](results)}\n{found[3]}", page)
+    return _TABLE.sub(lambda marker: f"{marker[1]}\n{TABLES[marker[2]](results)}\n{marker[3]}", page)
 
 
 def read_results() -> Results:

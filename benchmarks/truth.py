@@ -27,12 +27,14 @@ def rows(pairs: int = 2, records: int = 320, recipe: Path | str = "domain_random
         name: checked.model_copy(update={"truth": checked.truth.model_copy(update=keys)})
         for name, keys in SETTINGS.items()
     }
-    for given in recipes.values():
-        cpu_per_record(given)  # compiles the kernels, or loads them
-    found = interleaved(pairs, **{name: lambda given=given: cpu_per_record(given) for name, given in recipes.items()})
+    for changed in recipes.values():
+        cpu_per_record(changed)  # compiles the kernels, or loads them
+    seconds_of = interleaved(
+        pairs, **{name: lambda changed=changed: cpu_per_record(changed) for name, changed in recipes.items()}
+    )
     for name in ("full", "redraw"):
         what = f"{checked.name}, twins: true and undetected: {SETTINGS[name]['undetected']}"
-        yield row(f"truth {name}", what, "ms", found[name], "twins: false", found["none"])
+        yield row(f"truth {name}", what, "ms", seconds_of[name], "twins: false", seconds_of["none"])
 
 
 def cpu_per_record(recipe: Recipe) -> float:

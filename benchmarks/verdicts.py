@@ -67,7 +67,9 @@ def without_fault(kind: str, seed: int) -> tuple[Recorded, Given]:
     t = np.arange(round(SECONDS * FS)) / FS
 
     def waves(*frequencies: float) -> np.ndarray:
-        each = [rng.uniform(0.2, 2) * np.cos(2 * np.pi * one * t + rng.uniform(0, 6)) for one in frequencies]
+        each = [
+            rng.uniform(0.2, 2) * np.cos(2 * np.pi * frequency * t + rng.uniform(0, 6)) for frequency in frequencies
+        ]
         return np.sum(each, axis=0)
 
     x = rng.standard_normal(t.size)
@@ -112,11 +114,11 @@ def rows(title: str, answers: Mapping[str, Counter[str]]) -> Iterator[str]:
 def diagnosed(corpus: Path, model: Model) -> Iterator[tuple[str, str, Diagnosis]]:
     """Condition, true class and diagnosis of every recording under every condition."""
     for recording in recordings(corpus):
-        for condition, given in conditions(recording):
+        for condition, facts in conditions(recording):
             yield (
                 condition,
                 recording.fault,
-                diagnose_recording(Recorded({"": recording.x.ravel()}, recording.fs), given, model),
+                diagnose_recording(Recorded({"": recording.x.ravel()}, recording.fs), facts, model),
             )
 
 
@@ -127,15 +129,22 @@ def missed(real: Path, model: Model) -> Iterator[str]:
         for corpus in real_corpora(real, Path(name)).values():
             each = list(recordings(corpus))
             for seconds in LENGTHS:
-                cut = [Recorded({"": one.x.ravel()[: round(seconds * one.fs)]}, one.fs) for one in each]
-                healthy = [x for x, one in zip(cut, each, strict=True) if one.fault == HEALTHY]
-                for x, one in zip(cut, each, strict=True):
-                    given = Given({"own": Orders(*map(np.asarray, one.orders))}, (one.label, one.label))
-                    for references in [(), *((reference,) for reference in healthy)] if one.fault != HEALTHY else []:
-                        verdict = diagnose_recording(x, given, model, healthy=references).verdict
+                cut = [
+                    Recorded({"": recording.x.ravel()[: round(seconds * recording.fs)]}, recording.fs)
+                    for recording in each
+                ]
+                healthy = [x for x, recording in zip(cut, each, strict=True) if recording.fault == HEALTHY]
+                for x, recording in zip(cut, each, strict=True):
+                    facts = Given(
+                        {"own": Orders(*map(np.asarray, recording.orders))}, (recording.label, recording.label)
+                    )
+                    for references in (
+                        [(), *((reference,) for reference in healthy)] if recording.fault != HEALTHY else []
+                    ):
+                        verdict = diagnose_recording(x, facts, model, healthy=references).verdict
                         called.setdefault((seconds, bool(references)), []).append(verdict == HEALTHY)
     for seconds in LENGTHS:
-        shares = [f"{sum(called[seconds, one])} of {len(called[seconds, one])}" for one in (False, True)]
+        shares = [f"{sum(called[seconds, key])} of {len(called[seconds, key])}" for key in (False, True)]
         yield f"| {seconds:g} | {' | '.join(shares)} |"
 
 
@@ -160,13 +169,13 @@ def main() -> None:
             for condition, fault, diagnosis in diagnosed(corpus, model):
                 for counts in (answers, together):
                     counts.setdefault(condition, Counter())[answer(diagnosis.verdict, fault)] += 1
-                found = agreement(diagnosis) if condition == RIGHT else None
-                agreed.update([found] if found else [])
+                agrees = agreement(diagnosis) if condition == RIGHT else None
+                agreed.update([agrees] if agrees else [])
             print(*rows(title, answers), sep="\n", flush=True)
     print(*rows("all", together), sep="\n")
     for kind in WITHOUT_FAULT:
         verdicts = (diagnose_recording(*without_fault(kind, seed), model).verdict for seed in range(SEEDS))
-        print(*rows("made up", {f"{kind} alone": Counter(answer(one, HEALTHY) for one in verdicts)}), sep="\n")
+        print(*rows("made up", {f"{kind} alone": Counter(answer(verdict, HEALTHY) for verdict in verdicts)}), sep="\n")
     print("\n| sure of | lines of its own | of another class alone | none |\n|---|---:|---:|---:|")
     for fault in FAULTS:
         counts = [agreed[fault, lines] for lines in ("own", "another's", "none")]

@@ -105,8 +105,8 @@ def _copies(corpus: xr.Dataset, recordings: Sequence[_Recording], number: Sequen
                     # a block that two recordings share by chance is not enough
                     shared[other, own] += 1
     copies = [
-        f"{recordings[one].source} and {recordings[other].source}"
-        for (one, other), count in shared.items()
+        f"{recordings[first_of_pair].source} and {recordings[other].source}"
+        for (first_of_pair, other), count in shared.items()
         if count >= _FEWEST
     ]
     if copies:

@@ -115,13 +115,13 @@ def _of_table(table: xr.Dataset, model: Fitted, reference: xr.Dataset | None) ->
         colour = Colour(*map(np.concatenate, zip(*colours, strict=True)))
     # a recording is predicted from the mean features of its records, not from the mean of their answers
     recording = recording_numbers(table)
-    rows = [_rows(one, used) for one in tables]
-    means = [type(one)(group_means(one.to_numpy(), recording), columns=one.columns) for one in rows]
+    rows = [_rows(table_of_channel, used) for table_of_channel in tables]
+    means = [type(frame)(group_means(frame.to_numpy(), recording), columns=frame.columns) for frame in rows]
     each, whole = (
         np.stack([estimator_probabilities(used, some, title_of(table)) for some in values]) for values in (rows, means)
     )
     # tells a fault of an unknown part: a recording more impulsive than healthy ones of the training
-    impulsiveness = impulsiveness_of([one.to_numpy() for one in means], used.features)
+    impulsiveness = impulsiveness_of([frame.to_numpy() for frame in means], used.features)
     return predictions(
         each,
         used.classes,

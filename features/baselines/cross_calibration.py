@@ -60,8 +60,8 @@ def _impulsive(records: Records) -> float | None:
     if IMPULSIVENESS not in getattr(records.features, "columns", ()):
         return None
     values = records.features[IMPULSIVENESS].to_numpy()[records.fault == FAULTS.index(HEALTHY)]
-    known = values[np.isfinite(values)]
-    return float(np.quantile(known, HEALTHY_SHARE)) if known.size else None
+    finite = values[np.isfinite(values)]
+    return float(np.quantile(finite, HEALTHY_SHARE)) if finite.size else None
 
 
 def calibration_splits(records: Records, seed: int) -> tuple[Literal["rig", "specimen"], list[Split]] | None:

@@ -70,10 +70,10 @@ class Roc:
 
 def detection(detected: np.ndarray, width: FloatArray, specimen: IntArray) -> tuple[WidthBin, ...]:
     """Detection of faulty records by their width [m], all of shape (record,); empty if no width is known."""
-    known = width > 0
-    if not known.any():
+    with_width = width > 0
+    if not with_width.any():
         return ()
-    detected, width, specimen = detected[known], width[known], specimen[known]
+    detected, width, specimen = detected[with_width], width[with_width], specimen[with_width]
     number = ranges(width, BINS)
     return tuple(
         _width_bin(detected[held], width[held], specimen[held]) for held in (number == k for k in np.unique(number))

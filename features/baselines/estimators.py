@@ -248,11 +248,11 @@ def make_estimator(name: str | Maker, seed: int) -> Estimator:
     """
     if not isinstance(name, str):
         return OwnClassifier(name, seed)
-    known = ESTIMATORS | RELATIVE_ESTIMATORS
-    if name not in known:
+    makers = ESTIMATORS | RELATIVE_ESTIMATORS
+    if name not in makers:
         message = f"estimator: {name!r} is no baseline; choose from {', '.join(ESTIMATORS)}."
         raise ValueError(message)
-    return known[name](seed)
+    return makers[name](seed)
 
 
 def class_probabilities(estimator: Estimator, features: "DataFrame | Waveforms") -> FloatArray:

@@ -54,8 +54,8 @@ def fits(
     Fitted estimator of each split, and its probabilities of the tested records, shape (record, class); empty if none is tested.
     """
     fitted, fit_one = list[tuple[Estimator, FloatArray]](), partial(_fit, features, labels, estimator, seed)
-    for one in run(fit_one, splits, workers if isinstance(estimator, str) else 1):
-        fitted.append(one)
+    for fit in run(fit_one, splits, workers if isinstance(estimator, str) else 1):
+        fitted.append(fit)
         done(1)
     return fitted
 

@@ -242,8 +242,10 @@ class Model(Shown):
             check_durations(data, reference)
         groups = self.groups if reference is None else with_energies(tuple(self.groups))
         table, healthy = (
-            _feature_table(one, groups, Band(*self.band)) if one is not None and _holds_signals(one) else one
-            for one in (data, reference)
+            _feature_table(source, groups, Band(*self.band))
+            if source is not None and _holds_signals(source)
+            else source
+            for source in (data, reference)
         )
         return table, cast("xr.Dataset | None", healthy)
 

@@ -58,7 +58,7 @@ class OwnClassifier:
 
     def __init__(self, maker: Maker, seed: int) -> None:
         self.name = maker_name(maker)
-        self.made = new_classifier(maker, seed, self.name)
+        self.classifier = new_classifier(maker, seed, self.name)
 
     def fit(self, X: Any, y: IntArray) -> Self:
         """Fit the classifier to records of the codes ``y``, shape (record,).
@@ -69,7 +69,7 @@ class OwnClassifier:
             If it fails, or predicts classes that it was not given.
         """
         fitted = self._call("fit", X, np.array(FAULTS)[y])
-        self.fitted: Any = self.made if fitted is None else fitted
+        self.fitted: Any = self.classifier if fitted is None else fitted
         names = [str(name) for name in getattr(self.fitted, "classes_", [FAULTS[c] for c in np.unique(y)])]
         if not set(names) <= set(FAULTS):
             raise EstimatorError(
@@ -123,12 +123,12 @@ class OwnClassifier:
 
     def _call(self, method: str, *arguments: Any) -> Any:
         try:
-            return getattr(self.fitted if method != "fit" else self.made, method)(*arguments)
+            return getattr(self.fitted if method != "fit" else self.classifier, method)(*arguments)
         except (Exception, SystemExit) as error:
             features = isinstance(arguments[0], pd.DataFrame)
-            given = "a table of features; features.open_waveforms gives signals" if features else "signals"
+            told = "a table of features; features.open_waveforms gives signals" if features else "signals"
             raise EstimatorError(
-                f"{self.name}: {method} failed ({_brief(error)}; it got {given}); RACEWAY_TRACEBACK=1 shows where."
+                f"{self.name}: {method} failed ({_brief(error)}; it got {told}); RACEWAY_TRACEBACK=1 shows where."
             ) from error
 
 
@@ -150,28 +150,28 @@ def new_classifier(maker: Maker, seed: int, name: str) -> Any:
     EstimatorError
         If it cannot be made, or has no ``fit`` or ``predict``.
     """
-    made: Any = maker
+    classifier: Any = maker
     if isinstance(maker, type) or not hasattr(maker, "fit"):
         if not callable(maker):
             raise EstimatorError(
                 f"{name}: is no classifier; it needs fit and predict, or must be a function that makes one."
             )
         try:
-            made = maker(**_seed_argument(maker, seed))
+            classifier = maker(**_seed_argument(maker, seed))
         except (Exception, SystemExit) as error:
             raise EstimatorError(
                 f"{name}: cannot be made ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where."
             ) from error
     # a fitted object is copied, so that folds do not share what it learned
     else:
-        made = clone(maker, safe=False)
+        classifier = clone(maker, safe=False)
     # told before the first fit, not by an AttributeError inside one
-    lacking = [method for method in ("fit", "predict") if not callable(getattr(made, method, None))]
+    lacking = [method for method in ("fit", "predict") if not callable(getattr(classifier, method, None))]
     if lacking:
         raise EstimatorError(
-            f"{name}: {type(made).__name__} has no {' and no '.join(lacking)}; a classifier needs both."
+            f"{name}: {type(classifier).__name__} has no {' and no '.join(lacking)}; a classifier needs both."
         )
-    return made
+    return classifier
 
 
 def _seed_argument(maker: Callable[..., Any], seed: int) -> dict[str, int]:

@@ -122,7 +122,7 @@ def impulsiveness_of(means: Sequence[FloatArray], features: Sequence[str]) -> Fl
     """
     if IMPULSIVENESS not in features:
         return None
-    return np.mean([one[:, features.index(IMPULSIVENESS)] for one in means], axis=0)
+    return np.mean([of_channel[:, features.index(IMPULSIVENESS)] for of_channel in means], axis=0)
 
 
 def _over_channels(probabilities: FloatArray, calibration: Calibration) -> FloatArray:

@@ -82,8 +82,8 @@ def all_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     rows = feature_rows(table, features)
     fault = np.asarray(table["fault"].values, dtype=np.intp)
     if not np.isin(fault, [*FAULT_NAMES]).all():
-        known = ", ".join(f"{code} {name}" for code, name in FAULT_NAMES.items())
-        message = f"{title}: fault has values other than {known}."
+        allowed = ", ".join(f"{code} {name}" for code, name in FAULT_NAMES.items())
+        message = f"{title}: fault has values other than {allowed}."
         raise CorpusError(message)
     rig = table["rig"].values
     specimen = _numbered(rig, table["specimen"].values)
@@ -165,8 +165,8 @@ def record_digests(features: FloatArray | Waveforms) -> NDArray[np.uint64]:
 
 def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
     """Number of records whose digest is known; records without any feature are not counted."""
-    known = np.isfinite(features).any(axis=1)
-    return int(np.isin(record_digests(features[known]), digests).sum())
+    with_features = np.isfinite(features).any(axis=1)
+    return int(np.isin(record_digests(features[with_features]), digests).sum())
 
 
 def check_classes(records: Records) -> IntArray:

@@ -73,7 +73,10 @@ def _apart_in_speed(table: xr.Dataset, reference: xr.Dataset) -> float:
     """Largest relative distance of a tested speed from the nearest one of the reference; 0 if a table has no known speeds."""
     if "shaft_rate" not in table or "shaft_rate" not in reference:
         return 0.0
-    tested, its = (np.unique(one["shaft_rate"].values[one["shaft_rate"].values > 0]) for one in (table, reference))
+    tested, its = (
+        np.unique(speeds_of["shaft_rate"].values[speeds_of["shaft_rate"].values > 0])
+        for speeds_of in (table, reference)
+    )
     return float(np.abs(its / tested[:, None] - 1).min(axis=1).max()) if tested.size and its.size else 0.0
 
 

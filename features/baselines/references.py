@@ -110,7 +110,9 @@ def colour_of(table: xr.Dataset, reference: xr.Dataset) -> Colour:
     near, nearest = _nearest_in_speed(table, healthy, number, members)
     references = np.stack([mean_row(energies[rows]) for rows in nearest])
     changes = feature_rows(table, COUNTED).to_numpy() - references[near]
-    return Colour(changes[None], np.array([scatter_of(one) for one in of_recordings])[None, number])
+    return Colour(
+        changes[None], np.array([scatter_of(energies_of_set) for energies_of_set in of_recordings])[None, number]
+    )
 
 
 def _healthy_of(table: xr.Dataset, reference: xr.Dataset) -> tuple[xr.Dataset, IntArray, list[NDArray[np.bool_]]]:
@@ -132,7 +134,7 @@ def _nearest_in_speed(
     with np.errstate(
         divide="ignore", invalid="ignore"
     ):  # a speed that is not known is 0 or NaN, and as far from all others
-        tested_speed, speed = (np.log(one["shaft_rate"].values) for one in (table, healthy))
+        tested_speed, speed = (np.log(of_table["shaft_rate"].values) for of_table in (table, healthy))
     # records of one rig at one speed share their set
     pairs, number = np.unique(np.stack([number, tested_speed]), axis=1, return_inverse=True)
     nearest = list[NDArray[np.bool_]]()
@@ -154,7 +156,7 @@ def healthy_records(reference: xr.Dataset) -> xr.Dataset:
     """
     fault = reference["fault"].values
     rows = (fault == HEALTHY_CODE) | bool((fault == UNKNOWN_CODE).all())
-    finite = [np.isfinite(one["features"].values).any(axis=1) for one in channels_of(reference)]
+    finite = [np.isfinite(of_channel["features"].values).any(axis=1) for of_channel in channels_of(reference)]
     rows &= np.logical_or.reduce(finite)  # too short or constant signals have no features
     if not rows.any():
         message = (
@@ -207,12 +209,12 @@ def virtual_references(table: xr.Dataset, features: Sequence[str], seed: int) ->
     pairs: list[tuple[int, int]] = []
     for rig in np.unique(table["rig"].values):
         records = np.flatnonzero(table["rig"].values == rig)
-        known = records[healthy[records]]
+        healthy_of_rig = records[healthy[records]]
         # ordered by content, so that the choice does not depend on the order of the table
-        known = known[np.argsort(digests[known])]
+        healthy_of_rig = healthy_of_rig[np.argsort(digests[healthy_of_rig])]
         for record in records:
             # windows of the same recording would be closer than any real reference
-            others = known[recording[known] != recording[record]]
+            others = healthy_of_rig[recording[healthy_of_rig] != recording[record]]
             nearest = others[np.argsort(np.abs(speed[others] - speed[record]), kind="stable")[:NEAREST]]
             if len(nearest):
                 # the draw belongs to the record, whatever other records there are

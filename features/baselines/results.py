@@ -220,12 +220,14 @@ def benchmark(
     ]
     done, scores = counter(progress, len(jobs)), dict[_Job, Any]()
     # classifiers of the user stay in this process: they may not be sent to others
-    for is_own, given, tables in ((False, records, (table, *tests)), (True, own, waveforms or (table, *tests))):
-        makers = {name: one for name, one in chosen.items() if isinstance(one, str) != is_own}
+    for is_own, tested, tables in ((False, records, (table, *tests)), (True, own, waveforms or (table, *tests))):
+        makers = {name: estimator for name, estimator in chosen.items() if isinstance(estimator, str) != is_own}
         some = [job for job in jobs if job[0] in makers]
-        task = partial(_scores_of, given, tables, cases, makers, groups, seed)
-        for job, made in zip(some, run(task, some, 1 if is_own else max(1, min(workers, len(some)))), strict=True):
-            scores[job] = made
+        task = partial(_scores_of, tested, tables, cases, makers, groups, seed)
+        for job, score_of_job in zip(
+            some, run(task, some, 1 if is_own else max(1, min(workers, len(some)))), strict=True
+        ):
+            scores[job] = score_of_job
             done(1)
 
     def rows(track: str) -> dict[str, Baseline]:
@@ -281,7 +283,7 @@ def _scores_of(
     if case != "tests":
         return score_splits(records, *cases[track][case], estimator, seed)
     model = Model(estimator, groups=groups, seed=seed).fit(tables[0])
-    return tuple(model.score(one, seed=seed) for one in tables[1:])
+    return tuple(model.score(test, seed=seed) for test in tables[1:])
 
 
 def _importance(

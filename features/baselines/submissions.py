@@ -61,8 +61,8 @@ def write_submission(
     _, splits = grouped_case(records, track, folds, seed)
     frame = _tested(table, splits)
     for name, estimator in estimators.items():
-        given = table if waveforms is None or isinstance(estimator, str) else waveforms
-        features = records_of(given, DEFAULT_GROUPS).features
+        data = table if waveforms is None or isinstance(estimator, str) else waveforms
+        features = records_of(data, DEFAULT_GROUPS).features
         for (_, test), (fitted, probabilities) in zip(
             splits, fits(features, records.fault, estimator, splits, seed), strict=True
         ):
@@ -84,21 +84,21 @@ def check_submission(
     frame = _tested(table, grouped_case(records, track, folds, seed)[1])
     try:
         # one row more than there are records shows a file that is too long
-        given = pd.read_csv(path, dtype=str, keep_default_na=False, nrows=len(frame) + 1)
+        submitted = pd.read_csv(path, dtype=str, keep_default_na=False, nrows=len(frame) + 1)
     except (OSError, ValueError):
         raise CorpusError(
             f"{path}: is no table of predictions; give a file with the predictions of a submission."
         ) from None
     # numbers, identities and folds prove that the tested records are those of the protocol
-    if not given.iloc[:, : len(TESTED)].equals(frame.astype(str).reset_index(drop=True)):
+    if not submitted.iloc[:, : len(TESTED)].equals(frame.astype(str).reset_index(drop=True)):
         raise CorpusError(
             f"{path}: does not have the {len(frame)} tested records of {folds} folds by {track} with seed {seed} of this corpus; "
             "give the options and the corpus that it was made with."
         )
-    if len(given.columns) == len(TESTED):
+    if len(submitted.columns) == len(TESTED):
         raise CorpusError(f"{path}: has no predictions; add a column of classes, named after the classifier.")
     tested = records.at(frame.index.to_numpy())
-    return {str(name): _scores(tested, given[name], f"{path}: {name}", seed) for name in given.columns[3:]}
+    return {str(name): _scores(tested, submitted[name], f"{path}: {name}", seed) for name in submitted.columns[3:]}
 
 
 def _tested(table: xr.Dataset, splits: Sequence[Split]) -> pd.DataFrame:

@@ -100,23 +100,23 @@ def speed_splits(records: Records, folds: int, seed: int) -> list[Split]:
     CorpusError
         If there is only one range.
     """
-    known = records.shaft_rate > 0
-    group = np.full(len(known), LEFT_OUT)
-    group[known] = ranges(records.shaft_rate[known], folds)
-    if len(np.unique(group[known])) < 2:
+    with_rate = records.shaft_rate > 0
+    group = np.full(len(with_rate), LEFT_OUT)
+    group[with_rate] = ranges(records.shaft_rate[with_rate], folds)
+    if len(np.unique(group[with_rate])) < 2:
         raise CorpusError(
             f"{records.title}, track speed: there is only one labelled shaft rate, or none; choose another track, or test on "
             "another corpus."
         )
     # a specimen with records in several ranges is tested in that of one of them, drawn at random
-    shuffled = np.random.default_rng(seed).permutation(np.flatnonzero(known))
+    shuffled = np.random.default_rng(seed).permutation(np.flatnonzero(with_rate))
     specimens, first = np.unique(records.specimen[shuffled], return_index=True)
     home = np.full(records.specimen.max() + 1, LEFT_OUT)
     home[specimens] = group[shuffled[first]]
     tested = home[records.specimen]
     return [
-        (np.flatnonzero(known & (group != g) & (tested != g)), np.flatnonzero((group == g) & (tested == g)))
-        for g in np.unique(tested[known])
+        (np.flatnonzero(with_rate & (group != g) & (tested != g)), np.flatnonzero((group == g) & (tested == g)))
+        for g in np.unique(tested[with_rate])
     ]
 
 

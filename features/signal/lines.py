@@ -63,10 +63,10 @@ def read_lines(level: FloatArray, bins_per_order: FloatArray, orders: Orders) ->
     orders
         Nominal orders of the lines.
     """
-    base, one = families(orders), np.ones_like(orders.ftf)
+    base, shaft = families(orders), np.ones_like(orders.ftf)
     ftf = orders.ftf
-    sides = np.stack([one, one, ftf], axis=-1)
-    singles = np.stack([orders.bsf, one, 2 * one, ftf, 2 * ftf, one - ftf], axis=-1)
+    sides = np.stack([shaft, shaft, ftf], axis=-1)
+    singles = np.stack([orders.bsf, shaft, 2 * shaft, ftf, 2 * ftf, shaft - ftf], axis=-1)
     places = np.concatenate([base, 2 * base, base - sides, base + sides, singles], axis=-1)
     read = single_lines(level, places * bins_per_order[:, None])
     h1, h2, lower, upper, others = np.split(read, [3, 6, 9, 12], axis=-1)

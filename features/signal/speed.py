@@ -171,7 +171,7 @@ def evidence_of(levels: FloatArray, windows: int) -> tuple[FloatArray, FloatArra
     lines = sum(len(harmonics) for _, harmonics in COMBS)
     envelope, signal = np.split(levels, [lines + SHAFT_HARMONICS])
     combs = comb_height(envelope[:lines].reshape(len(COMBS), -1, envelope.shape[-1]), windows)
-    noise = [np.hypot(one / np.sqrt(windows), lasting) for one, lasting in (ENVELOPE_NOISE, SIGNAL_NOISE)]
+    noise = [np.hypot(single / np.sqrt(windows), lasting) for single, lasting in (ENVELOPE_NOISE, SIGNAL_NOISE)]
     shaft = sum(
         weight * np.clip((part - FLOOR) / deviation, -1.0, HIGHEST).mean(axis=0)
         for weight, part, deviation in zip(WEIGHTS, (envelope[lines:], signal), noise, strict=True)

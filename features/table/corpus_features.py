@@ -128,8 +128,8 @@ def feature_table(
         compute = partial(block_features, groups=tuple(groups), band=band)
         tasks = list(zip(blocks, np.split(rates_to_use(table), starts[1:-1]), strict=True))
         # blocks come back in order, so that rows are written where they belong
-        with closing(_counted(compute, tasks, place, report)) as made:
-            for first, rows in zip(starts, made, strict=False):
+        with closing(_counted(compute, tasks, place, report)) as blocks_of_values:
+            for first, rows in zip(starts, blocks_of_values, strict=False):
                 values[first : first + len(rows)] = rows
                 missing += int(np.isnan(rows).any(axis=1).sum())
     features = ("record", "feature"), values, {"long_name": "features of the signal"}

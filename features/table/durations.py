@@ -10,5 +10,5 @@ DURATION = "duration"  # of each record of a feature table [s]
 
 def durations_of(table: "xr.Dataset") -> tuple[float, ...]:
     """Shortest and longest duration of the records of a feature table [s]; empty if it does not tell them."""
-    known = DURATION in table and table.sizes["record"]
-    return (float(table[DURATION].min()), float(table[DURATION].max())) if known else ()
+    has_durations = DURATION in table and table.sizes["record"]
+    return (float(table[DURATION].min()), float(table[DURATION].max())) if has_durations else ()

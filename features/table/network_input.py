@@ -25,7 +25,7 @@ FAMILY_NAMES = (*FAMILIES, "2fr")  # harmonics of the shaft lie at multiples of 
 BANDS = 2 + len(DEFAULT_BAND.narrow)
 
 
-def envelope_orders(x: Any, known: Mapping[str, ArrayLike]) -> FloatArray:
+def envelope_orders(x: Any, operating: Mapping[str, ArrayLike]) -> FloatArray:
     """Levels of envelope spectra over their floors at multiples of the fault orders, in single precision.
 
     A level is the natural logarithm of the highest line in one cell of the grid `GRID`: 158 multiples from 1/48 to 3.3.
@@ -34,7 +34,7 @@ def envelope_orders(x: Any, known: Mapping[str, ArrayLike]) -> FloatArray:
     ----------
     x
         Signals, shape (record, time): an array, or `Waveforms` sampled at equal times, which are read batch by batch.
-    known
+    operating
         ``sample_rate`` [Hz], ``shaft_rate`` [Hz], ``ftf``, ``bpfo``, ``bpfi`` and ``bsf`` [orders], each one number or of shape
         (record,); the sample rate must be the same for all. More names may be there, as in ``Waveforms.operating``.
 
@@ -47,7 +47,7 @@ def envelope_orders(x: Any, known: Mapping[str, ArrayLike]) -> FloatArray:
     """
     levels = np.zeros((len(x), len(FAMILY_NAMES), BANDS, len(GRID)), np.float32)
     names = ("sample_rate", "shaft_rate", *Orders._fields)
-    columns = [np.broadcast_to(np.asarray(known[name], float), len(x)) for name in names]
+    columns = [np.broadcast_to(np.asarray(operating[name], float), len(x)) for name in names]
     # in batches, so that memory does not grow with the number of signals
     for start in range(0, len(x), BATCH):
         rows = slice(start, start + BATCH)
@@ -57,8 +57,8 @@ def envelope_orders(x: Any, known: Mapping[str, ArrayLike]) -> FloatArray:
         usable = usable_records(signals, rates, Orders(*nominal)) & (duration * rates >= SHORTEST[0])
         usable &= duration >= SHORTEST[1]
         if usable.any():
-            found = _levels(signals[usable], fs[0], rates[usable], Orders(*(order[usable] for order in nominal)))
-            levels[start : start + BATCH, :, : found.shape[2]][usable] = found
+            read = _levels(signals[usable], fs[0], rates[usable], Orders(*(order[usable] for order in nominal)))
+            levels[start : start + BATCH, :, : read.shape[2]][usable] = read
     return levels
 
 

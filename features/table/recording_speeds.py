@@ -120,14 +120,14 @@ def with_speeds(table: xr.Dataset, recording: IntArray, estimates: list[ShaftSpe
     """Table with the estimated rate, its uncertainty and its evidence as variables of the records."""
     label = table["shaft_rate"].values
     # without a label there is no estimate
-    told = [(one.rate, one.uncertainty, one.labelled_rate or np.nan) for one in estimates]
+    told = [(estimate.rate, estimate.uncertainty, estimate.labelled_rate or np.nan) for estimate in estimates]
     rate, uncertainty, labelled = np.array(told).reshape(-1, 3)[recording].T
     relative, spread = rate / labelled, uncertainty / labelled
-    codes = np.array([EVIDENCE.index(one.evidence) for one in estimates], np.int8)[recording]
+    codes = np.array([EVIDENCE.index(estimate.evidence) for estimate in estimates], np.int8)[recording]
     described = {"units": "Hz", "role": "operating"}
     flags = {"flag_values": np.arange(len(EVIDENCE), dtype=np.int8), "flag_meanings": " ".join(EVIDENCE)}
     # stored, because the labels that disagree may be replaced by estimates
-    disagreeing = sum(not one.agrees for one in estimates)
+    disagreeing = sum(not estimate.agrees for estimate in estimates)
     return table.assign(
         {
             ESTIMATE: ("record", relative * label, {"long_name": "shaft rate that fits the lines best", **described}),

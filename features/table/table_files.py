@@ -96,15 +96,17 @@ def _write_parquet(table: xr.Dataset, path: Path) -> None:
     import pyarrow as pa
     from pyarrow import parquet
 
-    names = [str(name) for name, known in table.variables.items() if known.dims == ("record",)]
+    names = [str(name) for name, variable in table.variables.items() if variable.dims == ("record",)]
     columns = {name: (table[name].values, table[name].attrs) for name in names}
     # unit and meaning of a feature become metadata of its column
-    about = [str(name) for name, known in table.coords.items() if known.dims == ("feature",) and name != "feature"]
-    for one in channels_of(table):
-        prefix = f"{one['channel'].item()}_" if "channel" in one["features"].coords else ""
-        for feature in one["features"].transpose("feature", "record"):
-            known = {name: feature[name].item() for name in about}
-            columns[f"{prefix}{feature['feature'].item()}"] = feature.values, known
+    about = [
+        str(name) for name, coordinate in table.coords.items() if coordinate.dims == ("feature",) and name != "feature"
+    ]
+    for of_channel in channels_of(table):
+        prefix = f"{of_channel['channel'].item()}_" if "channel" in of_channel["features"].coords else ""
+        for feature in of_channel["features"].transpose("feature", "record"):
+            metadata = {name: feature[name].item() for name in about}
+            columns[f"{prefix}{feature['feature'].item()}"] = feature.values, metadata
     arrays = {name: pa.array(values) for name, (values, _) in columns.items()}
     fields = [pa.field(name, array.type, metadata=_texts(columns[name][1])) for name, array in arrays.items()]
     parquet.write_table(pa.table(arrays, pa.schema(fields, _texts(table.attrs))), path, row_group_size=ROW_GROUP)

@@ -193,13 +193,13 @@ def constant(preset: Preset, name: str) -> float:
 
 def experiment(preset: str, statement: str) -> Experiment | None:
     """Experiment with which a statement holds that does not hold with the preset alone."""
-    made = (each for each in EXPERIMENTS if each.holds and each.preset == preset and statement in each.statements)
-    return next(made, None)
+    matching = (each for each in EXPERIMENTS if each.holds and each.preset == preset and statement in each.statements)
+    return next(matching, None)
 
 
-def in_words(made: Experiment) -> str:
+def in_words(experiment: Experiment) -> str:
     """Change in words: constant, old and new value with the unit."""
-    preset = PRESETS[made.preset]
+    preset = PRESETS[experiment.preset]
     return ", ".join(
-        f"{name} {constant(preset, name):.4g} -> {value:.4g} {UNITS[name]}" for name, value in made.change.items()
+        f"{name} {constant(preset, name):.4g} -> {value:.4g} {UNITS[name]}" for name, value in experiment.change.items()
     )

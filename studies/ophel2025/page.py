@@ -32,11 +32,11 @@ def write_page(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> tuple[P
         If a system leaves the finite range.
     """
     runs = dict(zip(presets, run_many(list(presets.values())), strict=True))
-    measured = {name: findings(name, made) for name, made in runs.items()}
+    measured = {name: findings(name, run) for name, run in runs.items()}
     page = template("ophel2025.html.jinja", "studies.ophel2025").render(
-        amended=sum(bool(one.amended) for one in STATEMENTS.values()),
-        counts={name: _counts(found) for name, found in measured.items()},
-        constants={name: [f"{constant(one, name):.4g}" for one in presets.values()] for name in UNITS},
+        amended=sum(bool(statement.amended) for statement in STATEMENTS.values()),
+        counts={name: _counts(of_preset) for name, of_preset in measured.items()},
+        constants={name: [f"{constant(preset, name):.4g}" for preset in presets.values()] for name in UNITS},
         units=UNITS,
         schematics=[
             (drawn.get_suptitle(), picture(drawn, "svg"))
@@ -48,16 +48,16 @@ def write_page(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> tuple[P
         ],
         span=span,
     )
-    every = [one for found in measured.values() for one in found]
+    every = [finding for of_preset in measured.values() for finding in of_preset]
     make_result_folder(folder)
     write_text_durably(page, folder / "ophel2025.html")
-    write_numbers(plain({"findings": [one.facts() for one in every]}), folder / "findings.json")
+    write_numbers(plain({"findings": [finding.facts() for finding in every]}), folder / "findings.json")
     return folder / "ophel2025.html", every
 
 
-def _counts(found: list[Finding]) -> list[tuple[int, int]]:
+def _counts(of_preset: list[Finding]) -> list[tuple[int, int]]:
     """Number of the statements that hold and of all, of those that the constants were fitted to and of the others."""
-    groups = [[one.holds for one in found if one.fitted is fitted] for fitted in (True, False)]
+    groups = [[finding.holds for finding in of_preset if finding.fitted is fitted] for fitted in (True, False)]
     return [(sum(group), len(group)) for group in groups]
 
 
@@ -67,12 +67,12 @@ def _rows(figure: str, measured: Mapping[str, list[Finding]]) -> list[tuple[Find
 
 
 def _reasons(figure: str, measured: Mapping[str, list[Finding]]) -> list[Finding]:
-    return [one for row in _rows(figure, measured) for one in row if one.reason]
+    return [curve for row in _rows(figure, measured) for curve in row if curve.reason]
 
 
 def _pictures(name: str, runs: Mapping[str, Run]) -> dict[str, bytes]:
     """One figure of the paper with every preset; each channel has the same scale in all."""
-    drawn = {preset: draw_figure(name, made) for preset, made in runs.items()}
+    drawn = {preset: draw_figure(name, run) for preset, run in runs.items()}
     for panels in zip(*(figure.axes for figure in drawn.values()), strict=True):
         limits = [axes.get_ylim() for axes in panels]
         for axes in panels:
@@ -81,11 +81,11 @@ def _pictures(name: str, runs: Mapping[str, Run]) -> dict[str, bytes]:
 
 
 @rc_context(STYLE)
-def draw_figure(name: str, made: Run) -> Figure:
+def draw_figure(name: str, run: Run) -> Figure:
     """Draw one figure of the paper, a channel in each panel, with the values that the paper prints."""
     _, state, spectral = FIGURES[name]
     figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
-    for axes, channel, x in zip(figure.subplots(4, sharex=True), CHANNELS, getattr(made, state), strict=True):
+    for axes, channel, x in zip(figure.subplots(4, sharex=True), CHANNELS, getattr(run, state), strict=True):
         if spectral:
             frequency, power = (some[..., 1 : SHOWN_HZ + 1] for some in power_spectrum(x))
             axes.semilogy(frequency, power, color="black", linewidth=0.7)
@@ -102,8 +102,12 @@ def draw_figure(name: str, made: Run) -> Figure:
 
 def _draw_printed(axes: Axes, figure: str, channel: str, spectral: bool) -> None:
     """Values and bands that the paper prints for a channel."""
-    about = [one for one in STATEMENTS.values() if (one.figure, one.channel) == (figure, channel) and one.printed]
-    for values in dict.fromkeys(one.printed for one in about):
+    about = [
+        statement
+        for statement in STATEMENTS.values()
+        if (statement.figure, statement.channel) == (figure, channel) and statement.printed
+    ]
+    for values in dict.fromkeys(statement.printed for statement in about):
         text = "–".join(f"{value:g}" for value in values)
         if not spectral:
             axes.axhline(values[0], color=BLUE, linestyle="--", linewidth=1)

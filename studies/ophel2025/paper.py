@@ -143,8 +143,8 @@ def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
         for first in range(0, len(records), LANES):
             some = records[first : first + LANES]
             lanes = lay_out(some, shape, 1 / fs)
-            made = integrate(shape, lanes, 1 / fs, 1, decimation(1), 0, round(SECONDS * fs))
-            response = made.response[:, :: fs // FS].transpose(2, 0, 1)[: len(some)]
+            integrated = integrate(shape, lanes, 1 / fs, 1, decimation(1), 0, round(SECONDS * fs))
+            response = integrated.response[:, :: fs // FS].transpose(2, 0, 1)[: len(some)]
             histories[cracked] += list(
                 1e6 * np.ascontiguousarray(response, dtype=float)
             )  # sums over float32 would be off

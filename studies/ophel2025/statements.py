@@ -148,8 +148,8 @@ class Finding(NamedTuple):
     @property
     def reason(self) -> str:
         """Why it does not hold, and the change with which it does."""
-        made = experiment(self.preset, self.id)
-        return "" if self.holds or made is None else f"{made.why} ({in_words(made)})"
+        amendment = experiment(self.preset, self.id)
+        return "" if self.holds or amendment is None else f"{amendment.why} ({in_words(amendment)})"
 
     def facts(self) -> dict[str, object]:
         """All fields, those of the statement among them."""
@@ -157,7 +157,7 @@ class Finding(NamedTuple):
         return {name: fact for name, fact in facts.items() if name not in ("statement", "elsewhere")}
 
 
-def findings(name: str, made: Run) -> list[Finding]:
+def findings(name: str, run: Run) -> list[Finding]:
     """All statements of the paper, measured on a run of the preset ``name``.
 
     Raises
@@ -165,9 +165,9 @@ def findings(name: str, made: Run) -> list[Finding]:
     SimulationError
         If the system left the finite range.
     """
-    if not (np.isfinite(made.healthy).all() and np.isfinite(made.cracked).all()):
+    if not (np.isfinite(run.healthy).all() and np.isfinite(run.cracked).all()):
         raise SimulationError(f"{name}: the displacements grow without limit; change its constants less.")
-    values, rows = _healthy(made.healthy) | _cracked(made), []
+    values, rows = _healthy(run.healthy) | _cracked(run), []
     for key, statement in STATEMENTS.items():
         holds = statement.accept[0] <= values[key] <= statement.accept[1]
         tried = None if holds else experiment(name, key)
@@ -211,13 +211,13 @@ def _share(frequency: FloatArray, power: FloatArray, statement: str) -> float:
     return float(power[band].sum() / power[wide].sum())
 
 
-def _cracked(made: Run) -> dict[str, float]:
-    time = np.arange(made.cracked.shape[1]) / FS
-    x = made.cracked[:, time >= LATE]
+def _cracked(run: Run) -> dict[str, float]:
+    time = np.arange(run.cracked.shape[1]) / FS
+    x = run.cracked[:, time >= LATE]
     x1, y1, x2, y2 = x
     half = x.shape[1] // 2
-    raised = x.std(axis=1) / made.healthy[:, time > 0.5].std(axis=1)
-    swings = np.ptp(x, axis=1) / np.ptp(made.healthy, axis=1)
+    raised = x.std(axis=1) / run.healthy[:, time > 0.5].std(axis=1)
+    swings = np.ptp(x, axis=1) / np.ptp(run.healthy, axis=1)
     values = {
         "C1": float(raised[0]),
         "C2": float(y1[half:].std() / y1[:half].std()),
@@ -227,12 +227,12 @@ def _cracked(made: Run) -> dict[str, float]:
         "C6": float(y1.min()),
         "C7": float(x2.mean()),
         "C8": float(np.abs(y2).max()),
-        "C9": modulation(y1, FS / made.shaft_rate),
+        "C9": modulation(y1, FS / run.shaft_rate),
         "C18": asymmetry(x2),
     }
     for name, displacement, ratio, swing in zip(CHANNELS, x, raised, swings, strict=True):
         values[f"C1.{name}"], values[f"C15.{name}"] = float(ratio), float(swing)
-        values[f"C9.{name}"] = modulation(displacement, FS / made.shaft_rate)
+        values[f"C9.{name}"] = modulation(displacement, FS / run.shaft_rate)
     return values | _crack_spectra(x)
 
 
