@@ -20,7 +20,6 @@ from features.baselines.calibration import UNCALIBRATED, Calibration
 from features.baselines.classifying import predict, suited
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import Estimator, relative_name
-from features.baselines.model_file import read_model_file, write_model_file
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, UNTRAINED
 from features.baselines.own import Maker, maker_name
 from features.baselines.predictions import fault_names
@@ -269,6 +268,8 @@ class Model(Shown):
             raise CorpusError(
                 f"{path}: {self.name} is no baseline; a model file holds only one of {', '.join(BASELINES)}."
             )
+        from features.baselines.model_file import write_model_file  # skops takes a second to load
+
         check_result(Path(path), "model")
         write_model_file({"raceway_model": FORMAT, **_content(self)}, Path(path))
 
@@ -281,6 +282,8 @@ class Model(Shown):
         CorpusError
             If the file is missing, damaged, larger than the limit, or no model of this version, or a plug-in that it needs is missing.
         """
+        from features.baselines.model_file import read_model_file
+
         content = read_model_file(Path(path))
         if not isinstance(content, dict) or content.pop("raceway_model", None) != FORMAT:
             raise CorpusError(f"{path}: not a model of this version of raceway; train it again with raceway train.")
