@@ -7,9 +7,11 @@ from hypothesis import strategies as st
 
 from features.baselines.calibration import UNCALIBRATED
 from features.baselines.colour_distance import COUNTED, DECIBELS, SCATTER, Colour, distance, scatter_of
-from features.baselines.predictions import UNSURE, predictions
+from features.baselines.predictions import UNSURE, Predictions, predictions
+from gen.corpus import FAULTS
+from gen.corpus.fault_classes import HEALTHY
 
-CLASSES = ("healthy", "inner", "outer")
+CLASSES = FAULTS[:3]
 TILT = np.linspace(-1, 1, len(COUNTED)) / DECIBELS  # about 0.7 dB
 SURE = np.array([[0.98, 0.01, 0.01]])
 
@@ -32,23 +34,22 @@ def test_the_scatter_is_that_of_the_references_if_it_is_larger_than_usual():
     assert scatter_of(np.stack([TILT, TILT, 30 * TILT])) == pytest.approx(29 * distance(TILT))
 
 
+def told(probabilities: np.ndarray, colour: Colour | None = None) -> Predictions:
+    return predictions(probabilities, CLASSES, np.array([0]), UNCALIBRATED, colour=colour)
+
+
 @given(st.floats(0, 20))
 def test_a_strange_colour_moves_no_probability(d):
-    found = predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(d * SCATTER))
-    np.testing.assert_array_equal(
-        found.probabilities, predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED).probabilities
-    )
+    np.testing.assert_array_equal(told(SURE, coloured(d * SCATTER)).probabilities, told(SURE).probabilities)
 
 
 def test_healthy_is_answered_near_the_reference_alone():
-    for decibels, answer in ((0.0, "healthy"), (0.9 * SCATTER, "healthy"), (1.1 * SCATTER, UNSURE)):
-        found = predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(decibels))
-        assert found.answers == (answer,)
-    fault = SURE[:, ::-1]
-    assert predictions(fault, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(4 * SCATTER)).answers == ("outer",)
+    for scatters, answer in ((0.0, HEALTHY), (0.9, HEALTHY), (1.1, UNSURE)):
+        assert told(SURE, coloured(scatters * SCATTER)).answers == (answer,)
+    assert told(SURE[:, ::-1], coloured(4 * SCATTER)).answers == (CLASSES[-1],)
 
 
 def test_one_channel_in_a_strange_colour_is_enough():
     colour = coloured(0.0, channels=2)
     colour.changes[1] = coloured(2 * SCATTER).changes[0]
-    assert predictions(np.stack([SURE, SURE]), CLASSES, np.array([0]), UNCALIBRATED, colour=colour).answers == (UNSURE,)
+    assert told(np.stack([SURE, SURE]), colour).answers == (UNSURE,)

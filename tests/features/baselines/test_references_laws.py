@@ -7,7 +7,6 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features import feature_table
 from features.baselines import Model, predict
 from features.baselines.reference_choice import check_durations, choose_reference
 from features.baselines.references import ENERGIES, NEAREST, SAME_SPEED, relative_names, relative_to, virtual_references
@@ -15,10 +14,10 @@ from features.table.class_features import EVIDENCE
 from features.table.indicators import Orders
 from features.table.recording_features import recording_table
 from features.table.recording_speeds import recording_numbers
-from gen.corpus import UNKNOWN_CODE
+from gen.corpus import UNKNOWN_CODE, open_corpus
 from gen.support.errors import CorpusError
 from raceway.cli import cli
-from tests.labels import import_labelled
+from tests.tone_corpora import write_corpus
 
 pytestmark = pytest.mark.usefixtures("few_trees")
 
@@ -64,15 +63,25 @@ def model(table, few_trees):  # noqa: ARG001
     return Model().fit(table)
 
 
-def changes(found: xr.Dataset) -> np.ndarray:
-    """Changes of the features of a relative table, shape (record, change)."""
-    return found["features"].values[:, [str(name).endswith("_change") for name in found["feature"].values]]
+def lines_of(table: xr.Dataset) -> np.ndarray:
+    """Values of the lines, shape (record, line)."""
+    return table["features"].values[:, : len(LINES)]
+
+
+def changes(table: xr.Dataset, reference: xr.Dataset) -> np.ndarray:
+    """Changes of the lines from a reference, shape (record, line)."""
+    return relative_to(table, reference, LINES)["features"].values[:, len(LINES) : 2 * len(LINES)]
+
+
+def healthy_of_rig(table: xr.Dataset, row: int) -> np.ndarray:
+    """Numbers of the healthy records of the rig of a record."""
+    return np.flatnonzero((table["fault"].values == 0) & (table["rig"].values == table["rig"].values[row]))
 
 
 def test_a_record_that_is_its_own_reference_has_no_change(table):
     for record in (0, 1):
         alone = table.isel(record=[record])
-        assert not changes(relative_to(alone, alone, LINES)).any()
+        assert not relative_to(alone, alone, LINES)["features"].values[:, len(LINES) :].any()
 
 
 @given(gain=st.floats(1e-3, 1e3), seed=st.integers(0, 99))
@@ -117,46 +126,36 @@ def test_a_virtual_reference_is_one_of_the_nearest_healthy_recordings_of_the_sam
 
 def test_records_are_compared_with_their_own_rig_if_the_reference_has_all_rigs(table):
     table = table.assign(shaft_rate=("record", np.full(table.sizes["record"], 25.0)))
-    healthy = table["fault"].values == 0
-    lines = table["features"].values[:, : len(LINES)]
-    rows = slice(len(LINES), 2 * len(LINES))
-    of_rig = relative_to(table, table, LINES)["features"].values[:, rows]
-    for rig in range(8):
-        mine = table["rig"].values == rig
-        np.testing.assert_allclose(of_rig[mine], lines[mine] - lines[mine & healthy].mean(axis=0))
-    some = table.isel(record=table["rig"].values > 0)
-    of_all = relative_to(table, some, LINES)["features"].values[:, rows]
-    np.testing.assert_allclose(of_all, lines - lines[healthy & (table["rig"].values > 0)].mean(axis=0))
+    lines, of_rig = lines_of(table), changes(table, table)
+    for row in range(len(lines)):
+        np.testing.assert_allclose(of_rig[row], lines[row] - lines[healthy_of_rig(table, row)].mean(axis=0))
+    others = table["rig"].values > 0
+    of_all = changes(table, table.isel(record=others))
+    np.testing.assert_allclose(of_all, lines - lines[others & (table["fault"].values == 0)].mean(axis=0))
 
 
 def test_records_are_compared_with_the_healthy_ones_nearest_in_speed(table):
-    lines = table["features"].values[:, : len(LINES)]
-    found = relative_to(table, table, LINES)["features"].values[:, len(LINES) : 2 * len(LINES)]
-    speed, rig = np.log(table["shaft_rate"].values), table["rig"].values
-    for row in range(table.sizes["record"]):
-        known = np.flatnonzero((table["fault"].values == 0) & (rig == rig[row]))
-        apart = np.abs(speed[known] - speed[row])
-        near = known[apart <= apart.min() + SAME_SPEED]
-        np.testing.assert_allclose(found[row], lines[row] - lines[near].mean(axis=0))
+    lines, change, speed = lines_of(table), changes(table, table), np.log(table["shaft_rate"].values)
+    for row in range(len(lines)):
+        healthy = healthy_of_rig(table, row)
+        apart = np.abs(speed[healthy] - speed[row])
+        near = healthy[apart <= apart.min() + SAME_SPEED]
+        np.testing.assert_allclose(change[row], lines[row] - lines[near].mean(axis=0))
 
 
 def test_a_missing_feature_of_a_reference_record_is_taken_from_the_others(table):
     gap = table.copy(deep=True)
     gap["features"][0, 0] = np.nan
-    whole = table.isel(record=table["recording"].values != 0)
-    found, expected = (relative_to(table.isel(record=[9]), other, LINES)["features"].values for other in (gap, whole))
-    assert found[0, len(LINES)] == expected[0, len(LINES)]
+    tested, whole = table.isel(record=[9]), table.isel(record=table["recording"].values != 0)
+    assert changes(tested, gap)[0, 0] == changes(tested, whole)[0, 0]
 
 
 @pytest.mark.parametrize("unknown", [0.0, np.nan])
 def test_a_record_of_unknown_speed_is_compared_with_all_healthy_records_of_its_rig(table, unknown):
-    speeds = table["shaft_rate"].values.copy()
+    speeds, lines = table["shaft_rate"].values.copy(), lines_of(table)
     speeds[9] = unknown
-    some = table.assign(shaft_rate=("record", speeds))
-    row = relative_to(some, table, LINES)["features"].values[9, len(LINES) : 2 * len(LINES)]
-    known = (table["fault"].values == 0) & (table["rig"].values == table["rig"].values[9])
-    lines = table["features"].values[:, : len(LINES)]
-    np.testing.assert_allclose(row, lines[9] - lines[known].mean(axis=0))
+    change = changes(table.assign(shaft_rate=("record", speeds)), table)
+    np.testing.assert_allclose(change[9], lines[9] - lines[healthy_of_rig(table, 9)].mean(axis=0))
     none = table.assign(shaft_rate=("record", np.full(len(speeds), unknown)))
     assert "nearest in speed" not in choose_reference(none, table.isel(record=slice(0, 40)), LINES)[2]
 
@@ -231,56 +230,29 @@ def test_a_model_file_holds_both_parts(table, model, tmp_path):
         np.testing.assert_array_equal(found, expected)
 
 
-FS = 12_000
-
-
-def imported(folder, *, rpm="1500", window=0.5, bearings=("6205",)):
-    """Corpus of a healthy recording and two inner ones, of two records each, at one speed or several."""
-    folder.mkdir()
-    rng, files = np.random.default_rng(0), []
-    for number, fault in enumerate(["healthy", "inner", "inner"]):
-        signal = rng.standard_normal(FS)
-        signal[:: FS // (60 if fault == "inner" else 400)] += 9.0
-        np.save(folder / f"{number}.npy", signal)
-        bearing = bearings[number % len(bearings)]
-        speed = rpm.split()[number % len(rpm.split())]
-        told = {"fault": fault, "specimen": number, "bearing": bearing, "shaft_rpm": speed}
-        files.append({"path": f"{number}.npy", **told})
-    return import_labelled(folder, files, window=window, unit="g", sample_rate_hz=FS).path
-
-
 def test_a_reference_of_other_durations_is_refused(tmp_path):
-    one, short = imported(tmp_path / "one"), imported(tmp_path / "short", window=0.25)
+    write_corpus(tmp_path / "c", specimens=4)
+    with open_corpus(tmp_path / "c") as opened:
+        short = opened.isel(elapsed_time=slice(500)).load()
     with pytest.raises(
-        CorpusError, match=r"last 0.25 s and those of .* 0.5 s; import the reference with records of the"
+        CorpusError, match=r"last 0.125 s and those of .* 0.25 s; import the reference with records of the"
     ):
-        check_durations(one, short)
-
-
-def several_rigs(table: xr.Dataset) -> xr.Dataset:
-    """Records of a table, repeated on three rigs and in two recordings each, a little changed."""
-    copies = [
-        table.assign(
-            rig=table["rig"] + rig, recording=table["recording"] + 9 * again, features=table["features"] + 0.01 * again
-        )
-        for rig in range(3)
-        for again in range(2)
-    ]
-    return xr.concat(copies, dim="record")
+        check_durations(tmp_path / "c", short)
 
 
 def test_evaluate_takes_a_corpus_as_reference(tmp_path):
-    corpus, path = imported(tmp_path / "one"), tmp_path / "m.skops"
-    Model().fit(several_rigs(feature_table(corpus))).save(path)
-    assert Model.load(path).relative is not None
+    corpus, path = tmp_path / "c", tmp_path / "m.skops"
+    write_corpus(corpus, **{name: np.full(48, order) for name, order in ORDERS._asdict().items()})
+    Model("random_forest").fit(corpus).save(path)
 
-    def run(*options):
-        done = CliRunner().invoke(cli, ["evaluate", str(corpus), "--model", str(path), *map(str, options)])
+    def run(reference):
+        done = CliRunner().invoke(cli, ["evaluate", *map(str, (corpus, "--model", path, "--reference", reference))])
         return done.exit_code, " ".join(done.output.split())
 
-    code, told = run("--reference", corpus)
+    code, told = run(corpus)
     assert code == 0, told
-    assert "which has 2; 2 tested records that belong to it are left out." in told
-    code, told = run("--reference", tmp_path / "nowhere")
+    assert "which has 4, those nearest in speed" in told
+    assert "4 tested records that belong to it are left out." in told
+    code, told = run(tmp_path / "nowhere")
     assert code
     assert f"{tmp_path / 'nowhere'}: " in told

@@ -11,7 +11,17 @@ from features.table.corpus_features import band_warnings
 from features.table.definitions import GROUPS
 from features.table.indicators import Orders, feature_names, indicators
 from features.table.table_files import read_table, write_table
-from gen.corpus import MISSING_COUNT, ROLES, SCHEMA, SIGNAL, Variable, make_dataset, new_corpus, open_corpus
+from gen.corpus import (
+    FAULT_NAMES,
+    MISSING_COUNT,
+    ROLES,
+    SCHEMA,
+    SIGNAL,
+    Variable,
+    make_dataset,
+    new_corpus,
+    open_corpus,
+)
 from gen.support.errors import CorpusError
 
 FS, SAMPLES, RECORDS, PARTS = 12_000.0, 3000, 5, 3
@@ -157,7 +167,7 @@ def test_a_table_is_unchanged_after_netcdf(tmp_path, table):
     again = read_table(path)
     xr.testing.assert_equal(again, table)
     assert again["fault"].dtype == np.int8
-    assert again["fault"].attrs["flag_meanings"] == "healthy inner outer ball cage compound unknown"
+    assert again["fault"].attrs["flag_meanings"] == " ".join(FAULT_NAMES.values())
     assert again.attrs == table.attrs
     assert [file.name for file in tmp_path.iterdir()] == ["table.nc"]
 
@@ -199,22 +209,16 @@ def test_a_table_is_unchanged_in_the_columns_of_parquet(tmp_path, table):
     assert [file.name for file in tmp_path.iterdir()] == ["table.parquet"]
 
 
-def test_columns_of_several_channels_are_named_by_channel(tmp_path, corpus):
+def test_several_channels_have_the_features_of_each_in_columns_named_by_channel(tmp_path, corpus):
     parquet = pytest.importorskip("pyarrow.parquet")
     both = feature_table(corpus, ("time",), channel=["sensor", "housing"])
+    assert (both["features"].dims[0], list(both["channel"].values)) == ("channel", ["sensor", "housing"])
     write_table(both, tmp_path / "both.parquet")
     again = parquet.read_table(tmp_path / "both.parquet")
     for name in ("sensor", "housing"):
-        held = both["features"].sel(channel=name, feature="time_rms")
-        np.testing.assert_array_equal(again[f"{name}_time_rms"].to_numpy(), held)
-
-
-def test_several_channels_have_the_features_of_each(corpus):
-    both = feature_table(corpus, ("time",), channel=["sensor", "housing"])
-    assert (both["features"].dims[0], list(both["channel"].values)) == ("channel", ["sensor", "housing"])
-    for name in ("sensor", "housing"):
-        alone = feature_table(corpus, ("time",), channel=name)["features"]
-        np.testing.assert_array_equal(both["features"].sel(channel=name), alone)
+        alone, own = feature_table(corpus, ("time",), channel=name)["features"], both["features"].sel(channel=name)
+        np.testing.assert_array_equal(own, alone)
+        np.testing.assert_array_equal(again[f"{name}_time_rms"].to_numpy(), own.sel(feature="time_rms"))
 
 
 def test_a_channel_can_be_given_by_its_name(corpus):
