@@ -42,14 +42,14 @@ as JSON where they are not text. A fact without content is left out:
 | `records` | number of records |
 | `parts_sha256` | hash over those of the parts; a single file has that of the parts that it was made of |
 | `overrides` | `seed` and `records` that replaced those of the recipe |
-| `signals` | number of records that no analysis can use, see below |
+| `signals` | numbers of records that no analysis can use, by reason, see below |
 | `importer`, `recordings` | importer, and number of the recordings |
 | `basis`, `skipped`, `warnings` | sentences on what labels and units rest on, on skipped files, and on assumptions |
 | `failures` | a sentence for each record that could not be simulated and is left out |
 | `publication` | licence, creators and other facts of [publication](sharing.md) |
 | `recipe_text` | attribute only: the recipe as in `recipe.yaml` |
 
-Every file has `Conventions`, `raceway_format`, `title`, `history`, `source` and `signals`. `index.nc` and single files
+Every file has `Conventions`, `raceway_format`, `title`, `history` and `source`. `index.nc` and single files
 have all facts; `raceway.describe` and `raceway.publish` add the attributes of [publication](sharing.md).
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of

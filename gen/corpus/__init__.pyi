@@ -16,8 +16,8 @@ from .contents import (
 from .disk import (
     check_name as check_name,
     plain_file as plain_file,
-    remove_left_behind as remove_left_behind,
     remove_left_behind_of as remove_left_behind_of,
+    remove_temporary_files as remove_temporary_files,
     sha256 as sha256,
     temporary_beside as temporary_beside,
     temporary_folder as temporary_folder,
@@ -30,7 +30,6 @@ from .disk import (
 from .finishing import (
     finish_corpus as finish_corpus,
     remove_parts as remove_parts,
-    remove_temporary_files as remove_temporary_files,
 )
 from .index import corpus_name as corpus_name, open_corpus as open_corpus
 from .lazy import (

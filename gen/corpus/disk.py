@@ -13,10 +13,11 @@ import re
 import shutil
 import tempfile
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from gen.support.errors import CorpusError
 
@@ -27,14 +28,9 @@ CARD_SUFFIX = ".card"
 Stamp = tuple[int, int]
 """Size and time of the last change [ns]; a file with a different stamp has changed."""
 
-_CLOCK_TICK = 1_000_000_000  # ns; two changes within one tick of the clock of the file system can have the same stamp
-_MOST_HASHES = 100_000
-_TRIAL_BYTES = 16_000_000  # more than HDF5 writes at once
 _ADVICE = dict.fromkeys(
-    (errno.ENOSPC, errno.EDQUOT, errno.EFBIG), "free some space or choose another folder"
+    (0, errno.ENOSPC, errno.EDQUOT, errno.EFBIG), "free some space or choose another folder"
 ) | dict.fromkeys((errno.EACCES, errno.EPERM), "get permission to write there or choose another folder")
-_hashes: dict[tuple[str, Stamp], tuple[str, str]] = {}
-_CHECKSUM = re.compile(rb"\nsha256:([0-9a-f]{64})\n")
 _CHECKSUM_BYTES = 73
 _HOST = re.sub(r"[^\w-]", "-", platform.node())
 _READ_BYTES = 1_000_000
@@ -49,37 +45,32 @@ def stamp(path: Path | str) -> Stamp:
 
 def sha256(path: Path) -> str:
     """SHA-256 of a file, in hexadecimal; kept in this process until the stamp of the file changes."""
-    return _both_hashes(path)[0]
+    return _hashes(path.absolute(), stamp(path))[0]
 
 
-def _both_hashes(path: Path) -> tuple[str, str]:
-    """SHA-256 of a file, and of its bytes before the line with the checksum."""
-    key = str(path.absolute()), stamp(path)
-    known = _hashes.get(key)
-    if known is not None:
-        return known
-    digest, left = hashlib.sha256(), key[1][0] - _CHECKSUM_BYTES
-    # one reading gives both: the hash of the whole file and that of all before its last line
+@lru_cache(100_000)
+def _hashes(path: Path, stamp: Stamp) -> tuple[str, bool]:
+    """SHA-256 of a file, and whether its last line is that of all bytes before."""
+    digest, left = hashlib.sha256(), stamp[0] - _CHECKSUM_BYTES
+    # one reading gives both
     with path.open("rb", buffering=0) as stream:
         while left > 0 and (block := stream.read(min(left, _READ_BYTES))):
             digest.update(block)
             left -= len(block)
-        before = digest.hexdigest()
-        digest.update(stream.read())
-    both = digest.hexdigest(), before
-    # a file that changed within a tick of the clock has the same stamp as before
-    if stamp(path) == key[1] and time.time_ns() - key[1][1] > _CLOCK_TICK:
-        if len(_hashes) >= _MOST_HASHES:
-            _hashes.clear()
-        _hashes[key] = both
-    return both
+        last, expected = stream.read(), _checksum_line(digest)
+    digest.update(last)
+    return digest.hexdigest(), last == expected
+
+
+def _checksum_line(digest: Any) -> bytes:
+    return f"\nsha256:{digest.hexdigest()}\n".encode()
 
 
 def append_checksum(path: Path) -> str:
     """Append the line with the SHA-256 of a file to it; returns the SHA-256 of the file with that line, in hexadecimal."""
     with path.open("rb+") as stream:
         digest = hashlib.file_digest(stream, "sha256")
-        line = f"\nsha256:{digest.hexdigest()}\n".encode()
+        line = _checksum_line(digest)
         stream.seek(0, os.SEEK_END)
         stream.write(line)
     digest.update(line)
@@ -91,19 +82,9 @@ def remove_checksum(path: Path) -> None:
     os.truncate(path, path.stat().st_size - _CHECKSUM_BYTES)
 
 
-def stored_checksum(path: Path) -> str | None:
-    """SHA-256 in the last line of a file; None if it has no such line."""
-    with path.open("rb") as stream:
-        if stream.seek(0, os.SEEK_END) < _CHECKSUM_BYTES:
-            return None
-        stream.seek(-_CHECKSUM_BYTES, os.SEEK_END)
-        line = _CHECKSUM.fullmatch(stream.read())
-    return None if line is None else line[1].decode()
-
-
 def has_whole_bytes(path: Path) -> bool:
     """Whether a file ends with the SHA-256 of all its other bytes."""
-    return stored_checksum(path) == _both_hashes(path)[1]
+    return _hashes(path.absolute(), stamp(path))[1]
 
 
 def plain_file(directory: Path, name: str) -> Path:
@@ -207,7 +188,10 @@ def writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
             raise
         raise CorpusError(str(error).replace(hidden, str(path))) from error
     except (OSError, RuntimeError) as error:
-        code = _error_number(error, (temporary or path).parent)
+        # HDF5 puts the number of the system into a text with addresses; netCDF has numbers of its own, which are negative
+        in_text = re.search(r"errno = (\d+)", str(error))
+        code = int(in_text[1]) if in_text else max(0, getattr(error, "errno", None) or 0)
+        # HDF5 loses the number on a full disk, so without one the advice is that for a full disk
         text = os.strerror(code) if code else str(getattr(error, "strerror", None) or error).replace(hidden, str(path))
         advice = _ADVICE.get(code, "choose another folder")
         raise CorpusError(f"{path}: could not be written ({' '.join(text.split())}); {advice}.") from error
@@ -274,10 +258,11 @@ def remove_unfinished() -> None:
         _remove(temporary)
 
 
-def remove_left_behind(directory: Path, pattern: str) -> None:
-    """Remove temporary files that killed processes have left, by a pattern of names; no other process may be writing them."""
-    for temporary in directory.glob(f".{pattern}.*.*.*.tmp"):
-        _remove(temporary)
+def remove_temporary_files(directory: Path) -> None:
+    """Remove temporary files that killed calls have left beside the files of a corpus; no other process may be writing into it."""
+    for folder in (directory, directory / "parts", directory / "pictures"):
+        for temporary in folder.glob(".*.*.*.*.tmp"):
+            _remove(temporary)
 
 
 def _remove(temporary: Path) -> None:
@@ -297,28 +282,3 @@ def write_durably(content: bytes, path: Path) -> None:
 def write_text_durably(text: str, path: Path) -> None:
     """Write a text file atomically; CorpusError if writing fails."""
     write_durably(text.encode(), path)
-
-
-def _error_number(error: OSError | RuntimeError, folder: Path) -> int:
-    """Number of an error of the system, or 0 if it cannot be found.
-
-    HDF5 puts the number into a text with addresses. netCDF has numbers of its own, which are negative, and does not say why HDF5 failed:
-    the reason is found by writing some megabytes to the folder.
-
-    >>> _error_number(RuntimeError("write failed (errno = 28, error message = 'No space left on device', buf = 0x7fafb143fe10)"), Path())
-    28
-    """
-    # netCDF and HDF5 hide the number of the system in their texts, or lose it
-    in_text = re.search(r"errno = (\d+)", str(error))
-    code = getattr(error, "errno", None) or (int(in_text[1]) if in_text else 0)
-    if code > 0 or "HDF" not in str(error):
-        return max(code, 0)
-    try:
-        # writing a little more to the same place fails for the same reason, and names it
-        with tempfile.TemporaryFile(dir=folder) as trial:
-            trial.write(bytes(_TRIAL_BYTES))
-            trial.flush()
-            os.fsync(trial.fileno())
-    except OSError as refusal:
-        return refusal.errno or 0
-    return 0

@@ -13,7 +13,7 @@ from gen.corpus.disk import (
     MANIFEST_NAME,
     RECIPE_NAME,
     append_checksum,
-    remove_left_behind,
+    remove_temporary_files,
     whole_or_not_at_all,
 )
 from gen.corpus.lazy import stored_records
@@ -57,14 +57,6 @@ def _join_parts(directory: Path, manifest: Manifest, path: Path, without: tuple[
         facts = facts_as_attributes(manifest.content, recipe_text(directory))
         write_netcdf(columns, kept | facts, path, codec_of(paths[0]), blocks)
     append_checksum(path)
-
-
-def remove_temporary_files(directory: Path) -> None:
-    """Remove temporary files that killed calls have left beside the files of a corpus; no other process may be writing into it."""
-    for name in (MANIFEST_NAME, INDEX_NAME, CARD_NAME, "card.json", RECIPE_NAME, CROISSANT_NAME):
-        remove_left_behind(directory, name)
-    remove_left_behind(directory / "parts", "part-*.nc")
-    remove_left_behind(directory / "pictures", "*.png")
 
 
 def remove_parts(directory: Path, names: Iterable[str]) -> None:

@@ -20,7 +20,6 @@ from gen.corpus.disk import (
     has_whole_bytes,
     plain_file,
     sha256,
-    stored_checksum,
     write_text_durably,
 )
 from gen.corpus.part import PartRow, part_number
@@ -56,7 +55,7 @@ class Manifest(Strict):
     raceway_format: int = FORMAT
     complete: bool = True
     records: Count = 0
-    signals: SignalCounts = SignalCounts()
+    signals: Annotated[SignalCounts, Field(default_factory=dict)]
     """Counts of the records that cannot be used."""
     title: str | None = None
     recipe: str | None = None
@@ -87,22 +86,18 @@ class Manifest(Strict):
         """Facts in values of JSON; one without content is left out."""
         return {name: value for name, value in self.model_dump(mode="json").items() if value not in (None, [], {})}
 
-    @field_serializer("signals")
-    def _counts(self, signals: SignalCounts) -> dict[str, int]:
-        return signals._asdict()
-
     @field_serializer("parts")
     def _rows(self, rows: tuple[PartRow, ...]) -> list[dict[str, Any]]:
-        return [row._asdict() | {"signals": row.signals._asdict()} for row in rows]
+        return [row._asdict() for row in rows]
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         """Refuse names and counts that disagree."""
-        counts = [(self.records, self.signals), *((row.records, row.signals) for row in self.parts)]
-        records, signals = zip(*counts[1:], strict=True) if self.parts else zip(*counts, strict=True)
+        rows = self.parts or (self,)
         if len({row.name for row in self.parts}) < len(self.parts):
             raise ValueError("it lists a part more than once")
-        if (sum(records), sum_counts(signals)) != counts[0] or any(sum(unusable) > count for count, unusable in counts):
+        counts = sum(row.records for row in rows), sum_counts(row.signals for row in rows)
+        if counts != (self.records, self.signals) or any(sum(row.signals.values()) > row.records for row in rows):
             raise ValueError("its counts are not those of its parts")
         return self
 
@@ -190,25 +185,20 @@ def read_manifest(path: Path | str, check: Check = "sha256") -> Manifest:
     """
     path = Path(path)
     if path.is_file():
-        if check == "sha256":
-            check_bytes(path)
+        # before a library opens it
+        if check == "sha256" and not has_whole_bytes(path):
+            raise CorpusError(_altered(path))
         return _manifest_of_file(path)
     if not path.is_dir():
         raise CorpusError(
             f"{path}: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file."
         )
-    place = path / MANIFEST_NAME
-    if not place.exists():
+    if not (path / MANIFEST_NAME).exists():
         raise CorpusError(f"{path}: has no manifest.json, so it is not a corpus; make one with raceway generate.")
-    # a link could lead out of the folder
-    plain_file(path, MANIFEST_NAME)
-    try:
-        # before memory is taken for it
-        check_limit("manifest_bytes", place.stat().st_size, f"{place}:", CorpusError)
-        content = place.read_bytes()
-    except OSError as error:
-        raise CorpusError(f"{place}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
-    manifest = manifest_of(content, place)
+    place = plain_file(path, MANIFEST_NAME)
+    # before memory is taken for it
+    check_limit("manifest_bytes", place.stat().st_size, f"{place}:", CorpusError)
+    manifest = manifest_of(place.read_bytes(), place)
     if manifest.complete and not manifest.parts:
         raise CorpusError(f"{place}: is marked complete and lists no parts; do not trust this corpus.")
     return manifest if manifest.complete else _with_present_parts(manifest, path)
@@ -220,15 +210,13 @@ def _manifest_of_file(file: Path) -> Manifest:
         raise CorpusError(f"{file}: is the index of a corpus and holds no signals; give its folder, {file.parent}.")
     attributes, records = file_facts(file)
     _check_format(attributes.get("raceway_format"), file)
-    content: dict[str, Any] = {"raceway_format": FORMAT, "records": records}
+    names = Manifest.model_fields.keys() & attributes.keys() - {"raceway_format"}
     try:
-        content["signals"] = json.loads(attributes["signals"])
         # facts that are no text are JSON in an attribute
-        for name in Manifest.model_fields.keys() & attributes.keys() - {"raceway_format"}:
-            content[name] = attributes[name] if name in _TEXTS else json.loads(attributes[name])
-    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        content = {name: attributes[name] if name in _TEXTS else json.loads(attributes[name]) for name in names}
+    except (ValueError, TypeError, RecursionError) as error:
         raise CorpusError(f"{file}: has unreadable facts ({type(error).__name__}: {error}); copy it again.") from None
-    return manifest_of(content, file)
+    return manifest_of({"records": records, **content}, file)
 
 
 def facts_as_attributes(content: Mapping[str, Any], recipe: str | None = None) -> dict[str, str]:
@@ -272,7 +260,7 @@ def recipe_text(path: Path | str) -> str | None:
 
 
 def file_problems(path: Path, manifest: Manifest, check: Check) -> list[str]:
-    """Missing and altered files of the folder of a corpus, one sentence each; none of a single file (see :func:`check_bytes`)."""
+    """Missing and altered files of the folder of a corpus, one sentence each; :func:`read_manifest` compares a single file."""
     if path.is_file():
         return []
     rows: list[PartRow | None] = [*manifest.parts, *([None] if manifest.complete else [])]
@@ -291,32 +279,14 @@ def _file_problem(directory: Path, row: PartRow | None, check: Check) -> str | N
             whole = has_whole_bytes(file) if row is None else sha256(file) == row.sha256
     except CorpusError as error:
         return str(error)
-    except OSError as error:
-        return f"{directory}: cannot be read ({error.strerror or error}); copy it again."
     return None if whole else _altered(file)
 
 
 def _altered(file: Path) -> str:
     return (
-        f"{file}: is altered, cut off or rewritten by another program: its bytes do not have the hash that Raceway stored; copy it again, "
-        f"or delete it and make the corpus again."
+        f"{file}: its bytes do not have the hash that Raceway stored: it is another file, such as a feature table, or is altered, cut off "
+        f"or rewritten by another program; give a corpus, copy it again, or make it again."
     )
-
-
-def check_bytes(file: Path) -> None:
-    """Refuse a single file that has been altered, before a library opens it."""
-    try:
-        ends, whole = stored_checksum(file) is not None, has_whole_bytes(file)
-    except OSError as error:
-        raise CorpusError(f"{file}: cannot be read ({error.strerror or error}); copy it again.") from None
-    # most often another kind of file, which deserves another sentence
-    if not ends:
-        raise CorpusError(
-            f"{file}: has no checksum of Raceway at its end: it is another file, such as a feature table, or was cut off or rewritten by "
-            f"another program; give a corpus, or copy it again."
-        )
-    if not whole:
-        raise CorpusError(_altered(file))
 
 
 def finished(path: Path | str, check: Check = "sha256") -> Manifest:

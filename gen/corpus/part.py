@@ -32,7 +32,7 @@ class PartRow(NamedTuple):
     records: Count
     bytes: Count
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
-    signals: SignalCounts = SignalCounts()
+    signals: SignalCounts
     """Counts of the records that cannot be used."""
 
 
@@ -69,7 +69,7 @@ def write_part(dataset: "xr.Dataset", path: Path, codec: Codec = "zlib") -> Part
     facts = {name: dataset.attrs[name] for name in sorted(map(str, dataset.attrs))}
     with whole_or_not_at_all(path) as temporary:
         columns = {str(name): _encoded(variable) for name, variable in dataset.variables.items()}
-        write_netcdf(columns, facts | {"signals": json.dumps(signals._asdict())}, temporary, codec)
+        write_netcdf(columns, facts | {"signals": json.dumps(signals)}, temporary, codec)
         digest = append_checksum(temporary)
     return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, digest, signals)
 

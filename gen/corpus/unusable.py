@@ -4,8 +4,9 @@ A recipe with an unsuitable full scale, gain or load gives records that are clip
 other records, and counted when a part is written; the manifest holds the counts.
 """
 
+from collections import Counter
 from collections.abc import Iterable
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,13 +33,8 @@ Count = Annotated[int, Field(ge=0, lt=2**63)]
 """Count in a manifest, which may come from a stranger."""
 
 
-class SignalCounts(NamedTuple):
-    """Number of records that cannot be used, by reason; all others are sound."""
-
-    clipped: Count = 0
-    dead: Count = 0
-    constant: Count = 0
-    not_finite: Count = 0
+SignalCounts = dict[Annotated[str, Field(pattern=f"^({'|'.join(VERDICTS[1:])})$")], Count]
+"""Number of records that cannot be used, by reason; a reason without records is left out."""
 
 
 def judge(signal: NDArray[np.integer] | NDArray[np.floating]) -> NDArray[np.int8]:
@@ -78,29 +74,30 @@ def count_verdicts(verdicts: NDArray[np.int8]) -> SignalCounts:
     """Number of records of each verdict except ``sound``.
 
     >>> count_verdicts(np.array([0, 1, 1, 4], np.int8))
-    SignalCounts(clipped=2, dead=0, constant=0, not_finite=1)
+    {'clipped': 2, 'not_finite': 1}
     """
-    return SignalCounts(*(int(np.count_nonzero(verdicts == place)) for place in range(1, len(VERDICTS))))
+    counts = np.bincount(verdicts, minlength=len(VERDICTS)).tolist()
+    return {verdict: n for verdict, n in zip(VERDICTS, counts, strict=True) if n and verdict != "sound"}
 
 
 def sum_counts(counts: Iterable[SignalCounts]) -> SignalCounts:
     """Sum of the counts of several parts."""
-    return SignalCounts(*np.array([SignalCounts(), *counts]).sum(axis=0).tolist())
+    return dict(sum(map(Counter, counts), Counter()))
 
 
 def counts_in_words(counts: SignalCounts) -> str:
-    """Counts in words; counts of 0 are left out.
+    """Counts in words.
 
-    >>> counts_in_words(SignalCounts(clipped=1204, not_finite=2)), counts_in_words(SignalCounts())
+    >>> counts_in_words({"clipped": 1204, "not_finite": 2}), counts_in_words({})
     ('1,204 clipped, 2 not finite', 'none')
     """
-    return ", ".join(f"{n:,} {kind.replace('_', ' ')}" for kind, n in counts._asdict().items() if n) or "none"
+    return ", ".join(f"{n:,} {kind.replace('_', ' ')}" for kind, n in counts.items()) or "none"
 
 
 def complaint(counts: SignalCounts, records: int) -> str | None:
     """Sentence with the number of records that cannot be used and the keys to change; None if they are few."""
-    useless = sum(counts)
+    useless = sum(counts.values())
     if useless <= USELESS_SHARE * records:
         return None
-    advice = list(dict.fromkeys(_ADVICE[kind] for kind, n in counts._asdict().items() if n))
+    advice = dict.fromkeys(_ADVICE[kind] for kind in counts)
     return f"{useless:,} of {records:,} records cannot be used ({counts_in_words(counts)}): {'; '.join(advice)}."

@@ -216,7 +216,7 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     if as_json:
         facts = {name: getattr(made, name) for name in ("records", "parts", "kept", "failures")}
         seconds = round(time.monotonic() - start, 3)
-        show.as_json({"corpus": made.path, **facts, "signals": made.signals._asdict(), "seconds": seconds})
+        show.as_json({"corpus": made.path, **facts, "signals": made.signals, "seconds": seconds})
     else:
         _show_generated(made, wanted)
     # a corpus that no analysis can use is a failure for scripts
@@ -227,7 +227,7 @@ def _show_generated(made: "Generated", wanted: "Recipe") -> None:
     from gen.corpus import counts_in_words
 
     kept = f", {made.kept} of them kept from before" if made.kept else ""
-    unusable = f"; {counts_in_words(made.signals)} cannot be used" if any(made.signals) else ""
+    unusable = f"; {counts_in_words(made.signals)} cannot be used" if made.signals else ""
     failed = f"; {show.count_text(len(made.failures), 'record')} left out" if made.failures else ""
     size = f"{show.count_text(made.records, 'record')} in {show.count_text(made.parts, 'part')}"
     show.text(f"{made.path}: {size}{kept}{failed}{unusable}.")
@@ -254,12 +254,12 @@ def _kept(corpus: Path, recipe: "Recipe") -> "Callable[[], str]":
 
     It imports nothing: the main thread may hold the lock of an import when it is called.
     """
-    from gen.corpus import is_single_file, part_number, remove_left_behind
+    from gen.corpus import is_single_file, part_number, remove_temporary_files
 
     folder = corpus.with_name(f"{corpus.name}.parts") if is_single_file(corpus) else corpus
 
     def told() -> str:
-        remove_left_behind(folder / "parts", "part-*.nc")
+        remove_temporary_files(folder)
         parts = {part_number(path.name) for path in (folder / "parts").glob("part-*.nc")} - {None}
         of_all = f"{len(parts)} of {show.count_text(recipe.n_parts, 'part')}"
         return f"interrupted; {of_all} kept in {folder}; the same command completes the corpus."

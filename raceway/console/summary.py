@@ -14,7 +14,6 @@ from gen.corpus import (
     INDEX_NAME,
     LIFE,
     Manifest,
-    SignalCounts,
     by_class,
     class_counts,
     counts_in_words,
@@ -75,7 +74,7 @@ def corpus_facts(directory: Path, where: str | None = None) -> dict[str, Any]:
         "failures": [],
         "warnings": [],
         "skipped": [],
-        "signals": manifest.signals._asdict(),
+        "signals": manifest.signals,
         **stored,
     }
     return facts | _content(directory, manifest, where) if manifest.records else facts
@@ -167,7 +166,7 @@ def show_facts(facts: dict[str, Any]) -> None:
             "licence": facts.get("publication", {}).get("license", ""),
             "state": "complete" if facts["complete"] else "unfinished; the command that began it completes it",
             **(_shown_content(facts) if "classes" in facts else {}),
-            "not usable": counts_in_words(SignalCounts(**facts["signals"])),
+            "not usable": counts_in_words(facts["signals"]),
             "clipped": "" if clipped is None else f"at least once: {show.counts(clipped)}" if clipped else "none",
             "parts": f"{facts['parts']:,}",
             "size": show.size(facts["bytes"]),

@@ -29,6 +29,7 @@ from gen.support.limits import check_limit
 from gen.support.progress import Progress, counter
 from raceway.sharing.acdd import publication_attributes
 from raceway.sharing.joining import check_fit, check_repeats, sample_digests, with_same_variables
+from raceway.sharing.publication import publication_of
 
 _MOST_IN_BLOCK = 1024  # records; scenarios are text of some kilobytes a record
 _SPAN = 8  # times the records of a block; variables are read with those of the records between the chosen ones
@@ -100,7 +101,7 @@ class Chosen:
     @property
     def publication(self) -> dict[str, Any]:
         """Licence, creators and references if they are the same for all corpora; else none, since they cannot be joined."""
-        first, *others = (manifest.publication for manifest in self.manifests)
+        first, *others = (publication_of(manifest).stored for manifest in self.manifests)
         return first if all(other == first for other in others) else {}
 
     @cached_property

@@ -8,8 +8,14 @@ from typing import Any
 
 import h5py
 
-from gen.corpus.disk import append_checksum, remove_checksum, remove_left_behind_of, whole_or_not_at_all, writing
-from gen.corpus.finishing import remove_temporary_files
+from gen.corpus.disk import (
+    append_checksum,
+    remove_checksum,
+    remove_left_behind_of,
+    remove_temporary_files,
+    whole_or_not_at_all,
+    writing,
+)
 from gen.corpus.locking import lock
 from gen.corpus.manifest import (
     INDEX_NAME,

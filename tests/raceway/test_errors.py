@@ -90,10 +90,10 @@ TABLE = [
     ("plan {file}", "file.txt: a recipe is a mapping"),
     ("generate {straight} -o {begun}", "operation.axial_load_n: needs a contact angle; "),
     # corpora
-    ("benchmark {corpus} -o {new} --test {table}", "table.nc: has no checksum of Raceway at its end"),
+    ("benchmark {corpus} -o {new} --test {table}", "table.nc: its bytes do not have the hash that Raceway stored"),
     ("features {unfinished} -o {new}.nc", "is unfinished; run the raceway generate command that began it again."),
     ("plot {missing_part} --record 0 -o {new}.png", "part-00001.nc: is missing; copy it again"),
-    ("features {altered_part} -o {new}.nc", "part-00002.nc: is altered, cut off or rewritten by another program: its bytes do not have"),
+    ("features {altered_part} -o {new}.nc", "part-00002.nc: its bytes do not have the hash that Raceway stored"),
     ("replay {corpus} --record 48", "record 48 is not in it; it has records 0 to 47."),
     ("plot {corpus} --record 99 -o {new}.png", "no record 99; give one of 0 to 47."),
     # models and scores
@@ -129,8 +129,8 @@ READERS = {
 }  # fmt: skip
 NO_CORPORA = {
     "nowhere": "nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file.",
-    "file": "file.txt: has no checksum of Raceway at its end",
-    "table": "table.nc: has no checksum of Raceway at its end: it is another file, such as a feature table",
+    "file": "file.txt: its bytes do not have the hash that Raceway stored",
+    "table": "table.nc: its bytes do not have the hash that Raceway stored: it is another file, such as a feature table",
     "folder": "folder: has no manifest.json, so it is not a corpus; make one with raceway generate.",
     "no_json": "manifest.json: not the manifest of a corpus",
     "vague": "manifest.json: not the manifest of a corpus (complete: input should be a valid boolean)",

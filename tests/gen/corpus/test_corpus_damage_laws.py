@@ -54,9 +54,7 @@ def test_a_file_with_any_other_byte_is_refused_by_name(nine, tmp_path_factory, n
     else:
         content.insert(place, mask)
     path.write_bytes(content)
-    assert_refused(
-        corpus, rf"{path}: (is altered, cut off or rewritten by another program: its bytes|has no checksum of Raceway)"
-    )
+    assert_refused(corpus, rf"{path}: its bytes do not have the hash that Raceway stored")
 
 
 def link_out(path, outside):
@@ -81,14 +79,14 @@ def part(folder, number):
 NO_MANIFEST = r"manifest\.json: not the manifest of a corpus"
 REFUSED = {
     "a part is missing": (lambda c: part(c, 1).unlink(), r"part-00001\.nc: is missing; copy it again"),
-    "a part stands for another": (lambda c: shutil.copyfile(part(c, 0), part(c, 2)), r"part-00002\.nc: is altered"),
+    "a part stands for another": (lambda c: shutil.copyfile(part(c, 0), part(c, 2)), r"part-00002\.nc: its bytes do not have the hash"),
     "the manifest is gone": (lambda c: (c / "manifest.json").unlink(), r"has no manifest\.json, so it is not a corpus"),
     "the manifest lists no parts": (
         lambda c: write_manifest(c, {"raceway_format": 3, "records": 0}), "is marked complete and lists no parts",
     ),
     "the title of the manifest is altered": (
         lambda c: (c / "manifest.json").write_text((c / "manifest.json").read_text().replace('"title": "', '"title": "My ')),
-        r"manifest\.json: is altered, cut off or rewritten by another program",
+        r"manifest\.json: its bytes do not have the hash",
     ),
     "the index is gone": (lambda c: (c / "index.nc").unlink(), r"index\.nc: is missing; copy it again"),
     "the index is that of another corpus": (other_index, r"index\.nc is that of other parts than manifest\.json lists"),
@@ -135,7 +133,7 @@ def test_a_text_that_is_no_manifest_is_refused(copied_folder, text):
 
 def test_a_manifest_without_its_hash_is_refused(copied_folder):
     (copied_folder / "manifest.json").write_text(json.dumps(manifest_content(copied_folder)))
-    with pytest.raises(CorpusError, match=r"manifest\.json: is altered"):
+    with pytest.raises(CorpusError, match=r"manifest\.json: its bytes do not have the hash"):
         open_corpus(copied_folder)
 
 
@@ -154,11 +152,11 @@ def set_fact(name, value):
 
 
 REFUSED_FILES = {
-    "is empty": (lambda f: os.truncate(f, 0), "has no checksum of Raceway at its end"),
+    "is empty": (lambda f: os.truncate(f, 0), "its bytes do not have the hash that Raceway stored"),
     "has the format before": (set_fact("raceway_format", 2), "corpus format 2, this version of raceway reads format 3"),
     "has no format": (set_fact("raceway_format", "x"), "corpus format x, this version of raceway reads format 3"),
     "counts more useless records than it has": (
-        set_fact("signals", '{"clipped": 0, "dead": 121306, "constant": 0, "not_finite": 0}'), "its counts are not those of its parts",
+        set_fact("signals", '{"dead": 121306}'), "its counts are not those of its parts",
     ),
     "has counts that are no JSON": (set_fact("signals", "{"), r"has unreadable facts"),
     "has facts that are nested without end": (set_fact("warnings", "[" * 10_000), "has unreadable facts"),
@@ -276,9 +274,9 @@ def test_counts_of_useless_records_are_those_of_the_signals(tmp_path, form):
     dead = dataset(3, 4)
     dead[SIGNAL].values[2] = 0
     write_parts(tmp_path / form, [dataset(0, 3), dead])
-    assert read_manifest(tmp_path / form).signals.dead == 1
+    assert read_manifest(tmp_path / form).signals == {"dead": 1}
     assert validate_corpus(tmp_path / form) == []
-    none = {"clipped": 0, "dead": 0, "constant": 0, "not_finite": 0}
+    none = {}
     if form == "c":
         edit_manifest(tmp_path / form, {1: {"signals": none}}, signals=none)
     else:

@@ -70,7 +70,7 @@ def test_copying_there_and_back_gives_the_same_bytes(source, tmp_path):
 def test_an_altered_corpus_is_not_copied(source, tmp_path):
     part = source / "parts" / "part-00001.nc"
     part.write_bytes(part.read_bytes()[:-1] + b"\x01")
-    with pytest.raises(CorpusError, match=r"part-00001\.nc: is altered"):
+    with pytest.raises(CorpusError, match=r"part-00001\.nc: its bytes do not have the hash"):
         copy(source, tmp_path / "out")
 
 

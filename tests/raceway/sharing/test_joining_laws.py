@@ -106,7 +106,7 @@ def test_records_of_silence_may_be_alike(tmp_path):
         silence[SIGNAL][:] = 0
         corpora.write_parts(tmp_path / name, [silence])
     copy([tmp_path / "a", tmp_path / "b"], tmp_path / "joined")
-    assert read_manifest(tmp_path / "joined").signals.dead == 6
+    assert read_manifest(tmp_path / "joined").signals == {"dead": 6}
 
 
 @pytest.mark.parametrize(

@@ -89,7 +89,7 @@ def test_an_altered_corpus_is_not_published(corpus):
     content = part.read_bytes()
     part.write_bytes(content[:-100] + bytes([content[-100] ^ 1]) + content[-99:])
     before = files(corpus)
-    with pytest.raises(CorpusError, match="is altered"):
+    with pytest.raises(CorpusError, match="its bytes do not have the hash"):
         publish(corpus, WHOLE)
     assert files(corpus) == before
     with pytest.raises(CorpusError, match="no such folder or file"):
