@@ -36,9 +36,7 @@ def loading_rows(pairs: int, folder: Path, batch: int) -> Iterator[Line]:
     order = np.random.default_rng(0).permutation(records)
     batches = [order[start : start + batch] for start in range(0, records, batch)]
     with tempfile.TemporaryDirectory() as temporary, ExitStack() as stack:
-        np.save(
-            f"{temporary}/counts.npy", np.concatenate([stored_records([path], [path])[SIGNAL].values for path in paths])
-        )
+        np.save(f"{temporary}/counts.npy", np.concatenate([stored_records([path])[SIGNAL].values for path in paths]))
         counts = np.load(f"{temporary}/counts.npy", mmap_mode="r")
         zstd = noise_corpus(Path(temporary) / "zstd", records, counts.shape[2], "zstd")
         fast = gen.torch_dataset(zstd, check="size")

@@ -88,7 +88,7 @@ class Raceway(PluginGroup):
             with formatter.section(title):
                 limit = formatter.width - 6 - widest
                 formatter.write_dl(
-                    [((one.name or "").ljust(widest), one.get_short_help_str(limit)) for one in commands]
+                    [((command.name or "").ljust(widest), command.get_short_help_str(limit)) for command in commands]
                 )
 
     def main(self, args: Sequence[str] | None = None, prog_name: str | None = None, **extra: Any) -> NoReturn:  # type: ignore[override]

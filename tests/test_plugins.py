@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from importlib.metadata import EntryPoint
 
 import numpy as np
@@ -39,7 +40,9 @@ background: {hiss: {probability: 1, level_db: 6}}
 """
 RUN = """
 import contextlib, io, json, sys
+from matplotlib.figure import Figure
 from raceway.cli import cli
+Figure.savefig = lambda figure, stream, **options: stream.write(b"a picture")  # painting takes most of the time
 ends = []
 for line in json.load(sys.stdin):
     with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
@@ -59,25 +62,25 @@ def run(folder, lines, *plugins):
     return json.loads(done.stdout)
 
 
-def distribution(folder, name, group, entry):
-    """Installed distribution that has nothing but one entry point."""
-    facts = folder / f"{name}-1.0.dist-info"
+def distribution(folder, name, version, groups):
+    """Folder with the facts of an installed distribution; ``groups`` are its entry points."""
+    facts = folder / f"{name.replace('-', '_')}-{version}.dist-info"
     facts.mkdir(parents=True)
-    (facts / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
-    (facts / "entry_points.txt").write_text(f"[raceway.{group}]\n{entry}\n")
+    (facts / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
+    lines = [
+        f"[{group}]\n" + "".join(f"{key} = {place}\n" for key, place in of.items()) for group, of in groups.items()
+    ]
+    (facts / "entry_points.txt").write_text("".join(lines))
     return folder
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):
-    """Folder in which the example is installed as pip does it."""
+    """Folder in which the example lies as pip installs it: its module, and its entry points."""
     folder = tmp_path_factory.mktemp("plugin")
-    shutil.copytree(SOURCE, folder / "source")
-    target = ["--target", folder / "lib", folder / "source"]
-    subprocess.run(
-        [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-build-isolation", *target], check=True
-    )
-    return folder / "lib"
+    shutil.copy(SOURCE / "raceway_example.py", folder)
+    project = tomllib.loads((SOURCE / "pyproject.toml").read_text())["project"]
+    return distribution(folder, project["name"], project["version"], project["entry-points"])
 
 
 @pytest.fixture(scope="module")
@@ -149,7 +152,7 @@ def test_codes_of_classes_are_those_of_the_file(made, installed, tmp_path):
     index, part = folder / "corpus" / "index.nc", folder / "corpus" / "parts" / "part-00000.nc"
     before = index.read_bytes(), part.read_bytes()
     part.unlink()
-    other = distribution(tmp_path, "other", "classes", "abraded = raceway_example:BRINELLED")
+    other = distribution(tmp_path, "other", "1.0", {"raceway.classes": {"abraded": "raceway_example:BRINELLED"}})
     lines = [
         "generate dented.yaml -o corpus",
         "info corpus --json",
@@ -182,7 +185,7 @@ def test_a_plugin_that_nothing_names_changes_no_byte(installed, tmp_path):
 
 
 def test_a_plugin_that_cannot_be_loaded_is_named_and_the_others_work(tmp_path):
-    broken = distribution(tmp_path, "broken", "commands", "lost = no_such_module:command")
+    broken = distribution(tmp_path, "broken", "1.0", {"raceway.commands": {"lost": "no_such_module:command"}})
     (_, listed), (code, called) = run(tmp_path, ["--help", "lost"], broken)
     sentence = "broken 1.0: its lost in raceway.commands cannot be used"
     assert f"Plug-ins:\n  lost       {sentence}" in listed

@@ -34,7 +34,6 @@ from .finishing import (
 from .index import corpus_name as corpus_name, open_corpus as open_corpus
 from .lazy import (
     blocks_of as blocks_of,
-    open_part as open_part,
     open_records as open_records,
     stored_records as stored_records,
 )

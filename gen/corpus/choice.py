@@ -79,14 +79,14 @@ def channel_names(corpus: xr.Dataset) -> list[str]:
 
 def per_record(corpus: xr.Dataset) -> list[str]:
     """Names of the per-record variables that an opened corpus stores; names of classes have no role."""
-    found = corpus.variables.items()
-    return [str(name) for name, variable in found if variable.dims == ("record",) and "role" in variable.attrs]
+    variables = corpus.variables.items()
+    return [str(name) for name, variable in variables if variable.dims == ("record",) and "role" in variable.attrs]
 
 
 def operating_variables(corpus: xr.Dataset) -> dict[str, NDArray[Any]]:
     """What an analyst on site knows of each record of an opened corpus: the variables of the role ``operating``, shape (record,)."""
-    known = [name for name in per_record(corpus) if corpus[name].attrs["role"] == "operating"]
-    return {name: corpus[name].values for name in known}
+    names = [name for name in per_record(corpus) if corpus[name].attrs["role"] == "operating"]
+    return {name: corpus[name].values for name in names}
 
 
 def _variables(corpus: xr.Dataset) -> dict[str, xr.DataArray]:

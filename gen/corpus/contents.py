@@ -61,8 +61,8 @@ def extent(values: NDArray[Any]) -> tuple[float, float, float] | None:
     >>> extent(np.array([2.0, np.nan, 4.0]))
     (2.0, 3.0, 4.0)
     """
-    known = values[np.isfinite(values)]
-    return (float(known.min()), float(np.median(known)), float(known.max())) if known.size else None
+    finite = values[np.isfinite(values)]
+    return (float(finite.min()), float(np.median(finite)), float(finite.max())) if finite.size else None
 
 
 def distinct(*keys: NDArray[Any]) -> int:

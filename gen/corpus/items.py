@@ -154,11 +154,11 @@ def torch_dataset(
         If the corpus cannot be opened, no record is chosen, or there is no such split, channel or label.
     """
     opened = open_corpus(corpus, check)
-    known = channel_names(opened)
-    places = chosen_channels(known, channels)
+    names_of_channels = channel_names(opened)
+    places = chosen_channels(names_of_channels, channels)
     numbers, names = _labels(opened, label, corpus_name(corpus))
     (records,) = chosen_records([opened], where, split)
-    chosen = tuple(known[place] for place in places)
+    chosen = tuple(names_of_channels[place] for place in places)
     # labels are read now, signals when they are asked for
     operating = {name: values[records] for name, values in operating_variables(opened).items()}
     return LabelledRecords(
@@ -168,9 +168,9 @@ def torch_dataset(
 
 def _labels(opened: xr.Dataset, label: str, corpus: str) -> tuple[NDArray[Any], Mapping[int, str]]:
     """Values of a per-record variable, and the names of its codes if it is a class."""
-    known = per_record(opened)
-    if label not in known:
-        raise CorpusError(f"{corpus}: label: there is no variable {label}{nearest(label, known)}")
+    variables = per_record(opened)
+    if label not in variables:
+        raise CorpusError(f"{corpus}: label: there is no variable {label}{nearest(label, variables)}")
     variable = opened[label]
     values = variable.values
     if values.dtype.kind not in "iuf":

@@ -153,18 +153,20 @@ class _Signal(_Stored):
             return read_values(stored, records, *channels)
 
 
-def stored_records(described: Sequence[Path], parts: Sequence[Path], counts: Sequence[int] | None = None) -> xr.Dataset:
+def stored_records(
+    described: Sequence[Path], parts: Sequence[Path] | None = None, counts: Sequence[int] | None = None
+) -> xr.Dataset:
     """Records as they are stored, read lazily: the per-record variables of the files ``described`` with the signal of ``parts``.
 
-    ``described`` is the index of the parts, or the parts again. ``counts`` are the numbers of records of the parts; without them there is
-    one part. Nothing that is read is kept.
+    ``described`` is the index of the parts, or the parts themselves; these are meant without ``parts``. ``counts`` are the numbers of
+    records of the parts; without them there is one part. Nothing that is read is kept.
 
     Raises
     ------
     CorpusError
         If a file is missing or does not pass :func:`gen.corpus.trust.open_trusted`.
     """
-    sources, of_signal = ([_source(path) for path in paths] for paths in (described, parts))
+    sources, of_signal = ([_source(path) for path in paths] for paths in (described, parts or described))
     with _opened(of_signal[0]) as opened:
         stored, ((records, *row), dtype, packing) = opened.signal
         attributes = attributes_of(stored)
@@ -181,23 +183,14 @@ def stored_records(described: Sequence[Path], parts: Sequence[Path], counts: Seq
     return whole
 
 
-def open_records(described: Sequence[Path], parts: Sequence[Path], counts: Sequence[int] | None = None) -> xr.Dataset:
+def open_records(
+    described: Sequence[Path], parts: Sequence[Path] | None = None, counts: Sequence[int] | None = None
+) -> xr.Dataset:
     """Records decoded to m s-2 (:func:`stored_records`); a missing sample is NaN, and faults have the codes of this process."""
     stored = with_own_codes(stored_records(described, parts, counts), described[0])
     records = xr.decode_cf(stored, concat_characters=False, decode_times=False, decode_coords=False)
     records.set_close(close_files)
     return records
-
-
-def open_part(path: Path) -> xr.Dataset:
-    """Records of one file, decoded to m s-2 and read lazily.
-
-    Raises
-    ------
-    CorpusError
-        If the file is missing or is not a file of records.
-    """
-    return open_records([path], [path])
 
 
 def blocks_of(records: xr.Dataset) -> list[slice]:
@@ -209,7 +202,7 @@ def blocks_of(records: xr.Dataset) -> list[slice]:
 
 def stored_classes(path: Path) -> dict[int, str]:
     """Names of the fault classes by their codes in a file, which may not be those of this process."""
-    return class_names(stored_records([path], [path])["fault"].attrs)
+    return class_names(stored_records([path])["fault"].attrs)
 
 
 def _source(path: Path) -> Source:

@@ -105,8 +105,8 @@ class Manifest(Strict):
 def manifest_of_parts(rows: Iterable[PartRow], facts: Mapping[str, Any], *, complete: bool = True) -> Manifest:
     """Manifest of parts, with further ``facts`` by the names of its fields, in values of JSON; one that is None is left out."""
     rows = tuple(rows)
-    known = {name: value for name, value in facts.items() if name not in COUNTED and value is not None}
-    return manifest_of(known, Path(MANIFEST_NAME)).model_copy(
+    further = {name: value for name, value in facts.items() if name not in COUNTED and value is not None}
+    return manifest_of(further, Path(MANIFEST_NAME)).model_copy(
         update={
             "complete": complete,
             "records": sum(row.records for row in rows),
@@ -216,7 +216,7 @@ def _manifest_of_file(file: Path) -> Manifest:
         content = {name: attributes[name] if name in _TEXTS else json.loads(attributes[name]) for name in names}
     except (ValueError, TypeError, RecursionError) as error:
         raise CorpusError(f"{file}: has unreadable facts ({type(error).__name__}: {error}); copy it again.") from None
-    return manifest_of({"records": records, **content}, file)
+    return manifest_of({"raceway_format": FORMAT, "records": records, **content}, file)
 
 
 def facts_as_attributes(content: Mapping[str, Any], recipe: str | None = None) -> dict[str, str]:

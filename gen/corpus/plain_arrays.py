@@ -85,16 +85,16 @@ def records_of_arrays(
         for name, of in variables.items()
     }
     columns |= {"recording": np.arange(len(x)), "sample_rate": np.full(len(x), float(rate))}
-    given = set[str]()
+    labelled = set[str]()
     for key in labels.keys():  # noqa: SIM118 - of a DataFrame too
         if key not in keys:
             raise CorpusError(f"labels: there is no column {key}{nearest(f'{key}', [*keys])}")
         (name, factor), values = keys[key], np.asarray(labels[key])
         if values.shape not in ((), (len(x),)):
             raise CorpusError(f"labels: {key} has shape {values.shape}, not one value for each of {len(x)} records.")
-        if name in given:
+        if name in labelled:
             raise CorpusError(f"labels: {key} gives {name} twice; leave one of its columns out.")
-        given.add(name)
+        labelled.add(name)
         columns[name] = _column(name, np.broadcast_to(values, len(x)), factor, variables[name].dtype)
     corpus = hashlib.sha256(np.ascontiguousarray(x[0]).tobytes()).hexdigest()[:12]
     numbers = zip(*(columns[name].tolist() for name in ("rig", "specimen", "recording")), strict=True)

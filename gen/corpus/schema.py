@@ -56,7 +56,7 @@ class Variable(NamedTuple):
     def column(self, records: Iterable[Any]) -> list[Any]:
         """Value of each record, NaN for None."""
         value = self.value or attrgetter(self.name)
-        return [np.nan if (found := value(one)) is None else found for one in records]
+        return [np.nan if (number := value(record)) is None else number for record in records]
 
 
 SCHEMA = (
@@ -288,7 +288,7 @@ def schema_problems(dataset: "xr.Dataset", further: tuple[Variable, ...] = ()) -
         return problems
     if dataset[SIGNAL].dims != SIGNAL_DIMS:
         problems.append(f"{SIGNAL} has dimensions {dataset[SIGNAL].dims}, not {SIGNAL_DIMS}.")
-    known = {variable.name: variable for variable in SCHEMA + further}
+    declared = {variable.name: variable for variable in SCHEMA + further}
     # further variables are allowed if they say what they are
     for name, array in dataset.variables.items():
         if name in (SIGNAL, "channel", "elapsed_time"):
@@ -297,7 +297,7 @@ def schema_problems(dataset: "xr.Dataset", further: tuple[Variable, ...] = ()) -
             problems.append(f"{name} has dimensions {array.dims}, not ('record',).")
         if array.attrs.get("role") not in ROLES or "long_name" not in array.attrs:
             problems.append(f"{name} needs a long_name and a role, one of {', '.join(ROLES)}.")
-        problems += _values_problems(known.get(str(name)), str(name), array)
+        problems += _values_problems(declared.get(str(name)), str(name), array)
     return problems or operating_problems({name: dataset[name].values for name in ("sample_rate", *_RATES)})
 
 
@@ -346,22 +346,24 @@ def operating_problems(columns: Mapping[str, NDArray[Any]]) -> list[str]:
     ]
 
 
-def _values_problems(known: Variable | None, name: str, array: "xr.Variable") -> list[str]:
+def _values_problems(declared: Variable | None, name: str, array: "xr.Variable") -> list[str]:
     """Type, unit and classes of a variable other than those of the format."""
     try:
         flags = class_names(array.attrs)
     except (ValueError, OverflowError):
         return [f"{name} has flag_values that are not whole numbers."]
     # a variable of somebody else may have any type and unit
-    if known is None:
+    if declared is None:
         return []
-    kinds = "OUT" if known.dtype == "str" else np.dtype(known.dtype).kind
+    kinds = "OUT" if declared.dtype == "str" else np.dtype(declared.dtype).kind
     if array.dtype.kind not in kinds:
-        return [f"{name} is of type {array.dtype}, not {'text' if kinds == 'OUT' else np.dtype(known.dtype)}."]
-    if array.attrs.get("units") != known.units:
-        return [f"{name} is in {array.attrs.get('units')!r}, not {known.units!r}."]
-    if flags != dict(known.flags):
-        return [f"{name} has the classes {listed_flags(flags) or 'none'}, not {listed_flags(known.flags) or 'none'}."]
-    if known.flags and not np.isin(array.values, [*known.flags]).all():
-        return [f"{name} has values other than {listed_flags(known.flags)}."]
+        return [f"{name} is of type {array.dtype}, not {'text' if kinds == 'OUT' else np.dtype(declared.dtype)}."]
+    if array.attrs.get("units") != declared.units:
+        return [f"{name} is in {array.attrs.get('units')!r}, not {declared.units!r}."]
+    if flags != dict(declared.flags):
+        return [
+            f"{name} has the classes {listed_flags(flags) or 'none'}, not {listed_flags(declared.flags) or 'none'}."
+        ]
+    if declared.flags and not np.isin(array.values, [*declared.flags]).all():
+        return [f"{name} has values other than {listed_flags(declared.flags)}."]
     return []

@@ -47,5 +47,5 @@ LIFE = (
 
 def with_values(**values: Callable[[Any], Any] | None) -> tuple[Variable, ...]:
     """Variables of the format, each with the function that a stage of the simulator has for its value."""
-    known = {variable.name: variable for variable in SCHEMA + SIMULATED}
-    return tuple(known[name]._replace(value=value) for name, value in values.items())
+    declared = {variable.name: variable for variable in SCHEMA + SIMULATED}
+    return tuple(declared[name]._replace(value=value) for name, value in values.items())

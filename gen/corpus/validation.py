@@ -61,7 +61,7 @@ def _records_problems(path: Path, manifest: Manifest) -> list[str]:
     first, problems = 0, list[str]()
     with stored_records([described], [file for file, _ in files], counts or None) as index:
         for file, signals in files:
-            with stored_records([file], [file]) as part:
+            with stored_records([file]) as part:
                 count = part.sizes["record"]
                 problems += _values_problems(file, part, index.isel(record=slice(first, first + count)), signals)
                 advice = "it was made from another recipe or with other sources; make it again"
@@ -87,10 +87,10 @@ def _values_problems(file: Path, records: xr.Dataset, index: xr.Dataset, signals
     problems = [
         f"{file}: {name} differs from {INDEX_NAME}; make or copy the corpus again." for name in sorted(different)
     ]
-    found = np.concatenate(verdicts)
-    lost = np.flatnonzero(found == VERDICTS.index("not_finite"))
+    verdict_of = np.concatenate(verdicts)
+    lost = np.flatnonzero(verdict_of == VERDICTS.index("not_finite"))
     problems += [f"{file}: record {record} of it has samples that are not finite." for record in lost]
-    if (counts := count_verdicts(found)) != signals:
+    if (counts := count_verdicts(verdict_of)) != signals:
         told = f"{counts_in_words(counts)} of its records cannot be used, {counts_in_words(signals)} are listed"
         problems.append(f"{file}: {told}.")
     return problems

@@ -257,7 +257,7 @@ def _kept(recipe: Recipe, folder: Path, part: int) -> Outcome | None:
     row = row_of(path)
     if row is None:
         return None
-    with stored_records([path], [path]) as records:
+    with stored_records([path]) as records:
         attributes, numbers = records.attrs, records["recording"].values
     # a part with the name of this one may be another one
     expected = recipe.records_of_part(part)

@@ -205,39 +205,39 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     options |= {"workers": team.workers or usual, "scheduler": team.scheduler}
     # after Ctrl-C: how many records are kept, and how to go on
     with if_interrupted(_kept(output, wanted)), progress("generating", "records") as report:
-        made = generate_corpus(recipe, output, **options, progress=report, notice=notice)
-        if made.path.is_dir():
-            describe(made.path)
-    for failure in made.failures:
+        generated = generate_corpus(recipe, output, **options, progress=report, notice=notice)
+        if generated.path.is_dir():
+            describe(generated.path)
+    for failure in generated.failures:
         notice(f"left out: {failure}")
-    useless = complaint(made.signals, made.records)
-    for sentence in filter(None, (useless, _coarse_steps(made.path))):
+    useless = complaint(generated.signals, generated.records)
+    for sentence in filter(None, (useless, _coarse_steps(generated.path))):
         notice(sentence)
     if as_json:
-        facts = {name: getattr(made, name) for name in ("records", "parts", "kept", "failures")}
+        facts = {name: getattr(generated, name) for name in ("records", "parts", "kept", "failures")}
         seconds = round(time.monotonic() - start, 3)
-        show.as_json({"corpus": made.path, **facts, "signals": made.signals, "seconds": seconds})
+        show.as_json({"corpus": generated.path, **facts, "signals": generated.signals, "seconds": seconds})
     else:
-        _show_generated(made, wanted)
+        _show_generated(generated, wanted)
     # a corpus that no analysis can use is a failure for scripts
     return DONE if useless is None else FOUND_WANTING
 
 
-def _show_generated(made: "Generated", wanted: "Recipe") -> None:
+def _show_generated(generated: "Generated", wanted: "Recipe") -> None:
     from gen.corpus import counts_in_words
 
-    kept = f", {made.kept} of them kept from before" if made.kept else ""
-    unusable = f"; {counts_in_words(made.signals)} cannot be used" if made.signals else ""
-    failed = f"; {show.count_text(len(made.failures), 'record')} left out" if made.failures else ""
-    size = f"{show.count_text(made.records, 'record')} in {show.count_text(made.parts, 'part')}"
-    show.text(f"{made.path}: {size}{kept}{failed}{unusable}.")
+    kept = f", {generated.kept} of them kept from before" if generated.kept else ""
+    unusable = f"; {counts_in_words(generated.signals)} cannot be used" if generated.signals else ""
+    failed = f"; {show.count_text(len(generated.failures), 'record')} left out" if generated.failures else ""
+    size = f"{show.count_text(generated.records, 'record')} in {show.count_text(generated.parts, 'part')}"
+    show.text(f"{generated.path}: {size}{kept}{failed}{unusable}.")
     # lives that ended before their last snapshot
-    missing = wanted.n_records - made.records - len(made.failures)
-    if wanted.life is not None and missing and made.parts == wanted.n_parts:
+    missing = wanted.n_records - generated.records - len(generated.failures)
+    if wanted.life is not None and missing and generated.parts == wanted.n_parts:
         show.text(f"The other {missing:,} of {wanted.n_records:,} snapshots would come after the end of a life.")
-    if made.parts < wanted.n_parts:
+    if generated.parts < wanted.n_parts:
         show.text(f"The recipe has {wanted.n_parts:,} parts; raceway copy joins these with the others.")
-    show.text(f"Next: raceway info {shlex.quote(str(made.path))}")
+    show.text(f"Next: raceway info {shlex.quote(str(generated.path))}")
 
 
 def _coarse_steps(corpus: Path) -> str | None:

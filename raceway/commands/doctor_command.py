@@ -26,13 +26,13 @@ def doctor(as_json: bool) -> int:
       raceway doctor --json
     """
     facts = list(_findings())
-    problems = sum(one["state"] == "problem" for one in facts)
+    problems = sum(fact["state"] == "problem" for fact in facts)
     if as_json:
         show.as_json({"problems": problems, "findings": facts})
     else:
-        for one in facts:
-            advice = f"; {one['advice']}" if one["advice"] else ""
-            show.text(f"{one['state'].ljust(7)}  {one['subject']}: {one['value']}{advice}")
+        for row in facts:
+            advice = f"; {row['advice']}" if row["advice"] else ""
+            show.text(f"{row['state'].ljust(7)}  {row['subject']}: {row['value']}{advice}")
         wanting = f"{show.count_text(problems, 'problem')}."
         show.text("", wanting if problems else "Everything that Raceway needs is installed.")
     return FOUND_WANTING if problems else DONE

@@ -66,8 +66,8 @@ def features(
     from features.table.table_files import check_destination, write_table
 
     check_destination(output)
-    one, *more = channel or (None,)
-    table = table_of(corpus, speed, team, Analysis(channel if more else one, band, groups))
+    first, *more = channel or (None,)
+    table = table_of(corpus, speed, team, Analysis(channel if more else first, band, groups))
     write_table(table, output)
     records, columns = table.sizes["record"], table.sizes["feature"]
     missing = table.attrs["records_with_missing_features"]
@@ -87,5 +87,5 @@ def _list_features(analysis: Analysis, as_json: bool) -> None:
     if as_json:
         show.as_json({"features": [feature._asdict() for feature in defined]})
         return
-    rows = ((one.group, one.name, one.unit, one.range, one.meaning) for one in defined)
+    rows = ((feature.group, feature.name, feature.unit, feature.range, feature.meaning) for feature in defined)
     show.columns([("group", "feature", "unit", "range", "meaning"), *rows])

@@ -185,23 +185,23 @@ def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
 
     tested = durations_of(table)
     trained = suited(model, tested).durations
-    known = ((model.shorter.durations,) if model.shorter else ()) + (model.durations,)
+    spans = ((model.shorter.durations,) if model.shorter else ()) + (model.durations,)
     if tested and trained and not trained[0] / SAME_DURATION < tested[0] <= tested[1] < trained[1] * SAME_DURATION:
         notice(
-            f"warning: the records last {_span(tested)} s, and those that {name} was trained on {' or '.join(map(_span, known))} s; lines "
+            f"warning: the records last {_span(tested)} s, and those that {name} was trained on {' or '.join(map(_span, spans))} s; lines "
             "rise higher above the floor in longer records. Use records of such a duration."
         )
 
 
 def _span(durations: tuple[float, ...]) -> str:
-    return " to ".join(dict.fromkeys(f"{one:.3g}" for one in durations))
+    return " to ".join(dict.fromkeys(f"{duration:.3g}" for duration in durations))
 
 
 def _show_scores(scores: "Scores") -> None:
     whole = scores.by_recording
     compared = [scores] if whole is None or whole.records == scores.records else [scores, whole]
     header = ("", "by record", "by recording")[: 1 + len(compared)]
-    show.table(header, zip(FIGURES, *(_figures(one) for one in compared), strict=True))
+    show.table(header, zip(FIGURES, *(_figures(scored) for scored in compared), strict=True))
     show.text("")
     show.table(
         ("true \\ predicted", *scores.model_classes),

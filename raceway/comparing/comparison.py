@@ -151,14 +151,16 @@ def contrast(synthetic: Windows, real: tuple[Windows, ...], common: CommonForm) 
 
 
 def _classes(synthetic: Windows, real: tuple[Windows, ...]) -> list[str]:
-    made = np.bincount(synthetic.fault, minlength=len(FAULTS))
+    simulated = np.bincount(synthetic.fault, minlength=len(FAULTS))
     recorded = np.stack([np.bincount(w.fault, minlength=len(FAULTS)) for w in real])
-    if not (recorded.sum(axis=0) * made).any():
-        here, there = (", ".join(FAULTS[c] for c in np.flatnonzero(n)) or "none" for n in (made, recorded.sum(axis=0)))
+    if not (recorded.sum(axis=0) * simulated).any():
+        here, there = (
+            ", ".join(FAULTS[c] for c in np.flatnonzero(n)) or "none" for n in (simulated, recorded.sum(axis=0))
+        )
         message = f"{synthetic.folder}: has no class that the real corpora have: {here} here, {there} there; nothing can be compared."
         raise CorpusError(message)
     # an AUC of a few windows tells nothing
-    enough = (made >= FEWEST) & (recorded >= FEWEST).any(axis=0)
+    enough = (simulated >= FEWEST) & (recorded >= FEWEST).any(axis=0)
     if not enough.any():
         message = (
             f"{synthetic.folder}: no class has {FEWEST} usable windows both here and in a real corpus; give larger "

@@ -81,6 +81,8 @@ def _part(comparison: Comparison, fault: str, letters: Mapping[str, str]) -> dic
 
 
 def _shown(windows: Windows, fault: str, title: str, comparison: Comparison) -> DrawnRecord:
-    record, signal, known = typical_window(windows, fault, TYPICAL, comparison.common)
-    orders = Orders(*(np.asarray(known[name]) for name in Orders._fields))
-    return DrawnRecord(f"{title}, record {record}", signal, known["sample_rate"], known["shaft_rate"], orders, fault)
+    record, signal, operation = typical_window(windows, fault, TYPICAL, comparison.common)
+    orders = Orders(*(np.asarray(operation[name]) for name in Orders._fields))
+    return DrawnRecord(
+        f"{title}, record {record}", signal, operation["sample_rate"], operation["shaft_rate"], orders, fault
+    )

@@ -108,14 +108,14 @@ def measured_windows(folder: Path, name: str, common: CommonForm, most: int) -> 
         labels = DataFrame({key: corpus[key].values for key in names})
         # a line is looked up at a rate and at orders that are known
         needed = labels[["shaft_rate", *Orders._fields]]
-        known = ((needed > 0) & (needed < np.inf)).all(axis=1)
-        if not known.any():
+        complete = ((needed > 0) & (needed < np.inf)).all(axis=1)
+        if not complete.any():
             message = (
                 f"{folder}: no record has a shaft rate and fault orders above 0, which are needed to find its lines."
             )
             raise CorpusError(message)
         labelled = labels["fault"] != UNKNOWN_CODE
-        chosen = _chosen(labels[known & labelled], corpus.sizes["elapsed_time"], common.window, most)
+        chosen = _chosen(labels[complete & labelled], corpus.sizes["elapsed_time"], common.window, most)
         values = np.full((len(chosen), len(NAMES)), np.nan)
         # records of one class and sample rate at a time, so that memory does not grow with the corpus
         groups: Any = chosen.groupby(["fault", "sample_rate"]).indices
@@ -182,8 +182,8 @@ def typical_window(
     record, start = windows.record[place : place + 1], windows.start[place : place + 1]
     with open_corpus(windows.folder, check="size") as corpus:
         of_record = corpus.isel(record=int(record[0]))
-        known = {key: float(of_record[key]) for key in ("sample_rate", "shaft_rate", *Orders._fields)}
-        fs = known["sample_rate"]
+        operation = {key: float(of_record[key]) for key in ("sample_rate", "shaft_rate", *Orders._fields)}
+        fs = operation["sample_rate"]
         x = read_windows(corpus, record, start, window_length(common, fs))
     limited = limit_band(x, fs, common.rate, common.top)[0]
-    return int(record[0]), limited, known | {"sample_rate": limited.size * fs / x.shape[-1]}
+    return int(record[0]), limited, operation | {"sample_rate": limited.size * fs / x.shape[-1]}

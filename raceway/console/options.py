@@ -80,8 +80,8 @@ def gathered(name: str, kind: Any, *options: Decorator) -> Decorator:
         @wraps(command)
         def gather(**values: Any) -> Any:
             # what belongs together stays together in the command
-            one = kind(**{field: values.pop(field) for field in kind._fields if field in values})
-            return command(**{name: one}, **values)
+            values_of_kind = kind(**{field: values.pop(field) for field in kind._fields if field in values})
+            return command(**{name: values_of_kind}, **values)
 
         decorated = gather
         for option in reversed(options):
@@ -152,10 +152,10 @@ def names(_context: click.Context, _option: click.Parameter, text: str | None) -
     """Names separated by commas."""
     if text is None:
         return None
-    found = tuple(name.strip() for name in text.split(","))
-    if not all(found):
+    words = tuple(name.strip() for name in text.split(","))
+    if not all(words):
         raise click.BadParameter(f"{text!r} has an empty name; separate names by one comma")
-    return found
+    return words
 
 
 channels_option: Decorator = click.option(

@@ -89,10 +89,12 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
     # the index has the labels of all parts; without it, each part has its own
     files = [directory / INDEX_NAME] if rows and manifest.complete else parts
     with open_records(files, parts, [row.records for row in rows] or None) as records:
-        known = per_record(records)
-        measured = {name: stored_unit(records[name].attrs) for name in known if records[name].attrs["role"] == "label"}
+        variables = per_record(records)
+        measured = {
+            name: stored_unit(records[name].attrs) for name in variables if records[name].attrs["role"] == "label"
+        }
         sizes = {name: unit for name, unit in measured.items() if unit in READABLE}
-        wanted = [*_SHOWN, *sizes, *(name for name in _IF_PRESENT if name in known)]
+        wanted = [*_SHOWN, *sizes, *(name for name in _IF_PRESENT if name in variables)]
         for name in wanted:
             if name not in records.variables:
                 raise CorpusError(f"{files[0]}: has no variable {name}; make or copy the corpus again.")
@@ -143,7 +145,7 @@ def _severities(labels: Columns, names: Iterable[str]) -> dict[str, dict[str, li
         fault: {name: ends for name, values in columns.items() if (ends := _range(values[values != 0])) is not None}
         for fault, columns in by_class(labels, names).items()
     }
-    return {fault: known for fault, known in ranges.items() if known}
+    return {fault: extents for fault, extents in ranges.items() if extents}
 
 
 def _range(values: NDArray[Any]) -> list[float] | None:

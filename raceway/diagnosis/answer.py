@@ -66,7 +66,7 @@ class Judged(NamedTuple):
 
 
 def diagnose_recording(
-    recording: Recorded, given: Given, model: Model, *, healthy: Sequence[Recorded] = ()
+    recording: Recorded, machine: Given, model: Model, *, healthy: Sequence[Recorded] = ()
 ) -> Diagnosis:
     """Diagnose one recording.
 
@@ -92,19 +92,19 @@ def diagnose_recording(
     ):
         raise CorpusError(f"{model.name}: the model takes features that this version does not make; train it again.")
     # a signal that cannot tell anything ends here, with the reason
-    used, quality = _usable(recording, given)
+    used, quality = _usable(recording, machine)
     shown = (recording.used, *(each.used for each in healthy))
     if quality.useless:
-        return _with_levels(_useless(given, model, quality), shown)
-    references = [_reference(one, recording, used, given) for one in healthy]
-    spectra = mean_spectra(list(used.signals.values()), used.fs, given)
+        return _with_levels(_useless(machine, model, quality), shown)
+    references = [_reference(reference, recording, used, machine) for reference in healthy]
+    spectra = mean_spectra(list(used.signals.values()), used.fs, machine)
     # every speed and bearing that the lines allow, and those that they rather tell
-    pairs, elsewhere = find_pairs(spectra, given)
+    pairs, elsewhere = find_pairs(spectra, machine)
     # the classifier is asked at each of them
     judged = [_judge(used, pair, model, references) for pair in pairs]
     # strong lines of no part of this bearing: it may be another bearing
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
-    diagnosis = _conclude(used, given, judged, elsewhere, strange, compared=bool(healthy))
+    diagnosis = _conclude(used, machine, judged, elsewhere, strange, compared=bool(healthy))
     return _with_levels(replace(diagnosis, warnings=(*quality.warnings, *diagnosis.warnings)), shown)
 
 
@@ -117,7 +117,7 @@ def _with_levels(diagnosis: Diagnosis, recordings: Sequence[Recorded]) -> Diagno
     return replace(diagnosis, levels=levels)
 
 
-def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
+def _usable(recording: Recorded, machine: Given) -> tuple[Recorded, Quality]:
     """At most the first 60 s of the channels that tell something, and warnings; or why no channel tells anything."""
     wrong = sum(int(np.count_nonzero(~np.isfinite(signal))) for signal in recording.signals.values())
     if wrong:
@@ -125,7 +125,7 @@ def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
         raise CorpusError(f"{recording.name}: {wrong:,} of {total:,} samples are not finite numbers; export it again.")
     signals = recording.used.signals
     # the middle of the given speeds and the first bearing are enough to tell a useless signal
-    rate, orders = float(np.sqrt(np.prod(given.rates))), next(iter(given.bearings.values()))
+    rate, orders = float(np.sqrt(np.prod(machine.rates))), next(iter(machine.bearings.values()))
     checked = {name: quality_of(signal, recording.fs, rate, orders) for name, signal in signals.items()}
     kept = {name: signals[name] for name, quality in checked.items() if not quality.useless}
     if not kept:
@@ -136,21 +136,22 @@ def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
     warnings += [f"Channel {name} is left out, since {checked[name].useless}." for name in checked.keys() - kept.keys()]
     several = len(signals) > 1
     for name in kept:
-        warnings += [f"Channel {name}: {one}" if several else one for one in checked[name].warnings]
+        warnings += [f"Channel {name}: {warning}" if several else warning for warning in checked[name].warnings]
     return recording._replace(signals=kept), Quality("", "", tuple(warnings))
 
 
-def _reference(healthy: Recorded, recording: Recorded, used: Recorded, given: Given) -> Recorded:
+def _reference(healthy: Recorded, recording: Recorded, used: Recorded, machine: Given) -> Recorded:
     """What is used of a healthy recording, which must have the channels of the recording, and tell something in those that are used."""
     if not set(recording.signals) <= set(healthy.signals):
         their, own = (
-            listed([name or "one without a name" for name in one.signals], "and") for one in (healthy, recording)
+            listed([name or "one without a name" for name in recorded.signals], "and")
+            for recorded in (healthy, recording)
         )
         raise CorpusError(
             f"{healthy.name}: has other channels ({their}) than the recording ({own}), and cannot be used as the healthy recording; "
             "choose channels that both have."
         )
-    reference, quality = _usable(healthy, given)
+    reference, quality = _usable(healthy, machine)
     if quality.useless or not set(used.signals) <= set(reference.signals):
         why = quality.useless or " ".join(quality.warnings)
         raise CorpusError(
@@ -159,16 +160,16 @@ def _reference(healthy: Recorded, recording: Recorded, used: Recorded, given: Gi
     return reference
 
 
-def _useless(given: Given, model: Model, quality: Quality) -> Diagnosis:
-    name, orders = next(iter(given.bearings.items()))
+def _useless(machine: Given, model: Model, quality: Quality) -> Diagnosis:
+    name, orders = next(iter(machine.bearings.items()))
     return Diagnosis(
         verdict=UNSURE,
         probabilities=dict.fromkeys(model.classes, 1 / len(model.classes)),
         threshold=np.nan,
-        given=given,
+        given=machine,
         bearing=name,
         orders=orders,
-        shaft_rate=given.rates[0],
+        shaft_rate=machine.rates[0],
         evidence=(),
         sentence=f"Unsure: {quality.useless}; {quality.advice}.",
         advice=(f"{quality.advice[0].upper()}{quality.advice[1:]}.",),
@@ -218,7 +219,7 @@ def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Mode
 
 def _conclude(
     used: Recorded,
-    given: Given,
+    machine: Given,
     judged: list[Judged],
     elsewhere: tuple[Pair, ...],
     strange: float | None,
@@ -247,7 +248,7 @@ def _conclude(
         answer = answer_in_words(verdict, first.probabilities, first.lines)
         advice = [WATCH] if verdict == HEALTHY and first.lines else []
     # speeds and bearings that give the same answer are named beside the first
-    clauses = [answer, pair_in_words(first.pair, given, [each.pair for each in judged[1:] if not differing])]
+    clauses = [answer, pair_in_words(first.pair, machine, [each.pair for each in judged[1:] if not differing])]
     if len(used.signals) > 1:
         clauses.append(f"channels {listed([*used.signals], 'and')}, as axes of one housing")
     # a healthy verdict says how often such verdicts were wrong
@@ -265,15 +266,15 @@ def _conclude(
         verdict=verdict,
         probabilities=first.probabilities,
         threshold=first.threshold,
-        given=given,
+        given=machine,
         bearing=first.pair.bearing,
         orders=first.pair.orders,
         shaft_rate=first.pair.rate,
         evidence=tuple(first.lines),
         sentence=f"{'; '.join(clauses)}.",
         advice=tuple(advice),
-        warnings=speed_warning(first.pair, given),
-        explanations=tuple(one.pair for one in judged),
+        warnings=speed_warning(first.pair, machine),
+        explanations=tuple(answer.pair for answer in judged),
         elsewhere=elsewhere,
         windows=first.windows,
         missed=missed / of,

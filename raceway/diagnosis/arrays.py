@@ -49,13 +49,15 @@ def diagnose(
     """
     bearings = orders if isinstance(orders, Mapping) else {"the bearing": orders}
     nominal = {name: fault_orders(each, f"orders of {name}") for name, each in bearings.items()}
-    given = given_of(nominal, None if rpm is None else np.broadcast_to(rpm, 2).tolist())
-    low, high = given.rates
+    machine = given_of(nominal, None if rpm is None else np.broadcast_to(rpm, 2).tolist())
+    low, high = machine.rates
     if not (0 < fs < np.inf and 0 < low <= high < np.inf):
         raise ValueError(f"fs and rpm: {fs} and {rpm} are not positive numbers; give Hz, and revolutions per minute.")
-    known = model if isinstance(model, Model) else Model.load(model)
-    references = [_recorded(one, fs, f"healthy recording {number}") for number, one in enumerate(healthy, start=1)]
-    return diagnose_recording(_recorded(x, fs, "the recording"), given, known, healthy=references)
+    classifier = model if isinstance(model, Model) else Model.load(model)
+    references = [
+        _recorded(signals, fs, f"healthy recording {number}") for number, signals in enumerate(healthy, start=1)
+    ]
+    return diagnose_recording(_recorded(x, fs, "the recording"), machine, classifier, healthy=references)
 
 
 def _recorded(x: ArrayLike, fs: float, name: str) -> Recorded:

@@ -101,7 +101,7 @@ def diagnose(
     from gen.corpus import make_result_folder
     from raceway.importing.user_folder import read_as_stated, read_recording, readings_of, recordings_in, set_aside
 
-    known = _bearings(bearings, speeds)
+    candidates = _bearings(bearings, speeds)
     several = recording.is_dir()
     unusable: dict[Path, str] = {}
     paths = recordings_in(recording, healthy) if several else [recording]
@@ -111,11 +111,11 @@ def diagnose(
         raise click.UsageError(f"no recording can be used; the first of {len(paths)}: {next(iter(unusable.values()))}")
     # healthy recordings are read before the model, so that a wrong file is told at once
     compared = [(read_as_stated if several else read_recording)(path, reading) for path in healthy]
-    references = [one for one, *_ in compared]
-    doubts = _doubts(speeds) + tuple(note for *_, found in compared for note in found)
+    references = [recorded for recorded, *_ in compared]
+    doubts = _doubts(speeds) + tuple(note for *_, notes in compared for note in notes)
     for sentence in doubts:
         notice(f"warning: {sentence}")
-    given = _given(known, speeds)
+    machine = _given(candidates, speeds)
     from gen.support.garbage import keep_garbage
 
     # the libraries of the model hold much that is never freed, and collecting garbage among it takes time
@@ -126,13 +126,13 @@ def diagnose(
 
         loaded, source = open_model(model)
 
-    found = []
+    answers = []
     # one recording at a time, read when its turn comes
     for path, recorded, used, of_file in chain((first,), readings):
         stated = recorded.rpm if speeds is None else None
         if stated is not None:
             of_file = (*of_file, f"{path.name}: it states a speed of {stated:g} rpm, which is used.")
-        own = given if stated is None else _given(known, (stated, stated))
+        own = machine if stated is None else _given(candidates, (stated, stated))
         with set_aside(path, unusable if several else None), notice_compilation():
             diagnosis = diagnose_recording(recorded, own, loaded, healthy=references)
         if path in unusable:
@@ -148,21 +148,21 @@ def diagnose(
 
             if not page.parent.is_dir():  # of a folder of recordings
                 make_result_folder(page.parent)
-            facts = assumptions(recorded, known, diagnosis, used, healthy, source, notes)
+            facts = assumptions(recorded, candidates, diagnosis, used, healthy, source, notes)
             write_diagnosis(diagnosis, recorded, page, healthy=references, name=path.name, assumed=facts)
-        found.append(diagnosis_facts(diagnosis, recorded, path, source, page, notes))
+        answers.append(diagnosis_facts(diagnosis, recorded, path, source, page, notes))
     # files that could not be used stand in the table, too
-    rows = rows_of(found, unusable)
+    rows = rows_of(answers, unusable)
     if several and output is not None:
         write_index(rows, recording.resolve().name, output)
     if as_json:
         errors = [{"recording": path, "error": sentence} for path, sentence in unusable.items()]
-        show.as_json([*found, *errors] if several else found[0])
+        show.as_json([*answers, *errors] if several else answers[0])
         return
     if several:
         show_table(rows)
     else:
-        show.text(found[0]["sentence"], *(f"- {sentence}" for sentence in found[0]["advice"]))
+        show.text(answers[0]["sentence"], *(f"- {sentence}" for sentence in answers[0]["advice"]))
     if output is not None:
         show.text("", f"{output / INDEX if several else output}: pictures, evidence and what was assumed.")
 
@@ -171,8 +171,8 @@ def _doubts(speeds: tuple[float, float] | None) -> tuple[str, ...]:
     """Sentence on a speed that may be in Hz."""
     if speeds is None or speeds[1] >= ONE_TURN:
         return ()
-    given, meant = ("-".join(f"{factor * speed:g}" for speed in dict.fromkeys(speeds)) for factor in (1, 60))
-    return (f"--rpm {given} is less than one turn a second; if it is Hz, give --rpm {meant}.",)
+    typed, meant = ("-".join(f"{factor * speed:g}" for speed in dict.fromkeys(speeds)) for factor in (1, 60))
+    return (f"--rpm {typed} is less than one turn a second; if it is Hz, give --rpm {meant}.",)
 
 
 def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dict[str, "Bearing"]:

@@ -27,7 +27,7 @@ def diagnosis_facts(
         "bearing": diagnosis.bearing,
         "shaft_rpm": from_si(diagnosis.shaft_rate, "rpm"),
         "evidence": [line_facts(line) for line in diagnosis.evidence],
-        "levels": [one._asdict() for one in diagnosis.levels],
+        "levels": [level._asdict() for level in diagnosis.levels],
         "explanations": [_pair_facts(pair, as_given=as_given) for pair, as_given in pairs],
         "sentence": diagnosis.sentence,
         "advice": diagnosis.advice,

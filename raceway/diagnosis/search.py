@@ -112,15 +112,15 @@ class LevelSpectra(NamedTuple):
     windows: int
 
 
-def mean_spectra(channels: Sequence[FloatArray], fs: float, given: Given) -> LevelSpectra:
+def mean_spectra(channels: Sequence[FloatArray], fs: float, machine: Given) -> LevelSpectra:
     """Spectra of the lines of a recording, means over the windows of all its channels, each of shape (time,)."""
-    longest = max(LONGEST, TURNS / given.rates[0])
+    longest = max(LONGEST, TURNS / machine.rates[0])
     count = max(1, int(np.ceil(len(channels[0]) / fs / longest - 1e-9)))
     length = len(channels[0]) // count
-    highest = max(float(line_orders(_row(orders))[0].max()) for orders in given.bearings.values())
-    top = min(WIDER[1] * given.rates[1] * highest, DEFAULT_BAND.high, fs / 2)
+    highest = max(float(line_orders(_row(orders))[0].max()) for orders in machine.bearings.values())
+    top = min(WIDER[1] * machine.rates[1] * highest, DEFAULT_BAND.high, fs / 2)
     windows = np.concatenate([channel[: count * length].reshape(count, length) for channel in channels])
-    rates = np.full(len(windows), np.sqrt(np.prod(given.rates)))
+    rates = np.full(len(windows), np.sqrt(np.prod(machine.rates)))
     resolution, envelope, signal = level_spectra(centre(windows.astype(np.float32)), fs, rates, top)
     return LevelSpectra(envelope.mean(axis=0), signal.mean(axis=0), resolution, len(windows))
 
@@ -169,7 +169,7 @@ class _Grid(NamedTuple):
         )
 
 
-def find_pairs(spectra: LevelSpectra, given: Given) -> tuple[tuple[Pair, ...], tuple[Pair, ...]]:
+def find_pairs(spectra: LevelSpectra, machine: Given) -> tuple[tuple[Pair, ...], tuple[Pair, ...]]:
     """Pairs within those given that explain the lines of a recording, best first, and pairs elsewhere that explain what these do not.
 
     Those elsewhere explain a strong comb.
@@ -178,13 +178,13 @@ def find_pairs(spectra: LevelSpectra, given: Given) -> tuple[tuple[Pair, ...], t
     place if the shaft tells so too, and else beside it. Otherwise all pairs are named that come within 1.5 standard
     deviations of the best, up to four.
     """
-    grid = _grid(spectra, given)
-    (low, high), rates, evidence = given.rates, grid.rates, grid.evidence
-    within = (rates >= given.searched[0]) & (rates <= given.searched[1])
+    grid = _grid(spectra, machine)
+    (low, high), rates, evidence = machine.rates, grid.rates, grid.evidence
+    within = (rates >= machine.searched[0]) & (rates <= machine.searched[1])
     error = np.log(rates / low) if low == high else np.zeros(len(rates))
     # far from a label a speed needs better evidence
     pairs = grid.best(np.where(within, evidence - PENALTY * (error / LABEL_TOLERANCE) ** 2, -np.inf))
-    if given.known:
+    if machine.known:
         pairs = _corrected(grid, pairs[0], clear=len(pairs) == 1)
     names = list(grid.alike)
     own = max(evidence[names.index(pair.bearing), grid.near(pair.rate)].max() for pair in pairs)
@@ -214,13 +214,13 @@ def _corrected(grid: _Grid, best: Pair, *, clear: bool) -> list[Pair]:
     return [best] if fits else [at_label, best]
 
 
-def _grid(spectra: LevelSpectra, given: Given) -> _Grid:
-    low, high = given.rates
+def _grid(spectra: LevelSpectra, machine: Given) -> _Grid:
+    low, high = machine.rates
     least = min(low, max(WIDER[0] * low, SHORTEST[0] * ZERO_PADDING * spectra.resolution))
     rates = np.exp(np.arange(np.log(least), np.log(WIDER[1] * high), STEP))
-    alike = _alike(given.bearings)
-    searched = [_evidence(spectra, given.bearings[name], rates) for name in alike]
-    return _Grid(given, alike, rates, np.stack([combs for combs, _ in searched]), searched[0][1])
+    alike = _alike(machine.bearings)
+    searched = [_evidence(spectra, machine.bearings[name], rates) for name in alike]
+    return _Grid(machine, alike, rates, np.stack([combs for combs, _ in searched]), searched[0][1])
 
 
 def _evidence(spectra: LevelSpectra, orders: Orders, rates: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -49,11 +49,11 @@ class DiagnosisRow(NamedTuple):
         return quote(os.fsencode(self.page))
 
 
-def rows_of(found: Sequence[Mapping[str, Any]], unusable: Mapping[Path, str]) -> list[DiagnosisRow]:
+def rows_of(answers: Sequence[Mapping[str, Any]], unusable: Mapping[Path, str]) -> list[DiagnosisRow]:
     """Rows of the facts of each diagnosis, then of the files that cannot be used, each with a sentence that tells no folder."""
     sentences = {path.name: path.name + sentence.removeprefix(str(path)) for path, sentence in unusable.items()}
     unused = [DiagnosisRow(name, NOT_USED, sentence=sentence) for name, sentence in sentences.items()]
-    return [*map(_row, found), *unused]
+    return [*map(_row, answers), *unused]
 
 
 def _row(facts: Mapping[str, Any]) -> DiagnosisRow:

@@ -103,25 +103,25 @@ def missed_faults(seconds: float, *, compared: bool) -> tuple[int, int]:
     return row[2] if compared else row[1]
 
 
-def pair_in_words(pair: Pair, given: Given, others: Sequence[Pair]) -> str:
+def pair_in_words(pair: Pair, machine: Given, others: Sequence[Pair]) -> str:
     """Bearing, if several are given, and speed of the shaft with its source; then other pairs that fit the lines as well."""
-    fitting = f", and the lines fit {listed([_place(one) for one in others], 'and')} as well" if others else ""
-    return _pair(pair, given) + fitting
+    fitting = f", and the lines fit {listed([_place(other) for other in others], 'and')} as well" if others else ""
+    return _pair(pair, machine) + fitting
 
 
-def _pair(pair: Pair, given: Given) -> str:
-    bearing = "" if len(given.bearings) == 1 else f"bearing {_bearing(pair)} as found, "
-    low, high = (f"{from_si(rate, 'rpm'):,.0f}" for rate in given.rates)
+def _pair(pair: Pair, machine: Given) -> str:
+    bearing = "" if len(machine.bearings) == 1 else f"bearing {_bearing(pair)} as found, "
+    low, high = (f"{from_si(rate, 'rpm'):,.0f}" for rate in machine.rates)
     if low != high:
         return f"{bearing}shaft {from_si(pair.rate, 'rpm'):,.0f} rpm as found between {low} and {high} rpm"
-    if pair.rate != given.rates[0]:
+    if pair.rate != machine.rates[0]:
         return f"{bearing}shaft {from_si(pair.rate, 'rpm'):,.0f} rpm as found, {low} rpm as labelled"
     return f"{bearing}shaft {low} rpm as labelled"
 
 
-def speed_warning(pair: Pair, given: Given) -> tuple[str, ...]:
+def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
     """Sentences on a speed at the end of the search, and on a label that does not fit the lines."""
-    (low, high), uncertainty, ends = given.rates, from_si(pair.uncertainty, "rpm"), given.searched
+    (low, high), uncertainty, ends = machine.rates, from_si(pair.uncertainty, "rpm"), machine.searched
     sentences = ()
     # a maximum at the end of a search may lie beyond it
     if pair.strength > STRONG_COMB and not ends[0] * (1 + AT_END) < pair.rate < ends[1] * (1 - AT_END):
@@ -151,7 +151,7 @@ def unexplained(pair: Pair, elsewhere: Sequence[Pair], strange: float | None) ->
             f"a line at {strange:.2f} orders and its harmonics stand out, and no part of {pair.bearing} has that order, so that the "
             "bearing or the speed may be another, or the lines come from another part of the machine"
         )
-    each = [f"{_place(one)} ({one.lines.upper()})" for one in elsewhere]
+    each = [f"{_place(other)} ({other.lines.upper()})" for other in elsewhere]
     return f"{_place(pair)} does not explain the strongest lines, but {listed(each, 'or')} would"
 
 

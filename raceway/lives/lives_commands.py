@@ -62,9 +62,9 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
     from raceway.lives.prognosis import SHARES, check_lives, score_lives
 
     # refused before the features are computed, which takes minutes
-    for one in (corpus, tested or corpus):
-        with open_corpus(one) as opened:
-            check_lives(opened, str(one))
+    for lives in (corpus, tested or corpus):
+        with open_corpus(lives) as opened:
+            check_lives(opened, str(lives))
     table, other = table_of(corpus, team=team), tested and table_of(tested, team=team)
     scores = score_lives(table, other, folds=folds)
     if as_json:

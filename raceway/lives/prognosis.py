@@ -264,8 +264,8 @@ def _places(lives: Lives, share: float) -> NDArray[np.intp]:
     usable = lives.failed & (lives.rul > 0)
     nearest = [
         own[np.argmin(away[own])]
-        for one in np.unique(lives.bearing[usable])
-        if len(own := np.flatnonzero(usable & (lives.bearing == one)))
+        for bearing in np.unique(lives.bearing[usable])
+        if len(own := np.flatnonzero(usable & (lives.bearing == bearing)))
     ]
     return np.array(nearest, dtype=np.intp)
 

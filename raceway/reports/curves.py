@@ -21,11 +21,18 @@ DASHED = (0, (4, 3))
 def draw_detection(bins: Sequence[WidthBin], false_alarms: float | None) -> Figure:
     """Share of detected faults by their width, with intervals; and the share of false alarms."""
     figure, axes = _panel()
-    width = [from_si(one.width, "mm") for one in bins]
-    axes.vlines(width, [one.low for one in bins], [one.high for one in bins], color=BLUE, linewidth=1.2)
+    width = [from_si(width_bin.width, "mm") for width_bin in bins]
+    axes.vlines(
+        width, [width_bin.low for width_bin in bins], [width_bin.high for width_bin in bins], color=BLUE, linewidth=1.2
+    )
     # the area of a dot is the number of its records
     axes.scatter(
-        width, [one.detected for one in bins], _areas([one.records for one in bins]), INK, linewidth=0, zorder=3
+        width,
+        [width_bin.detected for width_bin in bins],
+        _areas([width_bin.records for width_bin in bins]),
+        INK,
+        linewidth=0,
+        zorder=3,
     )
     if false_alarms is not None:
         _draw_level(axes, "false alarms", false_alarms, VERMILION)
@@ -54,10 +61,13 @@ def draw_roc(roc: Roc) -> Figure:
 def draw_reliability(scores: Scores) -> Figure:
     """Accuracy against largest probability in bins."""
     figure, axes = _panel()
-    probability, accuracy = ([getattr(one, name) for one in scores.reliability] for name in ("probability", "accuracy"))
+    probability, accuracy = (
+        [getattr(probability_bin, name) for probability_bin in scores.reliability]
+        for name in ("probability", "accuracy")
+    )
     axes.plot([0, 1], [0, 1], color=FAINT, linestyle=DASHED, linewidth=0.9)
     axes.plot(probability, accuracy, color=BLUE, linewidth=0.8)
-    areas = _areas([one.records for one in scores.reliability])
+    areas = _areas([probability_bin.records for probability_bin in scores.reliability])
     axes.scatter(probability, accuracy, areas, BLUE, linewidth=0, zorder=3, clip_on=False)
     axes.set(xlabel="largest probability", ylabel="accuracy", xlim=(-0.03, 1.04), ylim=(-0.03, 1.05))
     return figure

@@ -65,15 +65,15 @@ def _example(corpus: xr.Dataset, code: int) -> tuple[DrawnRecord | None, str]:
 
 def _conditions(record: xr.Dataset) -> str:
     """Specimen, speed, load if known, and width of the spall if there is one."""
-    known = [
+    facts = [
         f"Specimen {int(record['specimen'])} of rig {int(record['rig'])}",
         f"{from_si(float(record['shaft_rate']), 'rpm'):.0f} rpm",
     ]
     if np.isfinite(record["load"]):
-        known.append(f"{float(record['load']):.0f} N")
+        facts.append(f"{float(record['load']):.0f} N")
     if float(record["width"]) > 0:
-        known.append(f"fault {from_si(float(record['width']), 'mm'):.2g} mm wide")
-    return ", ".join(known)
+        facts.append(f"fault {from_si(float(record['width']), 'mm'):.2g} mm wide")
+    return ", ".join(facts)
 
 
 def _line_level(shown: DrawnRecord) -> float:

@@ -137,7 +137,10 @@ def write_explorer(
         check_band(band, float(opened["sample_rate"][0]), corpus_name(corpus))
         # a choice of a large corpus is spread evenly, so that all its machines are in it
         places = np.linspace(0, count - 1, min(count, records)).round().astype(int)
-        known = [*_labels(opened, places), *_features(table, opened, places, str(opened["channel"].values[number]))]
+        quantities = [
+            *_labels(opened, places),
+            *_features(table, opened, places, str(opened["channel"].values[number])),
+        ]
         # blocks go to workers without the labels that only the page needs
         kept = opened[[SIGNAL, *(name for name in READ if name in opened)]].isel(record=places, channel=[number])
         kept = kept.assign({name: kept[name].load() for name in kept.data_vars if name != SIGNAL})
@@ -145,13 +148,13 @@ def write_explorer(
         reduced, report = list[str](), counter(progress, len(places))
         task = partial(_reduced_block, band=band)
         # one block of records at a time, so that memory does not grow with their number
-        with closing(run(task, blocks, workers if scheduler is None else scheduler)) as made:
-            for size, text in made:
+        with closing(run(task, blocks, workers if scheduler is None else scheduler)) as packed:
+            for size, text in packed:
                 reduced.append(text)
                 report(size)
         sensor = str(opened["channel"].values[number]) if opened.sizes["channel"] > 1 else ""
         title = _text(opened.attrs.get("title", "untitled corpus"))
-        facts = {"band": [*band], "fs": float(opened["sample_rate"][0]), "axes": _axes(known)}
+        facts = {"band": [*band], "fs": float(opened["sample_rate"][0]), "axes": _axes(quantities)}
     folder = files("raceway.reports")
     script = "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
     write_page(
@@ -164,7 +167,7 @@ def write_explorer(
         script=script,
         # the page runs no script but this one, whatever texts a corpus holds
         digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
-        parts=_parts(facts, known, reduced),
+        parts=_parts(facts, quantities, reduced),
     )
     return len(places), count
 
@@ -225,8 +228,8 @@ def _reduced_block(block: xr.Dataset, band: Band) -> tuple[int, str]:
     """Number of records of a block, and their arrays as a text."""
     records = block.load()
     shown = [shown_of(records.isel(record=k), k, 0)._replace(band=band) for k in range(records.sizes["record"])]
-    arrays = [reduce_record(one) for one in shown]
-    return len(shown), _packed(b"".join(one[name].tobytes() for name in FIELDS for one in arrays))
+    arrays = [reduce_record(recording) for recording in shown]
+    return len(shown), _packed(b"".join(array[name].tobytes() for name in FIELDS for array in arrays))
 
 
 def _labels(corpus: xr.Dataset, places: np.ndarray) -> Iterator[Quantity]:
@@ -250,7 +253,10 @@ def _features(path: Path | str | None, corpus: xr.Dataset, places: np.ndarray, c
     if IDENTITY not in table or not np.array_equal(table[IDENTITY].values, corpus[IDENTITY].values):
         raise CorpusError(f"{path}: has other records than the corpus; compute it again with raceway features.")
     several = "channel" in table.coords
-    of = {str(one["channel"].item() if several else table.attrs["channel"]): one for one in channels_of(table)}
+    of = {
+        str(features["channel"].item() if several else table.attrs["channel"]): features
+        for features in channels_of(table)
+    }
     if channel not in of:
         raise CorpusError(f"{path}: has features of {', '.join(of)}, not of {channel}; choose one of them.")
     for feature in of[channel]["features"][places].transpose("feature", "record"):
@@ -298,9 +304,9 @@ def _text(value: object) -> str:
     return visible(str(value))[:LONGEST_TEXT]
 
 
-def _axes(known: Sequence[Quantity]) -> list[str]:
+def _axes(quantities: Sequence[Quantity]) -> list[str]:
     """Names of the quantities on the axes at first: two combs of fault lines, or an operating condition and a severity."""
-    varying = {each.about["name"]: each.about for each in known if len(set(each.values)) > 1}
+    varying = {each.about["name"]: each.about for each in quantities if len(set(each.values)) > 1}
     combs = [name for name in COMBS.values() if name in varying]
     operating, labels = (
         [name for name, about in varying.items() if about["role"] == role and about["unit"]]
@@ -310,7 +316,7 @@ def _axes(known: Sequence[Quantity]) -> list[str]:
     return combs[:2] if len(combs) > 1 else [across, [*labels, *others, "record"][0]]
 
 
-def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence[str]) -> dict[str, str]:
+def _parts(facts: Mapping[str, Any], quantities: Sequence[Quantity], blocks: Sequence[str]) -> dict[str, str]:
     """Deflated parts of the page by their names, in the order in which they are needed."""
     about = {
         **facts,
@@ -330,10 +336,10 @@ def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence
             }
             for row in map(fault_class, FAULT_NAMES.values())
         },
-        "quantities": [each.about for each in known],
+        "quantities": [each.about for each in quantities],
     }
     # each part is inflated by the page when it is needed
-    parts = {"about": about} | {f"quantity{n}": one.values for n, one in enumerate(known)}
+    parts = {"about": about} | {f"quantity{n}": quantity.values for n, quantity in enumerate(quantities)}
     parts = {name: _packed(json.dumps(part, allow_nan=False).encode()) for name, part in parts.items()}
     return parts | {f"block{n}": text for n, text in enumerate(blocks)}
 

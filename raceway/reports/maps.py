@@ -94,16 +94,16 @@ def level_over_median(amplitude: FloatArray) -> FloatArray:
 
 
 def draw_coherence(
-    axes: Axes, found: Coherence, squared: FloatArray, first: int, per_cyclic: float, per_spectral: float
+    axes: Axes, coherence: Coherence, squared: FloatArray, first: int, per_cyclic: float, per_spectral: float
 ) -> None:
     """Draw squared coherence of shape (spectral, cyclic) from the cyclic frequency of a number on; what noise reaches stays white.
 
     The axes are divided by the last two numbers. Of the fine grid, each column shows its highest value.
     """
-    lowest = found.threshold(ONE_FALSE_ALARM / squared.size)
-    starts = np.arange(first, len(found.cyclic), max(1, len(found.cyclic) // COLUMNS))
+    lowest = coherence.threshold(ONE_FALSE_ALARM / squared.size)
+    starts = np.arange(first, len(coherence.cyclic), max(1, len(coherence.cyclic) // COLUMNS))
     highest = np.maximum.reduceat(squared, starts, axis=1)
-    grid = found.cyclic[starts] / per_cyclic, found.spectral / per_spectral, highest
+    grid = coherence.cyclic[starts] / per_cyclic, coherence.spectral / per_spectral, highest
     draw_grid(axes, grid, (lowest, max(2 * lowest, float(highest.max()))), "squared coherence")
 
 

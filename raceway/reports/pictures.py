@@ -152,11 +152,11 @@ def draw_waveform(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = No
     """Draw the first revolutions of the shaft without the mean of the signal, and those of another record; the weaker one hides none."""
     duration, turned = shown.signal.size / shown.fs, shown.turns
     visible = int(np.searchsorted(turned, TURNS)) / shown.fs
-    for one, look in ((under, UNDER), (shown, OVER)):
-        if one is not None:
+    for record, look in ((under, UNDER), (shown, OVER)):
+        if record is not None:
             # the weaker of both is drawn above the stronger one
-            x = one.signal[: max(2, round(visible * one.fs))] - np.mean(one.signal)
-            axes.plot(*thin(np.arange(x.size) / one.fs, x), linewidth=0.6, zorder=2 + 1 / (1 + np.std(x)), **look)
+            x = record.signal[: max(2, round(visible * record.fs))] - np.mean(record.signal)
+            axes.plot(*thin(np.arange(x.size) / record.fs, x), linewidth=0.6, zorder=2 + 1 / (1 + np.std(x)), **look)
     axes.set(xlabel="time [s]", ylabel=f"acceleration [{shown.unit}]", xlim=(0, visible))
     mean = float(np.mean(shown.signal))
     removed = f"; mean of {mean:.3g} {shown.unit} removed" if abs(mean) > TOLD_MEAN * np.std(shown.signal) else ""
@@ -176,9 +176,9 @@ def thin(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def draw_density(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = None) -> None:
     """Power spectral density over that of another record, with the band of the envelope shaded."""
-    for one, look in ((under, UNDER), (shown, OVER)):
-        if one is not None:
-            frequencies, density = psd(one.signal[None], one.fs, SEGMENT)
+    for record, look in ((under, UNDER), (shown, OVER)):
+        if record is not None:
+            frequencies, density = psd(record.signal[None], record.fs, SEGMENT)
             # an axis of some decades, whatever a silent line has
             faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
             axes.plot(
@@ -193,9 +193,9 @@ def draw_density(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = Non
 def draw_envelope_spectrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = None) -> None:
     """Squared envelope spectrum over orders over that of another record, with the fault lines."""
     top = draw_cursors(axes, shown)
-    for one, look in ((under, UNDER), (shown, OVER)):
-        if one is not None:
-            order, spectrum = squared_envelope(one)
+    for record, look in ((under, UNDER), (shown, OVER)):
+        if record is not None:
+            order, spectrum = squared_envelope(record)
             axes.plot(order[order <= top], spectrum[order <= top], linewidth=0.8, **look)
     axes.set(ylabel="envelope² / mean", ylim=(0, None))
     low, high = shown.band

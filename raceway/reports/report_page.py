@@ -133,11 +133,13 @@ def _panels(scores: Scores) -> dict[str, bytes | None]:
 
 def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
     """Scores by baseline under a title each: of the cross-validation, and of the other corpora by record and recording."""
-    tables = {f"Unseen {NOVELTY[results.track]}": {name: one.grouped for name, one in results.baselines.items()}}
+    tables = {
+        f"Unseen {NOVELTY[results.track]}": {name: baseline.grouped for name, baseline in results.baselines.items()}
+    }
     for number in range(len(results.tests)):
         title = f"Other corpus {number + 1}"
-        tested = {name: one.tests[number] for name, one in results.baselines.items()}
-        whole = {name: one.by_recording for name, one in tested.items() if one.by_recording is not None}
+        tested = {name: baseline.tests[number] for name, baseline in results.baselines.items()}
+        whole = {name: scored.by_recording for name, scored in tested.items() if scored.by_recording is not None}
         tables |= {f"{title}, by record": tested, f"{title}, by recording": whole}
     return list(tables.items())
 

@@ -64,9 +64,9 @@ def draw_view(view: str, shown: DrawnRecord, under: DrawnRecord | None = None) -
 def _orders(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None:
     """Amplitude spectrum of the signal over orders."""
     top = draw_cursors(axes, shown)
-    for one, look in ((under, UNDER), (shown, OVER)):
-        if one is not None:
-            orders, spectrum = order_spectrum(_over_angle(one), PER_TURN)
+    for record, look in ((under, UNDER), (shown, OVER)):
+        if record is not None:
+            orders, spectrum = order_spectrum(_over_angle(record), PER_TURN)
             drawn = (orders > 0) & (orders <= top)
             axes.semilogy(orders[drawn], np.maximum(spectrum[0, drawn], FAINTEST), linewidth=0.7, **look)
     axes.set(ylabel=f"amplitude [{shown.unit}]")
@@ -94,12 +94,12 @@ def envelope_map(shown: DrawnRecord, top: float) -> tuple[FloatArray, FloatArray
         If the record has fewer than two turns.
     """
     y = envelope_over_angle(shown)
-    found = order_map(y, PER_TURN, min(MAP_TURNS, max(2, y.shape[1] // PER_TURN // 4)))
-    drawn = (found.orders > 0) & (found.orders <= top)
-    amplitude = found.amplitude[0][:, drawn]
+    orders = order_map(y, PER_TURN, min(MAP_TURNS, max(2, y.shape[1] // PER_TURN // 4)))
+    drawn = (orders.orders > 0) & (orders.orders <= top)
+    amplitude = orders.amplitude[0][:, drawn]
     first = np.ceil(shown.turns[0])
-    time = np.interp(first + found.turns, shown.turns, np.arange(shown.signal.size) / shown.fs)
-    return found.orders[drawn], time, level_over_median(amplitude)
+    time = np.interp(first + orders.turns, shown.turns, np.arange(shown.signal.size) / shown.fs)
+    return orders.orders[drawn], time, level_over_median(amplitude)
 
 
 def _kurtogram(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
@@ -115,9 +115,9 @@ def _coherence(axes: Axes, shown: DrawnRecord, _: DrawnRecord | None) -> None:
     if shown.angle is not None:  # at equal angles, the shaft turns once in a unit of time
         per_turn = round(fs / rate)
         x, fs, rate = _over_angle(shown, per_turn), float(per_turn), 1.0
-    found = spectral_coherence(x, fs, top * rate, resolution=COHERENCE_BAND * rate / shown.shaft_rate)
-    first = int(0.5 * rate / found.cyclic[1])  # near 0 any signal is coherent with itself
-    draw_coherence(axes, found, found.squared[0], first, rate, 1e3 * rate / shown.shaft_rate)
+    coherence = spectral_coherence(x, fs, top * rate, resolution=COHERENCE_BAND * rate / shown.shaft_rate)
+    first = int(0.5 * rate / coherence.cyclic[1])  # near 0 any signal is coherent with itself
+    draw_coherence(axes, coherence, coherence.squared[0], first, rate, 1e3 * rate / shown.shaft_rate)
     axes.set(ylabel="frequency [kHz]" if shown.angle is None else "frequency at the mean speed [kHz]")
     axes.set_title("Spectral coherence; noise reaches the lowest grey once in a hundred pictures", pad=30)
 
@@ -135,12 +135,12 @@ def _cepstrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None
         axes, own, {name: place for name, place in others.items() if place < CEPSTRUM_TURNS}, colour, CEPSTRUM_TURNS
     )
     # over the angle if the speed varies, so that peaks stay narrow
-    for one, look in ((under, UNDER), (shown, OVER)):
-        if one is not None:
+    for record, look in ((under, UNDER), (shown, OVER)):
+        if record is not None:
             y, rate = (
-                (_over_angle(one), float(PER_TURN))
-                if one.angle is not None
-                else (one.signal[None], one.fs / one.shaft_rate)
+                (_over_angle(record), float(PER_TURN))
+                if record.angle is not None
+                else (record.signal[None], record.fs / record.shaft_rate)
             )
             values = cepstrum(y)[0]
             at = np.arange(values.size) / rate

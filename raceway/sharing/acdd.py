@@ -31,18 +31,18 @@ def attributes_or_none(manifest: Manifest) -> dict[str, str | None]:
     """All attributes that a corpus can have; they follow from its ``publication``, its counts and the hash of its parts."""
     publication = publication_of(manifest)
     recorded = _RECORDED if manifest.recipe is None else _BOTH
-    platform, instrument, made = _SIMULATED if manifest.importer is None else recorded
+    platform, instrument, origin = _SIMULATED if manifest.importer is None else recorded
     creators = publication.creators
     institutional = all(creator.name == publication.institution for creator in creators)
     publisher = publication.institution or ", ".join(creator.name for creator in creators)
     return {
         # what follows from the corpus itself
-        "summary": f"{manifest.records} labelled records of bearing vibration, {made}, with fault class, speed, load and nominal fault "
+        "summary": f"{manifest.records} labelled records of bearing vibration, {origin}, with fault class, speed, load and nominal fault "
         f"frequencies of each.",
-        "keywords": f"{_KEYWORDS}, {made}",
+        "keywords": f"{_KEYWORDS}, {origin}",
         "id": publication.doi or content_id(manifest),
         "naming_authority": "https://doi.org" if publication.doi else "urn:uuid",
-        "processing_level": f"acceleration in m s-2, {made}",
+        "processing_level": f"acceleration in m s-2, {origin}",
         "product_version": _product_version(manifest),
         "platform": platform,
         "instrument": instrument,

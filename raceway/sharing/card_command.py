@@ -41,7 +41,7 @@ def _creators(_context: click.Context, _option: click.Parameter, texts: tuple[st
 @click.option("--date", metavar="YYYY-MM-DD", help="Day on which the corpus was made.")
 @click.option("--scores", type=A_PATH, metavar="FILE", help="results.json of raceway benchmark on this corpus.")
 @json_option
-def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None:
+def card(corpus: Path, scores: Path | None, as_json: bool, **facts: Any) -> None:
     """Complete the data card of DIR for publication.
 
     The card is DIR/README.md; that of a single file NAME.nc is NAME.card/README.md. It is made from the files of the corpus, with a
@@ -62,8 +62,8 @@ def card(corpus: Path, scores: Path | None, as_json: bool, **given: Any) -> None
     from raceway.sharing.card_pictures import complete_card
 
     # facts that are given replace those of the corpus
-    given = {name: value for name, value in given.items() if value}
-    publish(corpus, read_manifest(corpus).publication | given)
+    facts = {name: value for name, value in facts.items() if value}
+    publish(corpus, read_manifest(corpus).publication | facts)
     publication = read_manifest(corpus).publication
     added = complete_card(corpus, scores)
     written = card_folder(corpus) / "README.md"

@@ -57,19 +57,19 @@ def complete_card(path: Path, scores: Path | None = None) -> CardAdditions:
     check_card(path)
     with open_corpus(path) as corpus:
         # a wrong file of scores is refused before anything is drawn
-        given = None if scores is None else read_scores(scores, corpus)
+        rows = None if scores is None else read_scores(scores, corpus)
         manifest, folder = read_manifest(path), card_folder(path)
         with writing(folder):
             folder.mkdir(exist_ok=True)
         with lock(folder):
             remove_temporary_files(folder)
             # what an earlier call added stays, unless it is given again
-            known = read_additions(folder, manifest)
+            additions = read_additions(folder, manifest)
             write_additions(
-                folder, known
+                folder, additions
             )  # first, since it tells the folder of a card from one that holds something else
             pictures = _write_pictures(folder / PICTURES, corpus)
-            added = CardAdditions(parts=known.parts, pictures=pictures, scores=given or known.scores)
+            added = CardAdditions(parts=additions.parts, pictures=pictures, scores=rows or additions.scores)
             write_additions(folder, added)
             describe(path)
     return added

@@ -71,18 +71,20 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
     from raceway.sharing import copy as copy_corpora
 
     with progress("copying", "records") as report:
-        made = copy_corpora(sources, output, to=to, **choice, progress=report)
-    if made.filled:
+        copied = copy_corpora(sources, output, to=to, **choice, progress=report)
+    if copied.filled:
         notice(
-            f"variables that one of the sources lacks are marked as not known in its records: {', '.join(made.filled)}."
+            f"variables that one of the sources lacks are marked as not known in its records: {', '.join(copied.filled)}."
         )
     if as_json:
-        show.as_json(made._asdict())
+        show.as_json(copied._asdict())
         return
-    size = f"{show.count_text(made.files, 'file')}, {show.size(made.bytes)}"
-    channels_made = f"{show.count_text(len(made.channels), 'channel')} ({', '.join(made.channels)})"
-    form = "" if made.form in ("folder", "nc") else f" as {made.form}"
-    show.text(f"{output}: {made.records:,} of {show.count_text(made.of, 'record')}, {channels_made}{form} in {size}.")
+    size = f"{show.count_text(copied.files, 'file')}, {show.size(copied.bytes)}"
+    channels_made = f"{show.count_text(len(copied.channels), 'channel')} ({', '.join(copied.channels)})"
+    form = "" if copied.form in ("folder", "nc") else f" as {copied.form}"
+    show.text(
+        f"{output}: {copied.records:,} of {show.count_text(copied.of, 'record')}, {channels_made}{form} in {size}."
+    )
     quoted = shlex.quote(str(output))
     if not form:
         show.text(f"Next: raceway info {quoted}")

@@ -150,8 +150,8 @@ class Chosen:
                 every = [value or {} for value in values]
                 fields[name] = {
                     library: number
-                    for one in every
-                    for library, number in one.items()
+                    for versions in every
+                    for library, number in versions.items()
                     if all(other.get(library, number) == number for other in every)
                 }
         return fields
@@ -277,10 +277,10 @@ def _history(told: Mapping[str, str | None]) -> str:
 
 def _rename_channels(corpora: Sequence[xr.Dataset], rename: Mapping[str, str]) -> list[xr.Dataset]:
     """Corpora in which channels have new names; CorpusError if none has a channel of an old name, or two get the same name."""
-    known = list(dict.fromkeys(name for corpus in corpora for name in channel_names(corpus)))
-    unknown = next((name for name in rename if name not in known), None)
+    channels = list(dict.fromkeys(name for corpus in corpora for name in channel_names(corpus)))
+    unknown = next((name for name in rename if name not in channels), None)
     if unknown is not None:
-        raise CorpusError(f"rename: there is no channel {unknown!r}{nearest(unknown, known)}")
+        raise CorpusError(f"rename: there is no channel {unknown!r}{nearest(unknown, channels)}")
     renamed_corpora = []
     for corpus in corpora:
         names = [rename.get(name, name) for name in channel_names(corpus)]

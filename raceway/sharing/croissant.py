@@ -123,7 +123,7 @@ def _publication_facts(publication: Publication) -> dict[str, Any]:
     publisher = {"@type": "sc:Organization", "name": publication.institution}
     if publication.contact:
         publisher["email"] = publication.contact
-    given = {
+    stated = {
         "license": license_address(publication.license) if publication.license else None,
         "creator": creators,
         "publisher": publisher if publication.institution else None,
@@ -132,7 +132,7 @@ def _publication_facts(publication: Publication) -> dict[str, Any]:
         "dateCreated": publication.date,
         "datePublished": publication.date,
     }
-    return {name: value for name, value in given.items() if value}
+    return {name: value for name, value in stated.items() if value}
 
 
 def _files(path: Path) -> list[Path]:

@@ -22,19 +22,19 @@ Named = tuple[str, xr.Dataset]
 
 def check_fit(first: Named, other: Named, *, float32: bool) -> None:
     """CorpusError unless two corpora have the same channels, sample rate and length, and the same storage if it is to be kept."""
-    (name, one), (other_name, two) = first, other
+    (name, wanted), (other_name, tested) = first, other
     own, missing = (
         [channel for channel in channel_names(corpus) if channel not in channel_names(against)]
-        for corpus, against in ((two, one), (one, two))
+        for corpus, against in ((tested, wanted), (wanted, tested))
     )
     # an example with channels of these corpora, which may be the answer
     if own or missing:
-        example = f"{(own or channel_names(two))[0]}={(missing or channel_names(one))[0]}"
+        example = f"{(own or channel_names(tested))[0]}={(missing or channel_names(wanted))[0]}"
         raise CorpusError(
-            f"{other_name}: has the channels {', '.join(channel_names(two))}, and {name} has {', '.join(channel_names(one))}; give "
+            f"{other_name}: has the channels {', '.join(channel_names(tested))}, and {name} has {', '.join(channel_names(wanted))}; give "
             f"channels of one sensor one name (rename {example}), or choose common ones (channels)."
         )
-    for (what, of_other, advice), (_, of_first, _) in zip(_form(two), _form(one), strict=True):
+    for (what, of_other, advice), (_, of_first, _) in zip(_form(tested), _form(wanted), strict=True):
         if of_other != of_first and not (float32 and what.startswith("storage")):
             raise CorpusError(f"{other_name}: has the {what} {of_other}, and {name} has {of_first}; {advice}.")
 
@@ -77,16 +77,17 @@ def with_same_variables(corpora: Sequence[Named]) -> tuple[list[xr.Dataset], tup
 
 
 def _check_same(name: str, first: tuple[str, xr.Variable], other: tuple[str, xr.Variable]) -> None:
-    (path, one), (other_path, two) = first, other
+    (path, array), (other_path, second) = first, other
     # the same name must mean the same quantity
     for what, describe in (
         ("type", lambda of: "text" if of.dtype.kind in "OSUT" else str(of.dtype.newbyteorder("="))),
         ("unit", lambda of: of.attrs.get("units")),
         ("values", lambda of: listed_flags(class_names(of.attrs))),
     ):
-        if describe(one) != describe(two):
+        if describe(array) != describe(second):
             raise CorpusError(
-                f"{other_path}: the {what} of {name} is {describe(two)}, in {path} {describe(one)}; make both with one version of raceway."
+                f"{other_path}: the {what} of {name} is {describe(second)}, in {path} {describe(array)}; make both with one version of "
+                "raceway."
             )
 
 
@@ -147,12 +148,14 @@ def check_repeats(digests: NDArray[np.bytes_], places: Sequence[tuple[str, NDArr
     number = np.concatenate([records for _, records in places])
     # equal digests become neighbours
     order = np.argsort(digests, kind="stable")
-    one, other = order[:-1], order[1:]
-    same = np.flatnonzero((digests[one] == digests[other]) & (digests[one] != b"") & (owner[one] != owner[other]))
+    earlier, later = order[:-1], order[1:]
+    same = np.flatnonzero(
+        (digests[earlier] == digests[later]) & (digests[earlier] != b"") & (owner[earlier] != owner[later])
+    )
     if same.size:
         # the first repeated record, so that the sentence does not depend on the order of the digests
-        place = same[np.argmin(other[same])]
-        first, second = int(one[place]), int(other[place])
+        place = same[np.argmin(later[same])]
+        first, second = int(earlier[place]), int(later[place])
         raise CorpusError(
             f"{names[owner[second]]}: record {number[second]} has the same samples as record {number[first]} of "
             f"{names[owner[first]]}, and a record that occurs twice can be in the training and in the test set; give corpora of "

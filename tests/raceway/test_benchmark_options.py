@@ -54,6 +54,8 @@ def test_an_own_classifier_of_waveforms_is_scored_beside_baselines_on_features(t
     found = told(*line, "--estimator", mine.replace("make", "of_signals"))
     assert list(found["baselines"]) == ["majority", "envelope_rule", "own_module:of_signals"]
     assert {scores["grouped"]["records"] for scores in found["baselines"].values()} == {48}
+    assert json.loads((tmp_path / "report" / "results.json").read_text())["baselines"] == found["baselines"]
+    assert "Tiny corpus" in (tmp_path / "report" / "report.html").read_text()
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ def _classes(corpus: xr.Dataset) -> list[tuple[str | int, ...]]:
     names = (*UNITS, "split")
     rows = by_class(corpus, names) | {"all": {name: corpus[name].values for name in names}}
     splits = {name: split_counts(row["split"]) for name, row in rows.items()}
-    return [(name, *unit_counts(row), *(splits[name].get(one, 0) for one in SPLITS)) for name, row in rows.items()]
+    return [(name, *unit_counts(row), *(splits[name].get(split, 0) for split in SPLITS)) for name, row in rows.items()]
 
 
 def ranges(corpus: xr.Dataset) -> dict[str, Any]:
@@ -75,27 +75,27 @@ def ranges(corpus: xr.Dataset) -> dict[str, Any]:
     classes = by_class({"fault": corpus["fault"], **chosen}, chosen)
     vary, same = dict[str, tuple[str, ...]](), dict[str, str]()
     for name, values in chosen.items():
-        found, unit = extent(values), stored_unit(corpus[name].attrs)
-        if found is not None and found[0] < found[2]:
+        ends, unit = extent(values), stored_unit(corpus[name].attrs)
+        if ends is not None and ends[0] < ends[2]:
             vary[name] = unit, *(_cell(extent(columns[name])) for columns in classes.values())
-        elif found is not None and found[2]:
-            same[name] = f"{found[2]:.6g} {unit}".removesuffix(" 1")
+        elif ends is not None and ends[2]:
+            same[name] = f"{ends[2]:.6g} {unit}".removesuffix(" 1")
     return {"classes": list(classes), "vary": vary, "same": same}
 
 
-def _cell(found: tuple[float, ...] | None) -> str:
+def _cell(ends: tuple[float, ...] | None) -> str:
     """Cell of a class: its least, median and largest value."""
-    if found is None:
+    if ends is None:
         return ""
-    shown = [f"{value:.4g}" for value in found]
+    shown = [f"{value:.4g}" for value in ends]
     return shown[0] if shown[0] == shown[-1] else " / ".join(shown)
 
 
 def rebuilding(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
     """Words of the command that makes the corpus again; empty if none does."""
     if manifest.recipe_sha256 is not None:
-        given = [(f"--{name}", str(value)) for name, value in (manifest.overrides or {}).items() if value is not None]
-        return ["raceway", "generate", RECIPE_NAME, *(word for pair in given for word in pair), "-o", _NEW]
+        options = [(f"--{name}", str(value)) for name, value in (manifest.overrides or {}).items() if value is not None]
+        return ["raceway", "generate", RECIPE_NAME, *(word for pair in options for word in pair), "-o", _NEW]
     if manifest.recordings is not None and manifest.importer is not None:
         window = corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])
         return ["raceway", "import", manifest.importer, "SRC", "--window", f"{window:g}", "-o", _NEW]

@@ -20,7 +20,7 @@ from gen.corpus import (
     corpus_files,
     lazy,
     open_corpus,
-    open_part,
+    open_records,
     part_name,
     read_manifest,
     validate_corpus,
@@ -86,7 +86,7 @@ def test_no_file_stays_open_after_a_look_at_it(many):
     assert validate_corpus(path) == []
     files = corpus_files(path)
     for file in files:
-        with open_part(file) as part:
+        with open_records([file]) as part:
             part.load()
     assert open_handles() <= before
     with h5py.File(files[0], "r"):  # HDF5 refuses a file that is open with another kind of lock
@@ -131,7 +131,7 @@ def test_a_missing_sample_is_nan_and_no_other_is(copied_folder):
         values = part[SIGNAL][:]
         values[1, 0, 7] = -32768
         part[SIGNAL][...] = values
-    found = open_part(path)[SIGNAL].values[:, 0]
+    found = open_records([path])[SIGNAL].values[:, 0]
     assert np.argwhere(np.isnan(found)).tolist() == [[1, 7]]
     np.testing.assert_allclose(np.delete(found, 7, 1), np.delete(values[:, 0] / 65.534, 7, 1), rtol=1e-6)
 
@@ -141,7 +141,7 @@ def test_a_missing_sample_is_nan_and_no_other_is(copied_folder):
 def test_xarray_alone_decodes_a_part_to_the_same_bits(tmp_path, kind, codec):
     write_corpus(tmp_path / "c", kind=kind, codec=codec)
     path = tmp_path / "c" / "parts" / part_name(1)
-    with open_part(path) as ours, xr.open_dataset(path, engine="netcdf4", decode_times=False) as plain:
+    with open_records([path]) as ours, xr.open_dataset(path, engine="netcdf4", decode_times=False) as plain:
         assert set(ours.variables) == set(plain.variables)
         for name in plain.variables:
             assert ours[name].variable.identical(plain[name].variable)

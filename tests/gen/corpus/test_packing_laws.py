@@ -7,7 +7,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.corpus import MISSING_COUNT, SIGNAL, open_corpus, open_part, part_name, write_part
+from gen.corpus import MISSING_COUNT, SIGNAL, open_corpus, open_records, part_name, write_part
 from gen.corpus.schema import signal_attributes
 from gen.support.errors import CorpusError
 from tests.corpora import SIZES, dataset
@@ -67,4 +67,4 @@ def test_a_scale_with_which_counts_are_no_normal_numbers_is_refused(tmp_path, sc
     part[SIGNAL].attrs["scale_factor"] = scale
     write_part(part, tmp_path / part_name(0))
     with pytest.raises(CorpusError, match="has scale_factor"):
-        open_part(tmp_path / part_name(0))
+        open_records([tmp_path / part_name(0)])

@@ -93,13 +93,6 @@ def page(corpus, results, folder):
     return write_report(corpus, results, folder).read_text()
 
 
-def test_tracks_and_another_corpus_stand_on_one_page(corpus, results, tmp_path):
-    tested = {name: replace(scored, tests=(scored.grouped,)) for name, scored in results.baselines.items()}
-    further = {"rig": TrackResults(2, 1, 1, results.baselines)}
-    both = replace(results, baselines=tested, tests=(results.corpus,), further=further)
-    assert "on every track, with its controls" in write_report(corpus, both, tmp_path / "out").read_text()
-
-
 class Links(HTMLParser):
     """Addresses in a page, its unclosed elements, and its text."""
 
@@ -201,7 +194,7 @@ def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, 
     assert held["baselines"]["ensemble"]["null"]["accuracy"] == results.baselines["ensemble"].null.accuracy
 
 
-def test_a_further_track_is_drawn_although_other_corpora_are_not_tested_on_it(corpus, results, tmp_path):
+def test_tracks_and_another_corpus_stand_on_one_page(corpus, results, tmp_path):
     tested = {
         name: replace(row, tests=(replace(row.grouped, by_recording=row.grouped),))
         for name, row in results.baselines.items()
