@@ -32,6 +32,8 @@ class RigFilters:
     """Samples of a Fourier transform: at least as many as a response has."""
     fs: float
     """Sample rate [Hz]."""
+    directions: FloatArray
+    """Of the channels, counter-clockwise from the horizontal, shape (channel,) [rad]."""
     paths: ComplexArray
     """Transfer path of each channel, shape (channel, frequency)."""
     bearing_paths: ComplexArray
@@ -57,15 +59,20 @@ class RigFilters:
     impulse_lines: Float32Array
     """Rms of the lines of impulses at random times in the squared envelope of a response, by frequency, shape (channel, frequency) [1]."""
 
-    def source_in_channels(self, source: FloatArray) -> ComplexArray:
+    def source_in_channels(self, source: NDArray[np.inexact]) -> ComplexArray:
         """Spectrum of a source in the machine behind path and chain, shape (channel, frequency), of ``source``, shape (time,) [1].
 
-        Its rms over all channels behind the paths is the same as ahead of them.
+        A complex source is a motion, of which each channel measures the part along its direction. Its rms over all channels behind the
+        paths is the same as ahead of them, where it is the mean over all directions.
         """
-        spectrum = rfft(source.astype(np.float32), self.n)
-        behind = spectrum * self.paths
+        if np.iscomplexobj(source):
+            parts = rfft(np.stack([source.real, source.imag]).astype(np.float32), self.n)
+            along = np.stack([np.cos(self.directions), np.sin(self.directions)], axis=1).astype(np.float32) @ parts
+        else:
+            parts = along = rfft(source.astype(np.float32), self.n)[None]
+        behind = along * self.paths
         power = float(np.mean(np.abs(behind) ** 2))
-        behind *= self.chain * (math.sqrt(float(np.mean(np.abs(spectrum) ** 2)) / power) if power > 0 else 0.0)
+        behind *= self.chain * (math.sqrt(float(np.mean(np.abs(parts) ** 2)) / power) if power > 0 else 0.0)
         return behind
 
     def in_channels(self, frequencies: FloatArray) -> ComplexArray:
@@ -109,6 +116,7 @@ def rig_filters(scenario: Scenario) -> RigFilters:
     return RigFilters(
         n=n,
         fs=fs,
+        directions=directions,
         paths=paths.astype(np.complex64),
         bearing_paths=(paths * sensor).astype(np.complex64),
         direct=None if direct is None else np.array(direct, np.float32),

@@ -5,14 +5,13 @@ from typing import Any
 
 from gen.corpus.schema import Variable
 from gen.mechanisms.background.background import MACHINE_SOURCES, machine_sources_of
-from gen.mechanisms.background.machine_conditions import CONDITIONS
 from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.mechanisms.faults.kinds import KINDS
 from gen.support.errors import RacewayError
 from gen.support.plugins import plugin, plugins
 
 for _name in plugins("mechanisms"):
-    if plugin("mechanisms", _name, type) not in (*KINDS, *MACHINE_SOURCES, *CHAIN, *CONDITIONS):
+    if plugin("mechanisms", _name, type) not in (*KINDS, *MACHINE_SOURCES, *CHAIN):
         raise RacewayError(
             f"raceway.mechanisms: {_name} is no BearingFault, MachineSource, SensorFault or MachineCondition, so it would do nothing."
         )

@@ -108,11 +108,9 @@ def _corpus(recipe: Sections) -> Iterator[str]:
 
 def _several(recipe: Sections) -> Iterator[str]:
     """Keys that name several of what one record has one of."""
-    bearing, conditions = recipe.bearing, recipe.machine_conditions
+    bearing = recipe.bearing
     if isinstance(bearing, CatalogueBearing) and len(bearing.designations) > 1:
         yield "bearing.designations"
-    if conditions is not None and len(conditions.entries) > 1:
-        yield "machine_conditions.entries"
     if any(sum(weight > 0 for weight in channel.body.values()) > 1 for channel in recipe.recording.channels):
         yield "recording.channels.body"
 

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, model
 from gen.corpus import Codec
 from gen.drawing import Count, Name, Number, Section
 from gen.mechanisms.background.background import BackgroundSection
-from gen.mechanisms.background.machine_conditions import MachineConditions
+from gen.mechanisms.background.machine_conditions import MachineConditionsSection
 from gen.mechanisms.chain.measuring_chain import SensorFaultsSection
 from gen.mechanisms.path import PathSection
 from gen.recipe.fault_entries import FaultList, fault_entries
@@ -123,7 +123,7 @@ class Sections(Section):
     `{n_balls: 22, pitch_diameter_mm: 60, ball_diameter_mm: 6}`; the sections below say more."""
     machine: MachineSection = MachineSection()
     """Masses, springs and dampers of each rig, and its faults other than those of the bearing."""
-    machine_conditions: MachineConditions | None = None
+    machine_conditions: MachineConditionsSection = MachineConditionsSection()
     """What machines have that are not well: unbalance, looseness, a belt; all are sound if left out."""
     contact: ContactSection = ContactSection()
     """Contact of balls and races: its width and its oil."""

@@ -8,11 +8,15 @@ noise              colour, resonances and coherence of the noise
 spectral_lines     lines at multiples of the shaft rate and at fixed frequencies
 impulses           impulses at random times and locked to the shaft
 gear_mesh          multiples of a tooth mesh with sidebands of both gears
-machine_condition  lines and bursts of a machine that is not well
-machine_conditions conditions of a rig, and their label
+tooth_fault        a damaged tooth of one of the gears
+bursts             noise that comes and goes with the shaft
+machine_condition  what a condition of a machine is that is not well
+shaft_lines        unbalance, bent shafts, misalignment and belts
+rub                rotors that touch their casing
 looseness          machines whose support lifts off the ground
+machine_conditions all conditions, and their label
 background         all of them, as a recipe has them and as they are drawn
 ================== =============================================================
 
-A further source is one file, and its line in ``background.MACHINE_SOURCES``.
+A further source is one file, and its line in ``background``; a further condition one file, and its line in ``machine_conditions``.
 """

@@ -2,18 +2,22 @@
 
 from typing import TYPE_CHECKING, Any
 
+from gen.mechanisms.background.bursts import Bursts
 from gen.mechanisms.background.gear_mesh import GearMesh
 from gen.mechanisms.background.impulses import Impulses, Knocks
-from gen.mechanisms.background.looseness import Looseness
-from gen.mechanisms.background.machine_conditions import MachineConditions
+from gen.mechanisms.background.machine_condition import MachineCondition
+from gen.mechanisms.background.machine_conditions import CONDITIONS
 from gen.mechanisms.background.noise import Noise
 from gen.mechanisms.background.source import BackgroundSource, MachineSource
 from gen.mechanisms.background.spectral_lines import Harmonics, Tones
-from gen.mechanisms.mechanism import section_with, with_plugins
+from gen.mechanisms.mechanism import mechanisms_of, section_with, with_plugins
 
 SOURCES: tuple[type[BackgroundSource], ...] = (Harmonics, Tones, Impulses, Knocks)
 """Sources that the measurement adds."""
-MACHINE_SOURCES: tuple[type[MachineSource], ...] = with_plugins(MachineSource, (GearMesh, MachineConditions, Looseness))
+_OF_MACHINE = [
+    source for source in with_plugins(MachineSource, (GearMesh, Bursts)) if not issubclass(source, MachineCondition)
+]
+MACHINE_SOURCES: tuple[type[MachineSource], ...] = (*_OF_MACHINE, *CONDITIONS)
 """Sources whose vibration is computed ahead of the paths, in the order in which they are added."""
 
 if TYPE_CHECKING:
@@ -24,13 +28,10 @@ if TYPE_CHECKING:
         def __getattr__(self, source: str) -> Any: ...
 
 else:
-    _OF_BACKGROUND = [
-        source for source in (*SOURCES, *MACHINE_SOURCES) if source is not MachineConditions
-    ]  # it has a section
-    BackgroundSection = section_with("BackgroundSection", __name__, Noise, _OF_BACKGROUND)
+    BackgroundSection = section_with("BackgroundSection", __name__, Noise, (*SOURCES, *_OF_MACHINE))
 
 
 def machine_sources_of(recipe: Any) -> list[MachineSource]:
     """Sources of a drawn recipe whose vibration is computed ahead of the paths."""
-    places = [(section, source.place) for source in MACHINE_SOURCES for section in (recipe.background, recipe)]
-    return [found for section, place in places if (found := getattr(section, place, None)) is not None]
+    there = (*mechanisms_of(recipe.background), *mechanisms_of(recipe.machine_conditions))
+    return [source for source in there if isinstance(source, MachineSource)]

@@ -16,19 +16,18 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.background.machine_conditions import label_of
-from gen.mechanisms.background.source import FloatArray, MachineSource, Streams
+from gen.mechanisms.background.machine_condition import MachineCondition
+from gen.mechanisms.background.source import FloatArray, Streams
 from gen.support.units import STANDARD_GRAVITY, decibel_to_ratio
 
 
-class Looseness(MachineSource):
+class Looseness(MachineCondition):
     """A support that the shaft lifts off the ground once a turn, or every second turn: harmonics, half orders and impacts."""
 
     place = "looseness"
     labels = (
         Variable("looseness", "f8", "1", "latent", "force that lifts a loose machine over its weight, 0 on a firm support",
             lambda one: one.si()["lift"]),
-        label_of(lambda _: "looseness"),  # whatever else the machine has
     )  # fmt: skip
 
     probability: Probability

@@ -1,61 +1,47 @@
-"""Conditions of machines that are not well, of which a rig has one, and their label."""
+"""Conditions that the machine of a rig can have, and how a record is labelled with them."""
 
-import functools
 import math
-import operator
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, get_args
+from typing import TYPE_CHECKING, Any
 
-from pydantic import Field
+from gen.drawing import Section
+from gen.mechanisms.background.looseness import Looseness
+from gen.mechanisms.background.machine_condition import MachineCondition
+from gen.mechanisms.background.rub import Rub
+from gen.mechanisms.background.shaft_lines import Belt, BentShaft, Misalignment, Unbalance
+from gen.mechanisms.mechanism import mechanisms_of, section_with, with_plugins
 
-from gen.corpus.fault_classes import UNKNOWN, UNKNOWN_CODE
-from gen.corpus.schema import Variable
-from gen.drawing import Draws, Probability, weighted_index
-from gen.mechanisms.background.machine_condition import MachineCondition, bursts_of, lines_of
-from gen.mechanisms.background.source import FloatArray, MachineSource, Streams
-from gen.mechanisms.mechanism import with_plugins
+CONDITIONS: tuple[type[MachineCondition], ...] = with_plugins(
+    MachineCondition, (Unbalance, BentShaft, Misalignment, Looseness, Rub, Belt)
+)
+"""All conditions, in the order in which their vibrations are added and named."""
 
-CONDITIONS = with_plugins(MachineCondition, (MachineCondition,))
-_KINDS = (*get_args(MachineCondition.model_fields["kind"].annotation), "other")
-MACHINE_CONDITIONS: Mapping[int, str] = {**dict(enumerate(("sound", *_KINDS))), UNKNOWN_CODE: UNKNOWN}
-"""Classes of ``machine_condition``; a condition of a plug-in is another one."""
+_NAMED_FROM = 0.1  # of the radial load; a weaker force leaves the bearing as it is
 
-if TYPE_CHECKING or len(CONDITIONS) == 1:
-    Condition = MachineCondition
+
+class _Conditions(Section):
+    """Conditions of the machine other than those of its bearings, the same for all classes of bearings; a machine can have several."""
+
+    drawn_per = "rig"
+
+
+if TYPE_CHECKING:
+    MachineConditionsSection = Section
 else:
-    Condition = Annotated[functools.reduce(operator.or_, CONDITIONS), Field(discriminator="kind")]
+    MachineConditionsSection = section_with("MachineConditionsSection", __name__, _Conditions, CONDITIONS)
 
 
-def label_of(kind: Callable[[Any], str]) -> Variable:
-    """The label ``machine_condition`` of a source, from the kind of condition that it stands for."""
-    meaning = "condition of the machine, whatever that of its bearing"
+def conditions_named(recipe: Any, load: float, shaft_rate: float) -> str:
+    """Names of all conditions of the machine of a drawn recipe, joined by +, or `sound`.
 
-    def code(source: Any) -> int:
-        return 1 + _KINDS.index(kind(source) if kind(source) in _KINDS else "other")
-
-    return Variable("machine_condition", "i1", "1", "label", meaning, code, MACHINE_CONDITIONS)
-
-
-class MachineConditions(MachineSource):
-    """Conditions of the machine other than those of its bearings, drawn per rig and the same for all classes of bearings."""
-
-    place = "machine_conditions"
-    labels = (label_of(lambda one: one.entries[0].kind),)
-
-    probability: Probability
-    """Share of the rigs whose machine has one of the conditions."""
-    entries: Annotated[tuple[Condition, ...], Field(min_length=1)]
-    """Conditions, one of which a machine has; drawn by weight."""
-
-    def draw(self, of: Draws) -> Any:
-        """Conditions of a rig: one entry; None for a machine that has none."""
-        chosen = weighted_index(tuple(entry.weight for entry in self.entries), of.u("entries"))
-        one = self.model_copy(update={"entries": (self.entries[chosen],)})
-        return super(MachineConditions, one).draw(of)
-
-    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
-        """Lines and bursts of the condition; their phases belong to the rig."""
-        (condition,), of_rig = self.entries, stream(level="rig")
-        start = 2 * math.pi * of_rig.random()
-        lines = lines_of(condition, angles, of_rig)
-        return [lines] if condition.bursts is None else [lines, bursts_of(condition.bursts, angles, start, stream())]
+    The forces on the shaft that ``machine`` has count from a tenth of the radial ``load`` [N] on, at the ``shaft_rate`` [Hz].
+    """
+    machine = recipe.machine.si()
+    forces = {
+        "unbalance": recipe.machine.unbalance * (2 * math.pi * shaft_rate) ** 2,
+        "bent_shaft": machine["bow"],
+        "misalignment": machine["misalignment"],
+        "looseness": math.inf if machine["looseness"] > 0 else 0.0,
+    }
+    there = {condition.place for condition in mechanisms_of(recipe.machine_conditions)}
+    there |= {name for name, force in forces.items() if force > max(_NAMED_FROM * load, 0.0)}
+    return "+".join(condition.place for condition in CONDITIONS if condition.place in there) or "sound"

@@ -1,11 +1,13 @@
 """What a source of vibration in the machine is: a section of a recipe that some rigs have."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gen.mechanisms.mechanism import FloatArray, Mechanism
 
+Vibration = NDArray[np.inexact]
 Streams = Callable[..., np.random.Generator]
 """Gives the random stream of a source in a record, or that in a rig: ``stream(level="rig")``."""
 
@@ -19,9 +21,10 @@ class BackgroundSource(Mechanism):
 class MachineSource(BackgroundSource):
     """A source whose vibration is computed ahead of the paths: from the angle of the shaft, random numbers, or both."""
 
-    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
+    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> Sequence[Vibration]:
         """Vibrations over the rms of the background noise, for ``angles`` of the shaft [rad], shape (time,) each [1].
 
+        A real vibration is the same in all directions. A complex one is a motion: its real part is horizontal, its imaginary part vertical.
         Each has its rms ahead of the paths and, over all channels, behind them. ``fs`` is the sample rate [Hz]. The ``stream`` of the rig
         gives phases that belong to it, that of the record what is random in a record.
         """

@@ -14,7 +14,7 @@ from gen.support.units import decibel_to_ratio
 
 ComplexArray = NDArray[np.complexfloating]
 
-_FLATTEST = 0.8  # orbit at a harmonic: the shaft never moves along a straight line
+FLATTEST = 0.8  # orbit at a harmonic: the shaft never moves along a straight line
 
 
 class Harmonics(BackgroundSource):
@@ -70,7 +70,7 @@ def lines_of_machine(
     harmonics, tones = (none if source is None else source.si() for source in (background.harmonics, background.tones))
     of_harmonics = stream("phases of harmonics").random((3, len(harmonics["level"])))
     of_harmonics[0, :1] = 0.0
-    of_harmonics[2] *= _FLATTEST
+    of_harmonics[2] *= FLATTEST
     *of_tones, phases = stream("phases of tones").random((4, len(tones["level"])))
     forward, backward, flatness = np.concatenate([of_harmonics, of_tones], axis=1)
     amplitudes = math.sqrt(2) * decibel_to_ratio(np.concatenate([harmonics["level"], tones["level"]]))

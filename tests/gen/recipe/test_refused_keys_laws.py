@@ -20,7 +20,7 @@ EACH = (
     *(f"{of}.{key}" for of in ("faults", "parts") for key in ("width_mm", "depth_um", "angle_deg", "roughness_um")),
     *(f"tones.{key}" for key in ("frequency_hz", "level_db", "modulation")),
     *(f"loose_mount.{key}" for key in ("frequency_hz", "damping_percent", "holding_m_s2")),
-    *(f"{of}.level_db" for of in ("harmonics", "gear_mesh", "entries")),
+    *(f"{of}.level_db" for of in ("harmonics", "gear_mesh", "unbalance", "bent_shaft", "misalignment", "belt")),
     "gain_steps.step_db",
 )
 """Keys that can be lists, with a number for each item that their section counts."""

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from gen.mechanisms.background.looseness import Looseness
-from gen.mechanisms.background.machine_conditions import MACHINE_CONDITIONS
 from gen.mechanisms.mechanism_labels import label_values
 from gen.scenarios import draw_scenarios
 from tests.measuring import FLOAT, background_of, drawn, quiet
@@ -54,20 +53,18 @@ def test_a_short_flight_follows_the_weight_and_the_force_of_the_shaft():
 
 def test_a_loose_machine_moves_no_other_draw_and_is_labelled(recipe_with):
     plain = draw_scenarios(recipe_with(), 0, 4)
-    loose = draw_scenarios(recipe_with({"background.looseness": LOOSE}), 0, 4)
+    loose = draw_scenarios(recipe_with({"machine_conditions.looseness": LOOSE}), 0, 4)
     for one, other in zip(plain, loose, strict=True):
-        labels = label_values(other.recipe, {})
-        assert MACHINE_CONDITIONS[labels["machine_condition"]] == "looseness"
-        assert labels["looseness"] == 1.5
-        background = other.recipe.background.model_copy(update={"looseness": None})
+        assert label_values(other.recipe, {})["looseness"] == 1.5
+        conditions = other.recipe.machine_conditions.model_copy(update={"looseness": None})
         origin = other.origin.model_copy(update={"corpus": one.origin.corpus})
-        assert other.edited(background=background, origin=origin) == one
+        assert other.edited(machine_conditions=conditions, origin=origin) == one
 
 
 def test_it_passes_path_and_chain_at_its_level(recipe_with):
     changes = FLOAT | {"recording.duration_s": 2.0}
     firm, loose = (
-        background_of(recipe_with(changes | quiet(**some)))[0].std()
-        for some in ({}, {"looseness": LOOSE | {"level_db": 10}})
+        background_of(recipe_with(changes | quiet() | some))[0].std()
+        for some in ({}, {"machine_conditions.looseness": LOOSE | {"level_db": 10}})
     )
     assert np.sqrt(loose**2 - firm**2) == pytest.approx(10 ** (10 / 20), rel=0.1)

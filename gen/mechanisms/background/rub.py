@@ -1,0 +1,42 @@
+"""A rotor that rubs: its seal or casing cuts the motion off once a turn, or every second turn, and rubs noise out of it.
+
+See A. Muszynska, Rotordynamics, CRC Press, 2005, chapter 5: truncated waves, harmonics, and half orders where it touches every second turn.
+"""
+
+import math
+
+import numpy as np
+
+from gen.drawing import Distribution, Probability, within
+from gen.mechanisms.background.bursts import bursts_of
+from gen.mechanisms.background.machine_condition import MachineCondition
+from gen.mechanisms.background.source import FloatArray, Streams
+from gen.support.units import decibel_to_ratio
+
+
+class Rub(MachineCondition):
+    """A rotor that touches its casing: a wave that is cut off, and a burst of noise while it touches."""
+
+    place = "rub"
+
+    probability: Probability
+    """Share of the rigs whose rotor rubs."""
+    order: Distribution = within(0.05, 50, default=1.0)
+    """Contacts in a turn of the shaft: 1, or 0.5 for every second turn."""
+    contact_deg: Distribution = within(1, 180, default=60.0)
+    """Length of a contact, in degrees from contact to contact."""
+    level_db: Distribution = within(-80, 40)
+    """Rms of the truncated wave relative to that of the background noise."""
+    noise_db: Distribution = within(-80, 40)
+    """Rms of the bursts of noise relative to that of the background noise."""
+
+    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
+        """Wave without its top, and noise while it is in contact; the angle of the contact belongs to the rig."""
+        drawn, start = self.si(), 2 * math.pi * stream(level="rig").random()
+        phase = drawn["order"] * angles + start
+        wave = np.minimum(np.cos(phase), math.cos(drawn["contact"] / 2))
+        wave -= wave.mean()
+        # there is no contact in a part of a turn
+        rms = float(np.sqrt(np.mean(wave**2)))
+        wave *= decibel_to_ratio(drawn["level"]) / rms if rms > 0 else 0.0
+        return [wave, decibel_to_ratio(drawn["noise"]) * bursts_of(phase, drawn["contact"] / 2, stream())]
