@@ -20,6 +20,7 @@ import numpy as np
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.background.source import FloatArray, MachineSource, Streams
+from gen.mechanisms.background.tooth_fault import ToothFault
 from gen.support.units import decibel_to_ratio
 
 
@@ -30,6 +31,9 @@ class GearMesh(MachineSource):
     labels = (
         Variable("gear_mesh", "i4", "1", "latent", "teeth of the gear on the shaft, the order of its mesh line; 0 without a gear",
             lambda one: round(one.si()["teeth"])),
+        Variable("tooth_fault", "i1", "1", "label", "gear that has a damaged tooth, whatever the condition of the bearing",
+            lambda one: 0 if one.tooth_fault is None else 1 + round(one.tooth_fault.si()["on_mate"]),
+            {0: "none", 1: "gear", 2: "mate"}),
     )  # fmt: skip
 
     probability: Probability
@@ -50,21 +54,34 @@ class GearMesh(MachineSource):
     phase_deg: Distribution = within(0, 180, default=0.0)
     """Peak of the phase modulation once per turn of the shaft, in degrees of the mesh cycle; n times this at the nth multiple."""
 
-    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
-        """Vibration of the mesh. The angle of the mate at the first sample is random: other teeth meet there in each record.
+    tooth_fault: ToothFault | None = None
+    """Damaged tooth of one of the gears; all are whole if left out."""
 
-        A multiple of the mesh above half the sample rate, which the anti-alias filter would remove, is left out.
+    def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
+        """Vibration of the mesh, and the strikes of a damaged tooth.
+
+        The angle of the mate at the first sample is random: other teeth meet there in each record. A multiple of the mesh above half the
+        sample rate, which the anti-alias filter would remove, is left out.
         """
-        drawn = self.si()
-        teeth, levels = round(drawn["teeth"]), decibel_to_ratio(drawn["level"])
-        start = 2 * math.pi * stream().random()
+        drawn, of_record = self.si(), stream()
+        teeth, mate_teeth, levels = round(drawn["teeth"]), round(drawn["mate_teeth"]), decibel_to_ratio(drawn["level"])
+        mate = angles * (teeth / mate_teeth) + 2 * math.pi * of_record.random()
         high_point, lead_point, *phases = 2 * math.pi * stream(level="rig").random(2 + len(levels))
+        modulation = (
+            1 + drawn["shaft_modulation"] * np.cos(angles - high_point) + drawn["mate_modulation"] * np.cos(mate)
+        )
+        mesh, strikes = teeth * angles + drawn["phase"] * np.cos(angles - lead_point), list[FloatArray]()
+        if (tooth := self.tooth_fault) is not None:
+            fault = tooth.si()
+            turned, of_gear = (mate, mate_teeth) if round(fault["on_mate"]) else (angles, teeth)
+            contact = tooth.contact(turned, of_gear)
+            modulation -= fault["drop"] * contact
+            mesh -= fault["phase"] * contact
+            strikes = [tooth.strikes(turned, of_record)]
         rate = np.abs(np.gradient(teeth * angles)) / math.pi  # of the mesh, over half the sample rate
-        turn = np.exp(1j * (teeth * angles + drawn["phase"] * np.cos(angles - lead_point)))
+        turn = np.exp(1j * mesh)
         total, power = np.zeros(len(angles)), np.ones(len(angles), complex)
         for multiple, (level, phase) in enumerate(zip(levels, phases, strict=True), start=1):
             power *= turn
             total += (math.sqrt(2) * level * np.exp(1j * phase) * power).real * (multiple * rate < 1)
-        modulation = 1 + drawn["shaft_modulation"] * np.cos(angles - high_point)
-        modulation += drawn["mate_modulation"] * np.cos(angles * (teeth / round(drawn["mate_teeth"])) + start)
-        return [total * modulation]
+        return [total * modulation, *strikes]

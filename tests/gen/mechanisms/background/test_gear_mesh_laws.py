@@ -86,3 +86,45 @@ def test_a_mesh_passes_through_the_path_of_each_channel_and_keeps_its_rms(recipe
     assert amplitude(found[1], 40) / amplitude(found[0], 20) == pytest.approx(2 * 10 ** (-6 / 20), rel=1e-4)
     assert amplitude(found[1], 41) / amplitude(found[1], 40) == pytest.approx(0.25, rel=1e-4)
     assert max(amplitude(found[0], 40), amplitude(found[1], 20), amplitude(found[1], 60)) < 1e-5
+
+
+TOOTH = {"probability": 1, "drop": 0.6, "phase_deg": 40, "strikes_db": 0}
+
+
+def demodulated(signal):
+    """Amplitude and phase of the mesh as McFadden finds them: its line with the sidebands up to half the mesh rate, at 0 Hz."""
+    spectrum, line = np.fft.fft(signal), round(20 * RATE * BIN)
+    band = np.zeros(N, complex)
+    band[np.arange(-(line // 2), line // 2)] = spectrum[line - line // 2 : line + line // 2]
+    return np.fft.ifft(band)
+
+
+@pytest.mark.parametrize("on_mate", [0, 1])
+def test_a_damaged_tooth_changes_amplitude_and_phase_once_per_turn_of_its_gear(on_mate):
+    gear = gear_with(**lines([0]), tooth_fault=TOOTH | {"on_mate": on_mate})
+    start = 2 * math.pi * np.random.default_rng(0).random()
+    turned, teeth = (STEADY / 2 + start, 40) if on_mate else (STEADY, 20)
+    contact = np.exp((np.cos(turned) - 1) / (math.pi / teeth) ** 2)
+    expected = (1 - 0.6 * contact) * np.exp(-1j * math.radians(40) * contact)
+    carried = (expected * np.exp(20j * STEADY)).real * math.sqrt(2)
+    found = demodulated(mesh(gear))
+    phase = found.mean() / abs(found.mean())
+    whole = demodulated(carried)
+    np.testing.assert_allclose(found / phase, whole / (whole.mean() / abs(whole.mean())), atol=1e-3)
+    assert 1 - np.abs(whole).min() / np.median(np.abs(whole)) > 0.3
+
+
+@pytest.mark.parametrize(("on_mate", "turns"), [(0, 50), (1, 25)])
+def test_a_damaged_tooth_strikes_once_per_turn_of_its_gear_at_its_level(on_mate, turns):
+    _, strikes = gear_with(tooth_fault=TOOTH | {"on_mate": on_mate}).vibrations(
+        STEADY, FS, lambda **_: np.random.default_rng(0)
+    )
+    assert abs(np.count_nonzero(strikes) - turns) <= 1
+    assert np.ptp(np.diff(np.flatnonzero(strikes))) <= 1
+    assert np.sqrt(np.mean(strikes**2)) == pytest.approx(1)
+
+
+def test_the_label_names_the_gear_and_not_the_bearing():
+    (label,) = (one for one in GearMesh.labels if one.name == "tooth_fault")
+    gears = [gear_with(), *(gear_with(tooth_fault=TOOTH | {"on_mate": mate}) for mate in (0, 1))]
+    assert [label.flags[code] for code in label.column(gears)] == ["none", "gear", "mate"]
