@@ -16,6 +16,13 @@ def decay(time: FloatArray, x: FloatArray) -> float:
     return float(away[(time >= 0.05) & (time < 0.1)].max() / away[time < 0.05].max())
 
 
+def steadiness(time: FloatArray, x: FloatArray) -> float:
+    """Share of the peaks before 0.1 s that are lower than the one before, of the distance from the settled mean."""
+    away = np.abs(x - x[time > 0.5].mean())[time < 0.1]
+    peaks = away[find_peaks(away)[0]]
+    return float(np.mean(np.diff(peaks) < 0))
+
+
 def unrest(settled: FloatArray) -> float:
     """Standard deviation over the mean, without sign."""
     return float(settled.std() / abs(settled.mean()))
