@@ -234,8 +234,8 @@ def _cracked(run: Run) -> dict[str, float]:
         "C8": float(np.abs(y2).max()),
         "C9": modulation(y1, FS / run.shaft_rate),
         "C18": asymmetry(x2),
-        "C19": decay(time, made.cracked[0]) / decay(time, made.healthy[0]),
-        "C20": float(x2[-len(x2) // 5 :].std() / made.cracked[2][time < LATE].std()),
+        "C19": decay(time, run.cracked[0]) / decay(time, run.healthy[0]),
+        "C20": float(x2[-len(x2) // 5 :].std() / run.cracked[2][time < LATE].std()),
     }
     for name, displacement, ratio, swing in zip(CHANNELS, x, raised, swings, strict=True):
         values[f"C1.{name}"], values[f"C15.{name}"] = float(ratio), float(swing)
