@@ -101,21 +101,25 @@ def read_uff(path: Path) -> NumberTable:
     with guarded(path, "universal"):
         file = library.UFF(str(path))
         sets = [file.read_sets(number) for number, kind in enumerate(file.get_set_types()) if kind == 58]
-    other = next((one for one in sets if one["func_type"] != _TIME_RESPONSE or np.iscomplexobj(one["data"])), None)
+    other = next(
+        (data_set for data_set in sets if data_set["func_type"] != _TIME_RESPONSE or np.iscomplexobj(data_set["data"])),
+        None,
+    )
     if not sets or other is not None:
         what = "no data set 58" if other is None else f"a function of kind {other['func_type']} ({other['id1']:.60})"
         raise UnusableError(f"holds {what}, and no signal over time; export the waveform")
     # the step has six digits
     return _columns(
-        (one["id1"], _unit_of_58(one), rate_of_step(f"{one['abscissa_inc']:.5e}"), one["data"]) for one in sets
+        (data_set["id1"], _unit_of_58(data_set), rate_of_step(f"{data_set['abscissa_inc']:.5e}"), data_set["data"])
+        for data_set in sets
     )
 
 
-def _unit_of_58(one: dict[str, Any]) -> str:
+def _unit_of_58(data_set: dict[str, Any]) -> str:
     """Unit that a data set states, or the quantity if it is no acceleration."""
-    unit, quantity = (one[f"ordinate_axis{name}"].replace("NONE", "").strip() for name in ("_units_lab", "_lab"))
-    is_other = one["ordinate_spec_data_type"] not in _KINDS_WITHOUT_A_NAME
-    return unit or (quantity or f"kind {one['ordinate_spec_data_type']}" if is_other else "")
+    unit, quantity = (data_set[f"ordinate_axis{name}"].replace("NONE", "").strip() for name in ("_units_lab", "_lab"))
+    is_other = data_set["ordinate_spec_data_type"] not in _KINDS_WITHOUT_A_NAME
+    return unit or (quantity or f"kind {data_set['ordinate_spec_data_type']}" if is_other else "")
 
 
 def _columns(columns: Iterable[tuple[str, str, float | None, Any]]) -> NumberTable:
@@ -125,4 +129,4 @@ def _columns(columns: Iterable[tuple[str, str, float | None, Any]]) -> NumberTab
         raise UnusableError("holds no column of numbers; export the samples")
     names, units, rates, values = zip(*every, strict=True)
     header = Header(names, units, rates_of={n: rate for n, rate in enumerate(rates) if rate})
-    return NumberTable({n: np.asarray(one, np.float64) for n, one in enumerate(values)}, header)
+    return NumberTable({n: np.asarray(column, np.float64) for n, column in enumerate(values)}, header)

@@ -155,16 +155,16 @@ def _write_parts(
     records: Iterator[Record], collection: Collection, candidates: Sequence[Candidate], corpus: NewCorpus
 ) -> None:
     own = None
-    for signal, known in records:
+    for signal, facts in records:
         # the identity of the corpus follows from its files and its first signal
         own = own or _corpus_identity(collection.importer, candidates, signal)
         size = max(1, min(_PART_RECORDS, _PART_BYTES // signal.nbytes))
         # as many records as a part holds, or as memory should
-        batch = [(signal, known), *islice(records, size - 1)]
-        columns = {name: [values[name] for _, values in batch] for name in known}
+        batch = [(signal, facts), *islice(records, size - 1)]
+        columns = {name: [values[name] for _, values in batch] for name in facts}
         numbers = zip(columns["rig"], columns["specimen"], columns["recording"], strict=True)
         dataset = make_dataset(
-            np.stack([one for one, _ in batch]),
+            np.stack([window for window, _ in batch]),
             collection.fs,
             collection.channels,
             columns | {"identity": [identity(own, *some) for some in numbers]},

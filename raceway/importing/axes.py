@@ -53,4 +53,6 @@ def _are_axes(names: Sequence[str]) -> bool:
         return False
     if all(word.isdecimal() for word in said):
         return len(said) == _MOST and words[0][place - 1] in _NUMBERED
-    return said != {"v", "a"} and any(said <= one for one in _DIRECTIONS)  # may be velocity and acceleration
+    return said != {"v", "a"} and any(
+        said <= directions for directions in _DIRECTIONS
+    )  # may be velocity and acceleration

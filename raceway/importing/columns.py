@@ -32,7 +32,7 @@ class Values(NamedTuple):
     named: str
     table: NumberTable
 
-    def rate(self, given: float | None) -> tuple[float | None, list[str]]:
+    def rate(self, wanted: float | None) -> tuple[float | None, list[str]]:
         """Sample rate to be used, or None; and a sentence without its end if another one is stated.
 
         Raises
@@ -42,14 +42,14 @@ class Values(NamedTuple):
         """
         stated = self.rates or (() if self.table.playback is None else ((self.table.playback, "header"),))
         told = " and ".join(f"{rate:g} Hz by its {source}" for rate, source in stated)
-        fitting = [rate for rate, _ in stated if given is not None and math.isclose(given, rate, rel_tol=_SAME_RATE)]
-        if given is not None:
+        fitting = [rate for rate, _ in stated if wanted is not None and math.isclose(wanted, rate, rel_tol=_SAME_RATE)]
+        if wanted is not None:
             if fitting or not stated:
-                return given, []
+                return wanted, []
             if self.table.playback is None and any(SLOWEST <= rate <= FASTEST for rate, _ in stated):
-                message = f"is at {told}, and {given:g} Hz are given; correct what is given"
+                message = f"is at {told}, and {wanted:g} Hz are given; correct what is given"
                 raise UnusableError(message, "sample_rate_hz", contradicted="rate")
-            return given, [f"is at {told}; the given {given:g} Hz are used"]
+            return wanted, [f"is at {told}; the given {wanted:g} Hz are used"]
         if not stated:
             return None, []
         rates = [rate for rate, _ in stated]
@@ -62,7 +62,7 @@ class Values(NamedTuple):
             f"its header states {rates[0]:g} Hz, as for sound; give the rate of the recording if it is another"
         ] if of_sound else []
 
-    def stated_unit(self, given: Unit | None, assumed: Unit | None) -> tuple[Unit, list[str]]:
+    def stated_unit(self, wanted: Unit | None, assumed: Unit | None) -> tuple[Unit, list[str]]:
         """Unit to be used, and a sentence without its end if none or another one is stated; ``assumed`` if none is, None refuses.
 
         Raises
@@ -70,18 +70,18 @@ class Values(NamedTuple):
         UnusableError
             If the file states another known unit than the given one, or a unit that is not known and none is given.
         """
-        known = known_unit(self.unit)
-        if given is None and self.unit and known is None:
+        stated = known_unit(self.unit)
+        if wanted is None and self.unit and stated is None:
             message = f"states {self.named} in its header, which is no unit that is read; give the unit of the values"
             raise UnusableError(message, "unit")
-        if given is not None and known not in (None, given):
-            message = f"states {self.named} in its header, and the unit {given} is given; correct what is given"
+        if wanted is not None and stated not in (None, wanted):
+            message = f"states {self.named} in its header, and the unit {wanted} is given; correct what is given"
             raise UnusableError(message, "unit", contradicted="unit")
-        if given is not None:
-            said = self.unit and known is None
-            return given, [f"states {self.named} in its header; the given unit {given} is used"] if said else []
-        if known is not None:
-            return known, []
+        if wanted is not None:
+            said = self.unit and stated is None
+            return wanted, [f"states {self.named} in its header; the given unit {wanted} is used"] if said else []
+        if stated is not None:
+            return stated, []
         if assumed is None:
             raise UnusableError("states no unit; give it", "unit")
         return assumed, [f"it states no unit, and {assumed} is assumed"] if self.table.absolute else []

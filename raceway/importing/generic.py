@@ -187,11 +187,13 @@ def _numbers(keys: Iterable[tuple[str, ...]]) -> dict[tuple[str, ...], int]:
 def _common_rate(recordings: Sequence[Sequence[tuple[Path, Labels]]]) -> float:
     """Sample rate [Hz] of the first recording that tells it; 10 kHz if none does, and every file is then skipped."""
     every = [labels for parts in recordings for _, labels in parts]
-    given = next((labels.sample_rate_hz for labels in every if labels.sample_rate_hz and not labels.long_rate_hz), None)
-    for parts in recordings if given is None else ():
+    labelled = next(
+        (labels.sample_rate_hz for labels in every if labels.sample_rate_hz and not labels.long_rate_hz), None
+    )
+    for parts in recordings if labelled is None else ():
         with suppress(UnusableError, OSError, MemoryError):
             return _join(parts)[1]
-    return given or _NO_RATE
+    return labelled or _NO_RATE
 
 
 def _read(parts: Sequence[tuple[Path, Labels]], fs: float, places: tuple[int, int, int], end: float) -> Recording:

@@ -141,8 +141,8 @@ def _names(lines: Sequence[list[str]], least: int, most: int) -> tuple[tuple[str
 
 
 def _are_units(fields: Sequence[str]) -> bool:
-    known = any(key_of(field) in UNITS or field in SECONDS for field in fields)
-    return known and all(len(field) <= _LONGEST_UNIT for field in fields)
+    has_unit = any(key_of(field) in UNITS or field in SECONDS for field in fields)
+    return has_unit and all(len(field) <= _LONGEST_UNIT for field in fields)
 
 
 def unit_said(name: str) -> str:
@@ -182,8 +182,8 @@ def _common_unit(lines: Sequence[list[str]], names: tuple[str, ...]) -> str:
     said: dict[str, str] = {}
     for fields in lines:
         line = " ".join(fields)
-        found = _COMMON.fullmatch(line)
-        units = found[1].split() if found else [line] if any(map(_says_unit, fields)) else []
+        match = _COMMON.fullmatch(line)
+        units = match[1].split() if match else [line] if any(map(_says_unit, fields)) else []
         if tuple(fields) != names:
             said |= {key_of(unit): unit for unit in units if key_of(unit) not in SECONDS}
     return next(iter(said.values()), "") if len(said) < 2 else " and ".join(said.values())
@@ -197,9 +197,9 @@ def _says_unit(text: str) -> bool:
 
 def _rates(line: str) -> Iterator[float]:
     """Sample rates [Hz] that a line states."""
-    found = _RATE.fullmatch(line)
-    if found:
-        before, number, after = found.groups()
+    match = _RATE.fullmatch(line)
+    if match:
+        before, number, after = match.groups()
         value, unit = number_in(number), before or after
         if value is not None and unit and (before or after) == (after or before):
             yield value * {"k": 1e3, "K": 1e3, "M": 1e6}.get(unit[0], 1.0)

@@ -145,8 +145,8 @@ class Labels(SensorKeys):
 
     def _sensor(self, name: str, own: SensorKeys) -> Sensor:
         unit = own.unit or self.unit
-        given = own if own.sensitivity_mv_per_g or own.sensitivity_mv_per_m_s2 or unit not in VOLTAGES else self
-        sensitivity = volts_per_acceleration(given.sensitivity_mv_per_g, given.sensitivity_mv_per_m_s2)
+        keys = own if own.sensitivity_mv_per_g or own.sensitivity_mv_per_m_s2 or unit not in VOLTAGES else self
+        sensitivity = volts_per_acceleration(keys.sensitivity_mv_per_g, keys.sensitivity_mv_per_m_s2)
         column = self.column if own.column is None else own.column
         rate = None if self.long_rate_hz else self.sample_rate_hz
         variable = own.variable or self.variable

@@ -85,20 +85,20 @@ def labels_of(
     CorpusError
         If keys or values are wrong; one sentence for each.
     """
-    given = {key: value_of(f"common key {key}", key, value) for key, value in common.items()}
-    found: list[tuple[str, Labels]] = []
+    common_keys = {key: value_of(f"common key {key}", key, value) for key, value in common.items()}
+    files: list[tuple[str, Labels]] = []
     problems: dict[str, str] = {}
     for place, own in rows:
         # the cell of a row goes before a common key, and this before the file beside the table
-        keys = {key: value for key, value in {**shared, **given, **own}.items() if value is not None}
+        keys = {key: value for key, value in {**shared, **common_keys, **own}.items() if value is not None}
         try:
-            found.append((place, Labels.model_validate(keys)))
+            files.append((place, Labels.model_validate(keys)))
         except ValidationError as error:
             for sentence in sentences(error, Labels):
                 key = re.split(r"\W", sentence)[0]
                 start = place + (", column " if key in {*keys, *Labels.model_fields} else ": ")
                 if key in keys and key not in own:
-                    start = "common key " if key in given else f"{source}: "
+                    start = "common key " if key in common_keys else f"{source}: "
                 told = sentence.replace("; give it.", f"; give it {advice}.")
                 # the same flaw in every row is one sentence
                 problems.setdefault(told, start)
@@ -106,16 +106,16 @@ def labels_of(
         raise CorpusError("\n".join(f"{start}{told}" for told, start in islice(problems.items(), _MOST_SENTENCES)))
     # facts of the corpus cannot differ between its files
     for key in _ALIKE:
-        _check_alike(key, [(place, getattr(labels, key)) for place, labels in found], "give all files the same")
+        _check_alike(key, [(place, getattr(labels, key)) for place, labels in files], "give all files the same")
     for key in _OF_ALL:
-        given = [(place, "none" if getattr(labels, key) is None else "one") for place, labels in found]
-        _check_alike(key, given, "give all files one")
+        presence = [(place, "none" if getattr(labels, key) is None else "one") for place, labels in files]
+        _check_alike(key, presence, "give all files one")
     rates = [
-        (place, labels.sample_rate_hz) for place, labels in found if labels.sample_rate_hz and not labels.long_rate_hz
+        (place, labels.sample_rate_hz) for place, labels in files if labels.sample_rate_hz and not labels.long_rate_hz
     ]
-    if found[0][1].resample_hz is None:
+    if files[0][1].resample_hz is None:
         _check_alike("sample_rate_hz", rates, "give resample_hz")
-    return found
+    return files
 
 
 def _check_alike(key: str, values: Sequence[tuple[str, Any]], advice: str) -> None:

@@ -110,18 +110,18 @@ def import_set(
         warnings += (
             [f"{len(missing)} of {len(chosen)} recordings were not found: {', '.join(missing)}."] if missing else []
         )
-    given = common or {}
+    callers = common or {}
     texts = [
         (
             file := name_of(path, source),
-            {"path": file} | {key: value_of(file, key, value) for key, value in own.items() if key not in given},
+            {"path": file} | {key: value_of(file, key, value) for key, value in own.items() if key not in callers},
         )
         for path, own in keys
     ]
-    found = labels_of(texts, {}, given, name, "with --set")
+    labelled = labels_of(texts, {}, callers, name, "with --set")
     return import_labelled(
         name,
-        [(place, path, labels) for (path, _), (place, labels) in zip(keys, found, strict=True)],
+        [(place, path, labels) for (path, _), (place, labels) in zip(keys, labelled, strict=True)],
         output,
         window=published.window_s if window is None else window,
         skipped=skipped,

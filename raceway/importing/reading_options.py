@@ -84,7 +84,7 @@ _sensitivity: Decorator = click.option(
 _channels: Decorator = click.option(
     "--channel",
     "channels",
-    callback=lambda *given: names(*given) or (),
+    callback=lambda *arguments: names(*arguments) or (),
     metavar="A,B,C",
     help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
     "of one housing. By default all axes of one sensor, as names or their absence tell: x, y, z, ch1, ch2, ch3, or three columns.",

@@ -99,7 +99,7 @@ def _flaw(signal: FloatArray, length: int, fs: float) -> str | None:
 
 def cut(recording: Recording, source: str, length: int, fs: float) -> list[Record]:
     """Consecutive windows of ``length`` samples; the ``source`` of each ends in ``#`` and the number of its first sample."""
-    known = {
+    facts = {
         **{name: getattr(recording, name) for name in _AS_RECORDED},
         **orders(recording.bearing)._asdict(),
         **recording.extra,
@@ -111,7 +111,7 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
     }
     signal = np.atleast_2d(recording.signal).astype(np.float32)
     starts = range(0, signal.shape[-1] - length + 1, length)
-    return [(signal[:, start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
+    return [(signal[:, start : start + length], facts | {"source": f"{source}#{start}"}) for start in starts]
 
 
 def name_of(path: Path, folder: Path) -> str:

@@ -40,7 +40,7 @@ def read_sheet(path: Path, sheet: str | None) -> NumberTable:
         active = _check_size(path) if zipfile.is_zipfile(path) else _check_chains(path)
         with library.CalamineWorkbook.from_path(str(path)) as book:
             shown = library.SheetVisibleEnum.Visible, library.SheetTypeEnum.WorkSheet
-            visible = [one.name for one in book.sheets_metadata if (one.visible, one.typ) == shown]
+            visible = [entry.name for entry in book.sheets_metadata if (entry.visible, entry.typ) == shown]
             name, notes = _chosen(book.sheet_names, visible, active, sheet)
             rows = book.get_sheet_by_name(name).to_python(skip_empty_area=False)
         text = io.StringIO()
@@ -75,8 +75,8 @@ def _check_size(path: Path) -> int:
             check_limit("file_bytes", cells * _CELL_BYTES, f"has a sheet of {cells} cells, which takes", UnusableError)
         if "xl/workbook.xml" not in archive.namelist():
             return 0
-        found = re.search(rb"\bactiveTab\s*=\s*[\"'](\d{1,5})[\"']", archive.read("xl/workbook.xml"))
-        return int(found[1]) if found else 0
+        tab = re.search(rb"\bactiveTab\s*=\s*[\"'](\d{1,5})[\"']", archive.read("xl/workbook.xml"))
+        return int(tab[1]) if tab else 0
 
 
 def _check_chains(path: Path) -> int:

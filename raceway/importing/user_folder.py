@@ -40,11 +40,11 @@ def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
     """
     left_out = {path.resolve() for path in without}
     files = (path for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
-    found = sorted(path for path in files if is_known(path.suffix) and path.resolve() not in left_out)
-    if not found:
+    recordings = sorted(path for path in files if is_known(path.suffix) and path.resolve() not in left_out)
+    if not recordings:
         message = f"{folder}: has no recording in it ({', '.join(SUFFIXES)}); give a recording, or the folder that holds them."
         raise CorpusError(message)
-    return found
+    return recordings
 
 
 def readings_of(
@@ -53,11 +53,11 @@ def readings_of(
     """Recordings that can be read, one after the other; those of a folder as they state."""
     read = read_recording if unusable is None else read_as_stated
     for path in paths:
-        found = None
+        reading_of_file = None
         with set_aside(path, unusable):
-            found = read(path, reading)
-        if found is not None:
-            yield path, *found
+            reading_of_file = read(path, reading)
+        if reading_of_file is not None:
+            yield path, *reading_of_file
 
 
 @contextmanager

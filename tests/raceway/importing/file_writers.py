@@ -23,7 +23,7 @@ _KIND = "application/vnd.openxmlformats-officedocument.spreadsheetml"
 
 def lines(*columns: Sequence[object], mark: str = ";", comma: bool = False, end: str = "", form: str = ".10g") -> str:
     """Rows of columns of numbers or texts, each with an end."""
-    texts = [[one if isinstance(one, str) else format(one, form) for one in column] for column in columns]
+    texts = [[value if isinstance(value, str) else format(value, form) for value in column] for column in columns]
     rows = (mark.join(row) + end for row in zip(*texts, strict=True))
     return "".join(f"{row.replace('.', ',') if comma else row}\n" for row in rows)
 

@@ -37,11 +37,11 @@ def uff(path, *sets, binary=0):
     for name, unit, values, facts in sets:
         plain = {"func_type": 1, "abscissa_spec_data_type": 17, "ordinate_spec_data_type": 12}
         plain |= {"orddenom_spec_data_type": 0, "z_axis_spec_data_type": 0}
-        one = pyuff.prepare_58(
+        data_set = pyuff.prepare_58(
             binary=binary, rsp_node=1, rsp_dir=1, ref_node=1, ref_dir=1, id1=name, ordinate_axis_units_lab=unit, data=values, x=T,
             abscissa_inc=1 / FS, num_pts=len(values), abscissa_spacing=1, ord_data_type=4, **plain | facts,
         )  # fmt: skip
-        pyuff.UFF(str(path)).write_sets(one, "add")
+        pyuff.UFF(str(path)).write_sets(data_set, "add")
 
 
 def ods(path, content):
@@ -111,9 +111,9 @@ def test_values_unit_and_rate_are_those_that_were_written(tmp_path, name):
     write, expected = READ[name]
     write(tmp_path / name)
     column = {"pressure_and_one.tdms": "a", "channels.lvm": 2}.get(name)
-    found = read_signal(tmp_path / name, column=column)
-    np.testing.assert_allclose(found.values, expected, rtol=1e-9, atol=1e-10)
-    assert found.fs == FS
+    signal = read_signal(tmp_path / name, column=column)
+    np.testing.assert_allclose(signal.values, expected, rtol=1e-9, atol=1e-10)
+    assert signal.fs == FS
 
 
 def test_scales_of_tdms_channels_are_applied(tmp_path):

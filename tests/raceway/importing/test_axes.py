@@ -71,8 +71,8 @@ def test_a_file_of_several_signals_names_its_axes_as_they_are_chosen(name, conte
     with pytest.raises(UnusableError) as refused:
         reader(path, None)(Sensor())
     assert refused.value.axes == axes
-    columns = [int(one) if one.isdecimal() else one for one in axes]
+    columns = [int(axis) if axis.isdecimal() else axis for axis in axes]
     named = name == "fields.mat"
-    found = [read_signal(path, **{"variable" if named else "column": one}).values for one in columns]
-    for values, written in zip(found, (X, Y, Z), strict=False):
+    signals = [read_signal(path, **{"variable" if named else "column": axis}).values for axis in columns]
+    for values, written in zip(signals, (X, Y, Z), strict=False):
         np.testing.assert_allclose(values / values.std(), written / written.std(), rtol=1e-9)

@@ -80,8 +80,8 @@ def test_every_oddity_of_the_cwru_copies_is_told(cwru):
 def test_the_fault_lines_of_clear_cwru_recordings_are_at_the_nominal_orders(cwru):
     _, corpus = cwru
     for recording, order in ((209, 5.4152), (234, 3.5848)):
-        found, height = envelope_line(corpus, recording, order)
-        assert found == pytest.approx(order, rel=0.006)  # measured: BPFI -0.2 %, BPFO +0.3 % of nominal
+        measured, height = envelope_line(corpus, recording, order)
+        assert measured == pytest.approx(order, rel=0.006)  # measured: BPFI -0.2 %, BPFO +0.3 % of nominal
         assert height > 30
     assert envelope_line(corpus, 100, 5.4152)[1] < 15
 
@@ -92,8 +92,8 @@ def test_the_mfpt_copies_give_14_recordings_whose_lines_are_a_little_below_nomin
     assert validate_corpus(done.path) == []
     assert sorted(set((corpus["load"].values / 4.4482216).round().tolist())) == [0, 25, 50, 100, 150, 200, 250, 300]
     recording = int(corpus.recording.values[corpus.source.values == "OuterRaceFault_vload_7.mat:bearing.gs#0"][0])
-    found, height = envelope_line(corpus, recording, 3.245)
-    assert 0.985 < found / 3.245 < 0.997
+    measured, height = envelope_line(corpus, recording, 3.245)
+    assert 0.985 < measured / 3.245 < 0.997
     assert height > 30
 
 

@@ -69,8 +69,8 @@ def test_a_number_is_read_as_it_was_written(numbers, comma):
     texts = [f"{number:f}".replace(".", "," if comma else ".") for number in numbers]
     rows = [BASE | {"path": f"{n}.npy", "load_n": text} for n, text in enumerate(texts)]
     with tempfile.TemporaryDirectory() as folder:
-        found = read(Path(folder), *rows, mark=";" if comma else ",")
-    assert [labels.load_n for labels in found] == [float(number) for number in numbers]
+        rows_read = read(Path(folder), *rows, mark=";" if comma else ",")
+    assert [labels.load_n for labels in rows_read] == [float(number) for number in numbers]
 
 
 def test_a_table_of_a_spreadsheet_has_a_mark_semicolons_commas_and_empty_rows(tmp_path):
@@ -78,8 +78,8 @@ def test_a_table_of_a_spreadsheet_has_a_mark_semicolons_commas_and_empty_rows(tm
     for encoding, start in (("utf-8", codecs.BOM_UTF8), ("utf-16", b""), ("latin-1", b"")):
         (tmp_path / "labels.csv").write_bytes(start + text.replace("\n", "\r\n").encode(encoding))
         common = {key: BASE[key] for key in ("fault", "bearing", "sample_rate_hz")} | {"unit": "g"}
-        found = [one for _, one in read_table_of_labels(tmp_path / "labels.csv", common)]
-        assert [(one.specimen, one.shaft_rpm, one.load_n) for one in found] == [
+        rows_read = [labels for _, labels in read_table_of_labels(tmp_path / "labels.csv", common)]
+        assert [(labels.specimen, labels.shaft_rpm, labels.load_n) for labels in rows_read] == [
             ("007", 1480.5, 0.25),
             ("Neu ä", 900, 1200),
         ]
@@ -204,9 +204,9 @@ def test_the_table_in_the_documentation_is_one(tmp_path):
     shared, channels = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
     (tmp_path / "labels.csv").write_text(table, encoding="utf-8")
     (tmp_path / "labels.yaml").write_text(shared + channels, encoding="utf-8")
-    found = [labels for _, labels in read_table_of_labels(tmp_path / "labels.csv", {})]
-    assert [labels.fault for labels in found] == ["healthy", "healthy", "outer", "ball"]
-    assert [labels.bearing.n_balls for labels in found] == [9, 9, 9, 8]
-    assert found[0].channel_names == ("drive end", "fan end")
+    rows_read = [labels for _, labels in read_table_of_labels(tmp_path / "labels.csv", {})]
+    assert [labels.fault for labels in rows_read] == ["healthy", "healthy", "outer", "ball"]
+    assert [labels.bearing.n_balls for labels in rows_read] == [9, 9, 9, 8]
+    assert rows_read[0].channel_names == ("drive end", "fan end")
     rows = page.partition("| key | meaning |")[2].partition("\n\n")[0].splitlines()[1:]
     assert {key for row in rows for key in re.findall(r"`(\w+)`", row.split("|")[1])} == {*Labels.model_fields}

@@ -81,8 +81,8 @@ def test_every_format_gives_the_numbers_that_were_written(tmp_path):
         write(tmp_path / name)
     done, corpus = imported(tmp_path, *({"path": name, **keys} for name, (_, keys) in WRITERS.items()))
     assert (done.recordings, done.records, done.skipped) == (len(WRITERS), 2 * len(WRITERS), ())
-    for found in signals(corpus).reshape(len(WRITERS), -1):
-        np.testing.assert_array_equal(found, SIGNAL[:2000].astype(np.float32))
+    for values in signals(corpus).reshape(len(WRITERS), -1):
+        np.testing.assert_array_equal(values, SIGNAL[:2000].astype(np.float32))
 
 
 def test_a_row_overrides_what_all_rows_share_and_units_become_si(tmp_path):
@@ -131,16 +131,16 @@ def test_specimens_belong_to_their_rig_and_a_file_that_is_listed_again_is_skippe
 
 
 def test_recordings_of_another_set_have_another_identity_although_their_files_have_the_same_names(tmp_path):
-    found = []
+    identities = []
     for folder, signal in (("one", SIGNAL), ("same", SIGNAL), ("other", -SIGNAL)):
         (tmp_path / folder).mkdir()
         np.savetxt(tmp_path / folder / "a.csv", signal)
         _, corpus = imported(tmp_path / folder, {"path": "a.csv"})
-        found.append(corpus["identity"].values.tolist())
-    one, same, other = found
-    assert one == same
-    assert not set(one) & set(other)
-    assert {text.split("/", 1)[1] for text in one + other} == {"0/0/0/-1"}
+        identities.append(corpus["identity"].values.tolist())
+    first, same, other = identities
+    assert first == same
+    assert not set(first) & set(other)
+    assert {text.split("/", 1)[1] for text in first + other} == {"0/0/0/-1"}
 
 
 def test_the_card_says_where_labels_and_units_come_from(tmp_path):

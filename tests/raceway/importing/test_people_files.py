@@ -30,25 +30,25 @@ def write(path, content):
 
 @pytest.mark.parametrize("name", RIGHT)
 def test_a_file_is_read_as_it_was_written_and_a_unit_that_it_does_not_state_is_told(tmp_path, name):
-    content, given, fs, unit = RIGHT[name]
+    content, keys, fs, unit = RIGHT[name]
     write(tmp_path / name, content)
-    found = read_signal(tmp_path / name, **given, options=OPTIONS)
+    signal = read_signal(tmp_path / name, **keys, options=OPTIONS)
     coarse = {"bits_24.wav": 2e-7, "save_ascii": 1e-7, "fortran.dat": 1e-6}
     digits = next((resolution for start, resolution in coarse.items() if name.startswith(start)), 0)
-    np.testing.assert_allclose(found.values, OTHER_VALUES.get(name, X) * FACTORS[unit], rtol=1e-9, atol=digits)
-    assert found.fs == fs
-    assert found.unit == (unit or "m/s2")
-    told = [note for note in found.warnings if any(words in note for words in OF_UNITS)]
+    np.testing.assert_allclose(signal.values, OTHER_VALUES.get(name, X) * FACTORS[unit], rtol=1e-9, atol=digits)
+    assert signal.fs == fs
+    assert signal.unit == (unit or "m/s2")
+    told = [note for note in signal.warnings if any(words in note for words in OF_UNITS)]
     assert len(told) == (
         unit is None or name in ("unit_given.csv", "volts.lvm.txt")
     )  # these state one that is not read
 
 
-def assert_refused(path, content, given, sentence):
+def assert_refused(path, content, keys, sentence):
     """The file is refused with one sentence that says so."""
     write(path, content)
     with pytest.raises(CorpusError) as refused:
-        read_signal(path, **given, options=OPTIONS)
+        read_signal(path, **keys, options=OPTIONS)
     assert sentence in str(refused.value)
     assert "\n" not in str(refused.value)
 

@@ -97,14 +97,14 @@ def test_files_get_the_labels_of_their_rows_and_the_state_of_the_set_is_told(tmp
     done, corpus = imported(name, tmp_path, common=common)
     assert done.skipped == ()
     assert done.warnings[0] == f"{name}: {UNTRIED}."
-    found = {}
+    labels_of_files = {}
     for row in range(corpus.sizes["record"]):
-        one, load = corpus.isel(record=row), float(corpus["load"][row])
-        fault = FAULTS[int(one.fault)] if one.fault < len(FAULTS) else "unknown"
-        rpm = round(60 * float(one.shaft_rate))
-        file = str(one.source.values).partition("#")[0].partition(":")[0]
-        found.setdefault(file, (fault, int(one.specimen), rpm, None if np.isnan(load) else round(load)))
-    assert found == files
+        labels, load = corpus.isel(record=row), float(corpus["load"][row])
+        fault = FAULTS[int(labels.fault)] if labels.fault < len(FAULTS) else "unknown"
+        rpm = round(60 * float(labels.shaft_rate))
+        file = str(labels.source.values).partition("#")[0].partition(":")[0]
+        labels_of_files.setdefault(file, (fault, int(labels.specimen), rpm, None if np.isnan(load) else round(load)))
+    assert labels_of_files == files
     assert float(corpus.sample_rate[0]) == {"xjtu": 25_600, "ims": 20_000, "paderborn": 64_000, "ottawa": 42_000}.get(
         name, 48_000 if name == "cwru_48k" else 12_000
     )

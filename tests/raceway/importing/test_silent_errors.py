@@ -6,7 +6,6 @@ import zipfile
 import h5py
 import numpy as np
 import pytest
-import scipy.io
 
 from features.baselines.model_file import read_model_file
 from gen.support.errors import CorpusError
@@ -53,11 +52,11 @@ READ = {  # content or writer, what is given, values, sample rate
 
 @pytest.mark.parametrize("name", READ)
 def test_a_file_is_read_as_it_was_written(tmp_path, name):
-    content, given, values, fs = READ[name]
+    content, keys, values, fs = READ[name]
     write(tmp_path / name, content)
-    found = read_signal(tmp_path / name, **given, options=OPTIONS)
-    np.testing.assert_allclose(found.values, values, rtol=1e-9)
-    assert found.fs == fs
+    signal = read_signal(tmp_path / name, **keys, options=OPTIONS)
+    np.testing.assert_allclose(signal.values, values, rtol=1e-9)
+    assert signal.fs == fs
     assert recordings_in(tmp_path, []) == [tmp_path / name]
 
 
@@ -91,12 +90,6 @@ REFUSED = {  # content or writer, what is given, part of the sentence
 @pytest.mark.parametrize("name", REFUSED)
 def test_a_file_that_leaves_something_open_is_refused(tmp_path, name):
     assert_refused(tmp_path / name, *REFUSED[name])
-
-
-def test_the_speed_that_belongs_to_the_variable_is_read(tmp_path):
-    scipy.io.savemat(tmp_path / "a.mat", {"X099_DE_time": X, "X098_DE_time": Y, "X099RPM": 1750, "X098RPM": 1772})
-    assert read_signal(tmp_path / "a.mat", variable="X099_*").rpm == 1750
-    assert read_signal(tmp_path / "a.mat", variable="X098_*").rpm == 1772
 
 
 LABELS = {"bearing": "6205", "unit": "g", "sample_rate_hz": 12800}

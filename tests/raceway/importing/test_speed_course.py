@@ -68,10 +68,10 @@ def test_lines_of_the_shaft_keep_their_height_and_stand_at_their_order():
 def test_the_diagnosis_of_a_run_up_is_right_with_its_course(run_up, model, tmp_path):
     path = tmp_path / "run_up.csv"
     path.write_text(text(run_up, SHARE * RPM, mark=",", header="x [m/s2],speed [rpm]\n"))
-    found = told(path, "--bearing", "6205", "--rate", RATE, "--speed-column", "speed", "--model", model)
-    assert found["verdict"] == "outer"
-    assert found["shaft_rpm"] == pytest.approx(RPM, rel=1e-2)
-    assert any("equal angles of its shaft" in sentence for sentence in found["warnings"])
+    answer = told(path, "--bearing", "6205", "--rate", RATE, "--speed-column", "speed", "--model", model)
+    assert answer["verdict"] == "outer"
+    assert answer["shaft_rpm"] == pytest.approx(RPM, rel=1e-2)
+    assert any("equal angles of its shaft" in sentence for sentence in answer["warnings"])
     assert (
         told(path, "--bearing", "6205", "--rate", RATE, "--channel", 0, "--rpm", RPM, "--model", model)["verdict"]
         != "outer"
