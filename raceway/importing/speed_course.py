@@ -12,7 +12,6 @@ from gen.support.units import from_si, rpm_to_hertz
 from raceway.importing.refused_files import FloatArray, UnusableError
 
 _SMEARED = 2 ** (1 / 3)  # highest over lowest speed: a third of an octave, as narrow as bands of features are
-_UNEVEN = 1.6  # ratio of the times between neighbouring pulses: one is missed or double
 _HERTZ = {"hz": 1.0, "1/s": 1.0} | dict.fromkeys(("rpm", "1/min", "min-1", "r/min", "u/min"), rpm_to_hertz(1.0))
 
 
@@ -27,7 +26,8 @@ def at_equal_angles(signal: FloatArray, fs: float, course: FloatArray, unit: str
     UnusableError
         If the course is none of a shaft that turns all the time.
     """
-    from features.signal.orders import CROSSINGS, angles_from_speed, angles_from_tacho, resample_to_angle
+    from features.signal.orders import CROSSINGS, angles_from_speed, resample_to_angle
+    from features.signal.tacho import angles_from_tacho
 
     factor, pulses = _HERTZ.get(unit.casefold()), int(unit) if unit.isdecimal() else 0
     if factor is None and pulses < 1:
@@ -48,16 +48,6 @@ def at_equal_angles(signal: FloatArray, fs: float, course: FloatArray, unit: str
         even = resample_to_angle(signal, angle * (fs / (2 * mean)), 2)
     except ValueError as error:
         raise UnusableError(f"has no course of a speed: {error}") from None
-    if pulses:
-        places = np.interp(
-            np.arange(np.ceil(turns[0] * pulses), turns[-1] * pulses), turns * pulses, np.arange(turns.size)
-        )
-        ratio = np.diff(places)[1:] / np.diff(places)[:-1]
-        odd = np.flatnonzero(np.maximum(ratio, 1 / ratio) > _UNEVEN)
-        if odd.size:
-            raise UnusableError(
-                f"has a tacho with a missed or a double pulse at {places[odd[0] + 1] / fs:.4g} s; correct it"
-            )
     rates = np.gradient(turns) * fs
     low, high = float(rates.min()), float(rates.max())
     told = (
