@@ -53,11 +53,8 @@ def readings_of(
     """Recordings that can be read, one after the other; those of a folder as they state."""
     read = read_recording if unusable is None else read_as_stated
     for path in paths:
-        reading_of_file = None
         with set_aside(path, unusable):
-            reading_of_file = read(path, reading)
-        if reading_of_file is not None:
-            yield path, *reading_of_file
+            yield path, *read(path, reading)
 
 
 @contextmanager
