@@ -172,6 +172,7 @@ RIGHT = {  # file, content or writer, what is given, what is found beside X: sam
     "units_in_brackets_below.csv": (text(T, X, header="Time;DE\n[s];[mg]\n"), {}, FS, "mg"),
     "units_alone.csv": (text(T, X, header="s;g\n"), {}, FS, "g"),
     "first_row_longer.csv": (text(X, Y, [f"{Y[0]};1480", *Y[1:]]), {"column": 0, **AT}, FS, None),
+    "row_longer_than_names.csv": (text(X, [Y[0], f"{Y[1]};7", *Y[2:]], header="x [g];y\n"), {"column": "x", **AT}, FS, "g"),
     "femto.csv": (text([9] * N, [39] * N, [39] * N, range(N), X, Y, mark=","), {"column": 4, **AT}, FS, None),
     "comments.txt": (text(T, X, mark=" ", header="% made by hand\n% t [s] x [g]\n", tail="% end\n"), {}, FS, "g"),
     "other_column_with_text.csv": (text(T, X, ["ok"] * N, header="t [s];x [g];state\n"), {"delimiter": ";"}, FS, "g"),
@@ -346,5 +347,6 @@ REFUSED = {  # file, content or writer, what is given, part of the sentence
         "has 1 samples of 640 that are not finite numbers, the first is number 41"),
     "structured.npy": (array(np.zeros(N, dtype=[("t", float), ("x", float)])), AT, "not one column of real numbers, or a few long ones"),
     "complex.npy": (array(X * 1j), AT, "not one column of real numbers, or a few long ones"),
+    "beyond_numbers.npy": (array(X * 1e308), {"unit": "g", **AT}, "has values beyond the range of numbers; check its unit."),
     "number.npy": (array(np.array(0.5)), AT, "not one column of real numbers, or a few long ones"),
 }  # fmt: skip

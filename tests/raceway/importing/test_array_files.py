@@ -78,6 +78,15 @@ def xls(path):
     book.save(str(path))
 
 
+def ring(path):
+    """Old Excel file with a sector that leads to itself, which python-calamine would follow without end."""
+    xls(path)
+    content = bytearray(path.read_bytes())
+    table = 512 * (1 + int.from_bytes(content[76:80], "little"))
+    content[table : table + 4] = bytes(4)
+    path.write_bytes(content)
+
+
 def parquet(path):
     pytest.importorskip("pyarrow", reason="pyarrow is in the extra files")
     pd.DataFrame({"t [s]": T, "x [g]": X, "who": "me"}).to_parquet(path)
@@ -136,6 +145,8 @@ REFUSED = {
     "damaged.npz": (lambda path: path.write_bytes(b"PK\3\4" + bytes(40)), "is truncated, damaged or not a NumPy file"),
     "pickle.npz": (lambda path: np.savez(path, x=np.array([{}], dtype=object)), "is truncated, damaged or not a NumPy file"),
     "two.npz": (lambda path: np.savez(path, de=X, fe=Y), "holds de, fe, more than one variable with 100 numbers or more; name one with"),
+    "ring.xls": (ring, "is damaged, or an old Excel file above 6.8 MB; save it as .xlsx."),
+    "line_break.tdms": (lambda path: tdms(path, ("p\nq", "Pa", X)), "states column 0 p?q in Pa in its header"),
     "repeated.ods": (lambda path: ods(path, ods_row(*[0.5] * 100, times=1_000_000)), "has a sheet of 100000000 cells, which takes"),
 }  # fmt: skip
 
