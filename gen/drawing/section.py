@@ -17,7 +17,7 @@ from pydantic import (
     model_validator,
 )
 
-from gen.drawing.distributions import Constant, Listed, Number, check_bounds, is_distribution
+from gen.drawing.distributions import Constant, Listed, Number, check_bounds, interval, is_distribution, is_within
 from gen.drawing.draws import Draws
 from gen.drawing.streams import Level
 from gen.support.errors import RecipeError
@@ -148,6 +148,19 @@ class Section(BaseModel):
             elif (new := value.as_drawn(f"{place}{key}.")) is not value:
                 drawn[key] = new
         return self.model_copy(update=drawn) if drawn else self
+
+    def check_drawn(self, place: str) -> None:
+        """RecipeError if a drawn value is not in the range of its key; paths of keys begin with ``place``."""
+        for key, bounds in bounds_of(type(self)).items():
+            drawn = self.__dict__[key]
+            for value in drawn if isinstance(drawn, tuple) else (drawn,):
+                if not is_within(value, bounds):
+                    raise RecipeError(
+                        f"{place}{key}: {value:g} was drawn, which is not in {interval(bounds)}; correct draw() of its class."
+                    )
+        for key, sections in self.below():
+            for section in sections if isinstance(sections, tuple) else (sections,):
+                section.check_drawn(f"{place}{key}.")
 
     def below(self) -> list[tuple[str, Any]]:
         """Sections, and tuples of them, in this one."""

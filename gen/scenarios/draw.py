@@ -80,7 +80,25 @@ def draw_scenarios(
         draws = _draws(recipe, "specimen", number, number, point)
         fault_try = (fault_tries or {}).get(number, 0)
         specimens[number] = _draw_specimen(recipe, *rigs[recipe.rig_of(number)], draws, fault_try)
-    return list(_draw_records(recipe, specimens, numbers))
+    scenarios = list(_draw_records(recipe, specimens, numbers))
+    _check_drawn(scenarios)
+    return scenarios
+
+
+def _check_drawn(scenarios: list[Scenario]) -> None:
+    """RecipeError if a mechanism, such as that of a plug-in, drew a value that its key does not allow: replay would refuse the record."""
+    checked: set[int] = set()  # records share the mechanisms of their rig and specimen
+    for scenario in scenarios:
+        recipe = scenario.recipe
+        for key, section in (
+            ("faults", recipe.faults[0]),
+            ("background", recipe.background),
+            ("machine_conditions", recipe.machine_conditions),
+            ("sensor_faults", recipe.sensor_faults),
+        ):
+            if section is not None and id(section) not in checked:
+                checked.add(id(section))
+                section.check_drawn(f"record {scenario.origin.record}: {key}.")
 
 
 def _draws(recipe: Recipe, level: Any, of: int, item: int, point: NDArray[np.float64]) -> Draws:

@@ -9,8 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gen
+from gen.mechanisms.background.looseness import Looseness
+from gen.mechanisms.chain.drift import Drift
 from gen.recipe import Recipe
+from gen.recipe.faults import OF_KIND
 from gen.scenarios import draw_scenarios
+from gen.support.errors import RecipeError
 from tests.conftest import small_with
 from tests.drawn_values import anywhere
 
@@ -162,3 +166,24 @@ def test_grids_of_one_level_give_every_combination_once_before_they_come_again(r
         of_rig.add(round(scenario.properties["diametral_clearance"] * 1e6))
     assert all(sorted(found) == sorted(product(rpm, load)) for found in combinations.values())
     assert all(found == set(clearance) for found in clearances.values())
+
+
+MECHANISMS = {
+    "faults": (OF_KIND["inner"], {"kind": "inner", "width_mm": 0.5}, "angle_deg", (400.0,)),
+    "background": (Looseness, {"probability": 1, "lift": 3, "frequency_hz": 500, "level_db": 0}, "lift", 1.0),
+    "sensor_faults": (Drift, {"probability": 1}, "wander_m_s2", -0.1),
+}
+
+
+@pytest.mark.parametrize("place", MECHANISMS)
+def test_a_mechanism_that_draws_what_its_keys_do_not_allow_is_refused_by_the_key(recipe_with, place):
+    base, keys, key, value = MECHANISMS[place]
+
+    class Mechanism(base):
+        def draw(self, of):
+            return super().draw(of).model_copy(update={key: value})
+
+    mechanism, recipe = Mechanism(**keys), recipe_with()
+    section = (mechanism,) if place == "faults" else getattr(recipe, place).model_copy(update={base.place: mechanism})
+    with pytest.raises(RecipeError, match=rf"record 0: {place}\.(\w+\.)?{key}: .* was drawn, which is not in [\[(]"):
+        draw_scenarios(recipe.model_copy(update={place: section}))
