@@ -96,7 +96,7 @@ def _check_drawn(scenarios: list[Scenario]) -> None:
             ("machine_conditions", recipe.machine_conditions),
             ("sensor_faults", recipe.sensor_faults),
         ):
-            if section is not None and id(section) not in checked:
+            if id(section) not in checked:
                 checked.add(id(section))
                 section.check_drawn(f"record {scenario.origin.record}: {key}.")
 

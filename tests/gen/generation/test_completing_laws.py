@@ -124,7 +124,7 @@ def test_every_part_that_is_not_the_right_one_is_made_again_to_the_byte(write_re
     recipe = write_recipe(
         tmp_path / "r.yaml", {"storage.records_per_part": 1, "corpus.rigs": 1, "corpus.specimens_per_rig": 6}
     )
-    whole, other = generate(recipe, tmp_path / "whole"), generate(recipe, tmp_path / "other", seed=4, records=5)
+    whole, other = generate(recipe, tmp_path / "whole"), generate(recipe, tmp_path / "other", seed=4, parts=range(4, 5))
     folder = unfinished(shutil.copytree(whole.path, tmp_path / "damaged"))
     for number, damage in enumerate(STRANGE.values()):
         damage(folder / "parts" / part_name(number), other.path)

@@ -17,63 +17,60 @@ CHANGES = {
     "rigs": {"corpus.split": {"by": "rig", "test": 0.5}},
     "groups": {"corpus.rungs": [0.5, 1], "corpus.records_per_specimen": 1},
 }
+SHORT_PARTS = {"storage.records_per_part": 4, "corpus.rigs": 2, "corpus.specimens_per_rig": 2}
 
 
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_grown_corpus_is_the_one_made_at_once(write_recipe, tmp_path, name):
     """From a part that is not full and from full ones, up to rigs beyond those of the recipe."""
-    recipe = write_recipe(tmp_path / "r.yaml", {"corpus.rigs": 2, **CHANGES[name]})
-    assert read_recipe(recipe).n_records < 24
-    for records, kept in ((4, 0), (12, 0), (16, 1), (24, 2)):
+    recipe = write_recipe(tmp_path / "r.yaml", SHORT_PARTS | CHANGES[name])
+    assert read_recipe(recipe).n_records < 12
+    for records, kept in ((6, 0), (8, 1), (12, 2)):
         assert generate(recipe, tmp_path / "grown", records=records).kept == kept
-    at_once = generate(recipe, tmp_path / "at_once", records=24)
+    at_once = generate(recipe, tmp_path / "at_once", records=12)
     assert_the_same_corpus(tmp_path / "grown", at_once)
 
 
 def test_a_corpus_stays_whole_until_the_larger_one_is(write_recipe, tmp_path):
-    recipe = write_recipe(tmp_path / "r.yaml", {"storage.records_per_part": 4})
+    recipe = write_recipe(tmp_path / "r.yaml", SHORT_PARTS)
     generate(recipe, tmp_path / "c", records=6)
     with open_corpus(tmp_path / "c") as corpus:
         before = corpus.load()
 
     def interrupted(done, _whole):
-        if done > 10:
+        if done > 8:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        generate(recipe, tmp_path / "c", records=16, progress=interrupted)
+        generate(recipe, tmp_path / "c", records=12, progress=interrupted)
     parts = {path.name for path in (tmp_path / "c" / "parts").iterdir()}
     assert {"part-00001-2.nc", "part-00001.nc", "part-00002.nc"} <= parts
     assert validate_corpus(tmp_path / "c") == []
     with open_corpus(tmp_path / "c") as same:
         assert same.identical(before)
     assert generate(recipe, tmp_path / "c", records=6).records == 6
-    generate(recipe, tmp_path / "c", records=16)
-    assert_the_same_corpus(tmp_path / "c", generate(recipe, tmp_path / "at_once", records=16))
+    generate(recipe, tmp_path / "c", records=12)
+    assert_the_same_corpus(tmp_path / "c", generate(recipe, tmp_path / "at_once", records=12))
 
 
-def test_parts_of_one_corpus_made_apart_are_completed_or_joined(write_recipe, tmp_path):
-    recipe = write_recipe(tmp_path / "r.yaml")
-    at_once = generate(recipe, tmp_path / "at_once")
-    assert generate(recipe, tmp_path / "a", parts=range(2, 3)).records == 8
-    generate(recipe, tmp_path / "b", parts=range(1))
-    both = generate(recipe, tmp_path / "b", parts=range(1, 2))
+def test_parts_of_one_corpus_made_apart_are_completed_or_joined(recipe_file, whole, tmp_path):
+    assert generate(recipe_file, tmp_path / "a", parts=range(2, 3)).records == 8
+    generate(recipe_file, tmp_path / "b", parts=range(1))
+    both = generate(recipe_file, tmp_path / "b", parts=range(1, 2))
     assert (both.records, both.parts, both.kept) == (16, 2, 1)
     copy([tmp_path / "b", tmp_path / "a"], tmp_path / "joined")
-    with open_corpus(at_once.path) as whole, open_corpus(tmp_path / "joined") as joined:
-        assert joined.drop_attrs().equals(whole.drop_attrs())
-    generate(recipe, tmp_path / "b")
-    assert_the_same_corpus(tmp_path / "b", at_once)
+    with open_corpus(whole.path) as at_once, open_corpus(tmp_path / "joined") as joined:
+        assert joined.drop_attrs().equals(at_once.drop_attrs())
+    generate(recipe_file, tmp_path / "b")
+    assert_the_same_corpus(tmp_path / "b", whole)
 
 
 @pytest.mark.parametrize("parts", [range(3, 4), range(0), range(2, 1), range(0, 3, 2), range(-1, 2)])
-def test_parts_that_a_corpus_does_not_have_are_refused(write_recipe, tmp_path, parts):
-    with pytest.raises(
-        RecipeError, match=r"^parts: .* is not allowed; small has the parts 0-2, give a range of them\.$"
-    ):
-        generate(write_recipe(tmp_path / "r.yaml"), tmp_path / "c", parts=parts)
+def test_parts_that_a_corpus_does_not_have_are_refused(recipe_file, tmp_path, parts):
+    with pytest.raises(RecipeError, match=r"^parts: .* is not allowed; small has the parts 0-2, give a range of them\.$"):
+        generate(recipe_file, tmp_path / "c", parts=parts)
     with pytest.raises(CorpusError, match="is one file, which has all parts; give a folder"):
-        generate(write_recipe(tmp_path / "r.yaml"), tmp_path / "c.nc", parts=range(1))
+        generate(recipe_file, tmp_path / "c.nc", parts=range(1))
 
 
 def test_parts_beyond_the_hundred_thousandth_are_in_the_order_of_their_records(copied):

@@ -28,11 +28,6 @@ def test_the_largest_severity_sets_the_level_of_a_group_in_whatever_order_it_is_
     np.testing.assert_array_equal(falling[SIGNAL].values[::-1], rising[SIGNAL].values)
 
 
-def same_but_source(one, other):
-    """Whether two Datasets of recipes with different names are the same; sources and settings have the name."""
-    return one.drop_vars(["source", "draws"]).identical(other.drop_vars(["source", "draws"]))
-
-
 def replayed(directory):
     """Whether the first and the last record are made again."""
     with gen.open_corpus(directory) as corpus:
@@ -44,8 +39,8 @@ def test_one_record_is_the_only_one_of_records():
     one = gen.record(OUTER, **SHORT)
     assert one[SIGNAL].dims == ("channel", "elapsed_time")
     assert one["bpfo"].dims == ()
-    alone = gen.records(OUTER, **SHORT).isel(record=0)
-    assert same_but_source(one.drop_attrs(deep=False), alone.drop_attrs(deep=False))
+    alone = gen.records(OUTER, name="record", **SHORT).isel(record=0)
+    assert one.drop_attrs(deep=False).identical(alone.drop_attrs(deep=False))
 
 
 @pytest.mark.usefixtures("started_processes")
@@ -73,13 +68,11 @@ def saved(dataset, folder):
 @pytest.mark.parametrize(
     "changed",
     [
-        lambda ladder, _: ladder.isel(record=[4, 1]),
         lambda ladder, _: ladder.isel(record=2),
         lambda ladder, _: xr.concat([ladder.isel(record=[5, 3]), ladder.isel(record=0)], "record"),
-        lambda ladder, _: ladder.isel(record=[3]).transpose("elapsed_time", "channel", "record"),
-        lambda ladder, folder: saved(ladder.isel(record=[2]), folder),
+        lambda ladder, folder: saved(ladder.isel(record=[3]).transpose("elapsed_time", "channel", "record"), folder),
     ],
-    ids=["some", "one", "joined", "transposed", "saved"],
+    ids=["one", "joined", "transposed and saved"],
 )
 def test_every_record_of_a_dataset_that_was_cut_or_joined_is_replayed(ladder, tmp_path, changed):
     directory = gen.write_corpus(changed(ladder, tmp_path), tmp_path / "corpus")
@@ -183,12 +176,8 @@ def test_gen_record_makes_one_record_alone():
 def test_drawn_scenarios_give_the_records_of_their_recipe(ladder):
     scenarios = gen.read_scenarios(ladder)
     assert scenarios == gen.draw_scenarios(gen.read_recipe(ladder))
-    again = gen.simulate(scenarios)
-    assert (
-        again.drop_vars("step_error")
-        .drop_attrs(deep=False)
-        .identical(ladder.drop_vars("step_error").drop_attrs(deep=False))
-    )
+    again, unchecked = gen.simulate(scenarios).drop_vars("step_error"), ladder.drop_vars("step_error")
+    assert again.drop_attrs(deep=False).identical(unchecked.drop_attrs(deep=False))
 
 
 def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_path):

@@ -20,9 +20,8 @@ def written(records, folder):
     finish_corpus(folder, rows)
 
 
-@pytest.mark.parametrize("record", [0, 7, 8, 23])
-def test_any_record_can_be_made_again_bit_for_bit(whole, single, record):
-    for made in (whole, single):
+def test_any_record_can_be_made_again_bit_for_bit(whole, single):
+    for made, record in ((whole, 0), (whole, 7), (whole, 8), (single, 23)):
         replayed = replay(made.path, record)
         assert replayed.identical
         assert replayed.dataset["recording"].values.tolist() == [record]

@@ -46,13 +46,12 @@ def assert_same(records, others):
 
 
 def test_every_fault_of_a_recipe_that_redraws_can_be_seen(redrawing):
-    recipe, made = redrawing
+    _, made = redrawing
     faulty = [record for record in made if record.scenario.fault != "healthy"]
     assert len(faulty) > 10
     assert all(record.detectable == 1 for record in faulty)
     assert any(record.scenario.origin.fault_try for record in made)
     assert any(record.scenario.origin.level_try for record in made)
-    assert recipe.truth.undetected == "redraw"
 
 
 def test_a_fault_that_is_drawn_again_leaves_everything_else_as_it_was(redrawing):
@@ -78,20 +77,13 @@ def test_a_fault_that_is_drawn_again_keeps_the_conditions_of_its_entry(recipe_wi
         assert [one.spalls for one in again] != [one.spalls for one in first]
 
 
-@pytest.mark.parametrize("cut", [range(3, 9), range(24, 32)])
-def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing, cut):
+def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing):
+    """Also the last record of a specimen, alone, has the fault that can be seen in all of its records."""
     recipe, whole = redrawing
-    assert_same(make_records(recipe, cut), whole[cut.start : cut.stop])
-
-
-def test_the_last_record_of_a_specimen_made_alone_has_the_fault_that_all_its_records_show(redrawing):
-    recipe, whole = redrawing
-    per_specimen = recipe.corpus.records_per_specimen
-    redrawn = {one.origin.specimen for one in scenarios_of(whole) if one.origin.fault_try}
+    redrawn = {scenario.origin.specimen for scenario in scenarios_of(whole) if scenario.origin.fault_try}
     assert redrawn
-    for specimen in redrawn:
-        number = (specimen + 1) * per_specimen - 1
-        assert_same(make_records(recipe, range(number, number + 1)), whole[number : number + 1])
+    for numbers in (range(3, 9), range(24, 32), *(recipe.records_of(specimen)[-1:] for specimen in redrawn)):
+        assert_same(make_records(recipe, numbers), whole[numbers.start : numbers.stop])
 
 
 @pytest.mark.parametrize(("waviness", "kinds"), [(0, ["inner"]), (20, ["inner", "outer"])])
@@ -155,23 +147,15 @@ def hidden(recipe_with, undetected):
     return recipe, make_records(recipe, range(2))
 
 
-def test_a_fault_that_adds_exactly_nothing_keeps_its_label_where_the_recipe_says_so(recipe_with):
+@pytest.mark.parametrize(("undetected", "spalls"), [("keep", 1), ("healthy", 0)])
+def test_a_fault_that_adds_exactly_nothing_keeps_its_label_or_is_called_healthy(recipe_with, undetected, spalls):
     """Records with and without a spall that no loaded ball meets have the same bits."""
-    dataset = part_dataset(*hidden(recipe_with, "keep"))
-    assert dataset["fault_snr"].values.tolist() == [-np.inf, -np.inf]
-    assert dataset["fault_share"].values.tolist() == [0.0, 0.0]
-    assert dataset["loaded_hits"].values.tolist() == [0, 0]
-    assert dataset["fault"].values.tolist() == [2, 2]
-    assert dataset["detectable"].values.tolist() == [0, 0]
-    assert (dataset["width"] > 0).all()
-
-
-def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(recipe_with):
-    dataset = part_dataset(*hidden(recipe_with, "healthy"))
-    assert dataset["fault"].values.tolist() == [0, 0]
-    assert dataset["n_spalls"].values.tolist() == [0, 0]
-    assert (dataset["width"] == 0).all()
-    assert dataset["fault_snr"].values.tolist() == [-np.inf, -np.inf]
+    dataset = part_dataset(*hidden(recipe_with, undetected))
+    expected = {"fault_snr": -np.inf, "fault": 2 * spalls, "n_spalls": spalls, "detectable": 0, "loaded_hits": 0}
+    for name, value in expected.items():
+        assert dataset[name].values.tolist() == [value, value], name
+    assert ((dataset["width"] > 0) == bool(spalls)).all()
+    assert (dataset["fault_share"] == 0).all()
 
 
 def test_a_fault_that_no_draw_makes_visible_is_left_out_with_a_sentence(recipe_with):

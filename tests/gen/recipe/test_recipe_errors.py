@@ -184,21 +184,7 @@ def test_a_thousand_things_that_are_wrong_are_not_all_told(tmp_path):
 
 @given(
     st.dictionaries(
-        st.sampled_from(
-            [
-                "name",
-                "title",
-                "corpus",
-                "recording",
-                "bearing",
-                "machine",
-                "operation",
-                "faults",
-                "level",
-                "seed",
-                "odd",
-            ]
-        ),
+        st.sampled_from([*Recipe.model_fields, "odd"]),
         st.recursive(
             st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
             lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from gen.recipe import Recipe
-from gen.recipe.keys import recipe_keys
+from gen.recipe.keys import fields_below, recipe_keys
 from gen.scenarios import draw_scenarios
 from gen.support.errors import RecipeError
 from tests.cases import for_each
@@ -15,14 +15,11 @@ KEYS = {key.key: key for key in recipe_keys() if not key.key.startswith("distrib
 LEAVES = [key for key in KEYS.values() if not key.key.endswith("kind")]
 RANGE = re.compile(r"(?P<low_end>[\[(])(?P<low>[^,]+), (?P<high>[^\])]+)(?P<high_end>[\])])")
 QUANTITY = "is neither a number nor a distribution"
-EACH = (
-    *(f"modes.{key}" for key in ("frequency_hz", "damping_percent", "gain_db", "sign")),
-    *(f"{of}.{key}" for of in ("faults", "parts") for key in ("width_mm", "depth_um", "angle_deg", "roughness_um")),
-    *(f"tones.{key}" for key in ("frequency_hz", "level_db", "modulation")),
-    *(f"loose_mount.{key}" for key in ("frequency_hz", "damping_percent", "holding_m_s2")),
-    *(f"{of}.level_db" for of in ("harmonics", "gear_mesh", "unbalance", "bent_shaft", "misalignment", "belt")),
-    "gain_steps.step_db",
-)
+EACH = {
+    ".".join([*path, key]).replace("[]", "")
+    for path, section, key in fields_below((Recipe,))
+    if "each" in (section.model_fields[key].json_schema_extra or {})
+}
 """Keys that can be lists, with a number for each item that their section counts."""
 named = for_each(LEAVES, lambda key: "-".join([key.key, *key.kinds]))
 
@@ -81,7 +78,7 @@ def wrong_values(key):
         return [("wide", "it must be a "), ([1], "it must be a "), (float("nan"), "it must be "), *halves, *outside]
     if RANGE.fullmatch(allowed):
         outside = [(value, f"is not in {allowed}") for value in beside(allowed)]
-        listed = [] if key.key.endswith(EACH) else [([1, 2], "is a list; give one number or distribution")]
+        listed = [] if key.key in EACH else [([1, 2], "is a list; give one number or distribution")]
         return [("wide", QUANTITY), *listed, (True, QUANTITY), (float("nan"), "finite"), *outside]
     return [({"odd": 1}, ""), ([], "")]
 

@@ -82,7 +82,6 @@ def test_groups_are_neighbours_and_specimens_are_whole(recipe_with):
     assert {one.origin.rung for one in healthy} == {-1}
     speeds = Counter(one.conditions["shaft_rate"] for one in healthy)
     assert max(speeds.values()) == 1  # each record of a healthy specimen has conditions of its own
-    assert sum(len(recipe.records_of_part(part)) for part in range(recipe.n_parts)) == recipe.n_records
 
 
 def test_the_last_rung_of_a_ladder_is_the_record_without_rungs(recipe_with):
@@ -93,14 +92,6 @@ def test_the_last_rung_of_a_ladder_is_the_record_without_rungs(recipe_with):
         drawn_per_record = {"operation": other.recipe.operation, "level": other.recipe.level, "origin": other.origin}
         assert one.edited(**drawn_per_record) == other
     assert all(one.origin.pair == one.origin.rung == -1 for one in draw_scenarios(without))
-
-
-@pytest.mark.parametrize("sampling", SAMPLINGS)
-def test_any_range_of_a_ladder_is_a_piece_of_the_whole(recipe_with, sampling):
-    recipe = recipe_with(LADDERS | {"corpus.sampling": sampling})
-    whole = draw_scenarios(recipe)
-    for first, stop in ((0, 1), (1, 2), (7, 12), (13, 39), (381, 384)):
-        assert draw_scenarios(recipe, first, stop) == whole[first:stop]
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gen
+from gen.mechanisms.background.bursts import Bursts
 from gen.mechanisms.background.looseness import Looseness
 from gen.mechanisms.chain.drift import Drift
 from gen.recipe import Recipe
@@ -68,24 +69,20 @@ def test_the_end_of_a_large_corpus_can_be_drawn_alone(recipe_with, sampling):
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
-def test_any_range_of_records_is_a_piece_of_the_whole(recipe_with, sampling):
-    recipe = recipe_with({"corpus.sampling": sampling})
+@pytest.mark.parametrize("rungs", [None, (0.25, 0.5, 1)])
+def test_any_range_of_records_and_a_corpus_that_ends_early_are_pieces_of_the_whole(recipe_with, sampling, rungs):
+    changes = {"corpus.sampling": sampling, "corpus.rungs": rungs}
+    recipe, early = recipe_with(changes), recipe_with(changes | {"records": 9})
     whole = draw_scenarios(recipe)
     assert len(whole) == recipe.n_records
-    for first, stop in ((0, 1), (5, 6), (7, 12), (23, 24), (20, 100)):
+    for first, stop in ((0, 1), (1, 2), (5, 6), (7, 12), (13, 23), (23, 24), (20, 100)):
         assert draw_scenarios(recipe, first, stop) == whole[first:stop]
+    assert draw_scenarios(early) == whole[:9]
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
-def test_a_corpus_that_ends_early_is_the_beginning_of_the_whole(recipe_with, sampling):
-    whole = draw_scenarios(recipe_with({"corpus.sampling": sampling}))
-    assert draw_scenarios(recipe_with({"corpus.sampling": sampling, "records": 9})) == whole[:9]
-
-
-@pytest.mark.parametrize("sampling", SAMPLINGS)
-@pytest.mark.parametrize("specimens", [2, 4])
-def test_what_was_drawn_for_a_rig_or_a_specimen_says_nothing_about_what_runs_on_it(recipe_with, sampling, specimens):
-    size = {"corpus.rigs": 256, "corpus.specimens_per_rig": specimens, "corpus.records_per_specimen": 1}
+def test_what_was_drawn_for_a_rig_or_a_specimen_says_nothing_about_what_runs_on_it(recipe_with, sampling):
+    size = {"corpus.rigs": 256, "corpus.specimens_per_rig": 2, "corpus.records_per_specimen": 1}
     values = np.array(
         [
             (
@@ -170,7 +167,8 @@ def test_grids_of_one_level_give_every_combination_once_before_they_come_again(r
 
 MECHANISMS = {
     "faults": (OF_KIND["inner"], {"kind": "inner", "width_mm": 0.5}, "angle_deg", (400.0,)),
-    "background": (Looseness, {"probability": 1, "lift": 3, "frequency_hz": 500, "level_db": 0}, "lift", 1.0),
+    "background": (Bursts, {"probability": 1, "level_db": 0}, "length_deg", 181.0),
+    "machine_conditions": (Looseness, {"probability": 1, "lift": 3, "frequency_hz": 500, "level_db": 0}, "lift", 1.0),
     "sensor_faults": (Drift, {"probability": 1}, "wander_m_s2", -0.1),
 }
 

@@ -1,6 +1,6 @@
 """Laws of the stored text of a scenario: it gives the scenario back, names every number, and any other text is refused."""
 
-import json
+import functools
 import re
 
 import pytest
@@ -12,11 +12,12 @@ from tests.conftest import small_with
 from tests.paths import ROOT
 from tests.recipes import EVERYTHING
 
-RECORDS = 48
+RECORDS = 24
 RECIPES = (*shipped_recipes(), "everything")
 MACHINE_KEY = '"machine": {'
 
 
+@functools.cache
 def scenarios_of(name):
     if name == "everything":
         return draw_scenarios(Recipe.model_validate(small_with(EVERYTHING)))
@@ -42,37 +43,11 @@ def test_the_text_of_a_scenario_gives_the_scenario_back(name):
 
 @pytest.mark.parametrize("name", RECIPES)
 def test_a_scenario_as_a_recipe_gives_the_scenario_and_its_text_again(name, tmp_path):
-    for scenario in scenarios_of(name)[::16]:
+    for scenario in scenarios_of(name)[::12]:
         (tmp_path / "one.yaml").write_text(scenario.text, encoding="utf-8")
         (again,) = draw_scenarios(read_recipe(tmp_path / "one.yaml"))
         assert again == scenario
         assert again.text == scenario.text
-
-
-SERIES = {"trace_um", "times_s", "percent", "levels_percent"}  # of one quantity
-
-
-@pytest.mark.parametrize("name", RECIPES)
-def test_every_number_of_a_text_has_a_name(name):
-    """A list of numbers is a series of one quantity, or has one for each of the items that its section counts."""
-    for text in scenario_texts(scenarios_of(name)):
-        values = json.loads(text)
-        assert set(values) <= set(Recipe.model_fields)
-        for section in sections_in(values):
-            for key, items in section.items():
-                if isinstance(items, list):
-                    assert len({type(item) for item in items}) <= 1
-                    if items and isinstance(items[0], float) and key not in SERIES:
-                        count = section.get("count", section.get("n_spalls", len(section.get("loose_channels", ()))))
-                        assert len(items) == count
-
-
-def sections_in(value):
-    """Every section of a JSON value."""
-    if isinstance(value, dict):
-        yield value
-    for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
-        yield from sections_in(item)
 
 
 CHANGES = {

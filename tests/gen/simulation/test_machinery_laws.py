@@ -73,26 +73,18 @@ def test_a_bearing_of_ones_own_reaches_the_kernel(record_of):
     assert input_shape(found).balls == 11
 
 
+NU206 = {"n_balls": 13, "pitch_diameter_mm": 46.5, "ball_diameter_mm": 9, "roller_length_mm": 10}
 ROLLERS = {
     "catalogue": {"kind": "catalogue", "designations": ["NU206"]},
-    "own": {
-        "kind": "catalogue",
-        "designations": ["mine"],
-        "entries": {"mine": {"n_balls": 13, "pitch_diameter_mm": 46.5, "ball_diameter_mm": 9, "roller_length_mm": 10}},
-    },
-    "geometry": {
-        "kind": "geometry",
-        "n_balls": 13,
-        "pitch_diameter_mm": 46.5,
-        "ball_diameter_mm": 9,
-        "roller_length_mm": 10,
-    },
+    "own": {"kind": "catalogue", "designations": ["mine"], "entries": {"mine": NU206}},
+    "geometry": {"kind": "geometry", **NU206},
 }
 
 
 @pytest.mark.parametrize("kind", ROLLERS)
 def test_rollers_push_back_by_the_power_ten_ninths(record_of, kind):
-    machine, shape = record_of({"bearing": ROLLERS[kind]}).machine, input_shape(record_of({"bearing": ROLLERS[kind]}))
+    record = record_of({"bearing": ROLLERS[kind]})
+    machine, shape = record.machine, input_shape(record)
     assert machine.contact_exponent == LINE_EXPONENT
     assert machine.load_deflection_factor == pytest.approx(load_deflection_factor(CATALOGUE["NU206"]), rel=1e-9)
     assert shape.roller

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.bearing import orders
-from gen.physics.rotor import likely_stiffness
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import runs_of
 from gen.simulation.steps import (
@@ -44,12 +43,6 @@ def stiffness_of_three_balls(record):
     load = math.hypot(machine.load_x, machine.load_y) + largest_pull(record)
     ball_load = 3 * 5 * load / record.bearing.n_balls
     return 3 * 1.5 * machine.load_deflection_factor ** (2 / 3) * ball_load ** (1 / 3)
-
-
-def test_the_assumed_stiffness_is_that_of_three_balls_under_three_times_the_stribeck_load(drawn):
-    _, record = drawn
-    found = likely_stiffness(record.machine, record.bearing.n_balls, largest_pull(record))
-    assert found == pytest.approx(stiffness_of_three_balls(record), rel=1e-12)
 
 
 @pytest.mark.parametrize(("share", "steps"), [(1.005, 4), (0.995, 6)])
