@@ -97,8 +97,8 @@ bearing, so that it groups the snapshots of a life. A bearing is `censored` if i
 def format_page(simulated: Iterable[Variable]) -> str:
     """Markdown page about the format, with tables of the variables of all corpora, of ``simulated`` ones and of lives."""
     general = {variable.name for variable in SCHEMA}
-    further = (one for one in simulated if one.name not in general)
-    tables = _table(SCHEMA), _table(sorted(further, key=lambda one: ROLES.index(one.role))), _table(LIFE)
+    further = (variable for variable in simulated if variable.name not in general)
+    tables = _table(SCHEMA), _table(sorted(further, key=lambda variable: ROLES.index(variable.role))), _table(LIFE)
     texts = _FORMAT, _SIMULATED, _LIFE
     return "".join(text + table for text, table in zip(texts, tables, strict=True))
 

@@ -28,7 +28,7 @@ from gen.drawing.distributions import (
     weighted_index,
     within,
 )
-from gen.drawing.draws import Combination, Draws, Known
+from gen.drawing.draws import Combination, Draws, Wholes
 from gen.drawing.section import (
     Count,
     Name,
@@ -44,7 +44,7 @@ from gen.drawing.section import (
 from gen.drawing.streams import Level, number, stream
 
 __all__ = [
-    "DISTRIBUTIONS", "KINDS", "Choice", "Combination", "Count", "Distribution", "Draws", "Grid", "Known", "Level", "Listed", "LogUniform",
-    "Name", "Normal", "Number", "Probability", "Section", "Support", "Uniform", "Weight", "bounds_of", "composed", "interval",
+    "DISTRIBUTIONS", "KINDS", "Choice", "Combination", "Count", "Distribution", "Draws", "Grid", "Level", "Listed", "LogUniform",
+    "Name", "Normal", "Number", "Probability", "Section", "Support", "Uniform", "Weight", "Wholes", "bounds_of", "composed", "interval",
     "is_within", "number", "plain", "quantities", "sections_with_places", "stream", "weighted_index", "within",
 ]  # fmt: skip

@@ -311,8 +311,8 @@ def within(
     its section.
     """
     bounds: dict[str, Any] = {"low": low, "high": high, "open_low": open_low} | ({"each": True} if each else {}) | per
-    given: dict[str, Any] = {} if default is None else {"default": default}
-    return Field(**given, json_schema_extra=bounds)
+    options: dict[str, Any] = {} if default is None else {"default": default}
+    return Field(**options, json_schema_extra=bounds)
 
 
 def interval(bounds: dict[str, Any]) -> str:

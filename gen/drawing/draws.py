@@ -12,7 +12,7 @@ from gen.support.units import split_unit
 
 Derived = Callable[[Callable[[str], float]], float]
 """Value of a derived quantity, from a function that gives the values of the section by key [SI]."""
-Known = Mapping[str, float | Derived]
+Wholes = Mapping[str, float | Derived]
 """Quantities by key [SI] that those of a section can be a share of, beside each other."""
 
 
@@ -39,7 +39,7 @@ class Draws(NamedTuple):
     grids: Combination
     point: list[float]
     """Coordinates of a quasi-random point that are left, last first: the first numbers come from it."""
-    known: Known = MappingProxyType({})
+    wholes: Wholes = MappingProxyType({})
     own: Level = "rig"
     """Level of the section around this one."""
     place: str = ""
@@ -71,11 +71,11 @@ class Draws(NamedTuple):
             return distribution.values
         return tuple(self.value(f"{key}.{item}", distribution) for item in range(count))
 
-    def within(self, key: str, own: Level, known: Known | None = None) -> "Draws":
+    def within(self, key: str, own: Level, wholes: Wholes | None = None) -> "Draws":
         """Numbers of a section within this one, which is of the level ``own``."""
-        known = self.known if known is None else known
+        wholes = self.wholes if wholes is None else wholes
         # _replace takes three times as long
-        return Draws(*self[:5], known, own, f"{self.place}{key}.", *self[8:])
+        return Draws(*self[:5], wholes, own, f"{self.place}{key}.", *self[8:])
 
     def with_shares(
         self, bounds_of: Mapping[str, Any], numbers: Mapping[str, Any], shares: Mapping[str, str]
@@ -91,7 +91,7 @@ class Draws(NamedTuple):
         def in_si(key: str, item: int = 0) -> float:
             """Value of a quantity; of one that is drawn for each item, that of an item."""
             if key not in numbers:
-                whole = self.known[key]
+                whole = self.wholes[key]
                 return whole(in_si) if callable(whole) else whole
             number = numbers[key][item] if isinstance(numbers[key], tuple) else numbers[key]
             return number * (in_si(shares[key], item) if key in shares else split_unit(key)[1])
@@ -112,6 +112,8 @@ class Draws(NamedTuple):
         drawn = dict(numbers)
         for key in shares:
             value = numbers[key]
-            several = isinstance(value, tuple)
-            drawn[key] = tuple(product(key, *one[::-1]) for one in enumerate(value)) if several else product(key, value)
+            if isinstance(value, tuple):
+                drawn[key] = tuple(product(key, share, item) for item, share in enumerate(value))
+            else:
+                drawn[key] = product(key, value)
         return drawn

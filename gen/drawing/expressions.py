@@ -37,7 +37,7 @@ def read_expression(text: Any, kinds: Mapping[str, Any]) -> Any:
         if not isinstance(tree, ast.Call):
             return called(kinds["constant"], [+_value(tree)], share)
         kind, values = _value(tree.func), [_value(value) for value in tree.args]
-        named = {str(one.arg): _value(one.value) for one in tree.keywords}
+        named = {str(keyword.arg): _value(keyword.value) for keyword in tree.keywords}
     except (SyntaxError, TypeError, RecursionError, MemoryError):
         if text.count("(") > text.count(")"):
             raise ValueError(f"{shown} ends too early; within braces a distribution needs quotes.") from None
@@ -73,11 +73,11 @@ def called(model: Any, values: Sequence[Any], named: Mapping[str, Any]) -> Any:
         values = [tuple(values)]
     if len(values) > len(names):
         raise ValueError(f"{len(values)} numbers are too many for {form}.")
-    given = {"kind": kind, **dict(zip(names, values, strict=False))}
-    if twice := given.keys() & named.keys():
+    arguments = {"kind": kind, **dict(zip(names, values, strict=False))}
+    if twice := arguments.keys() & named.keys():
         raise ValueError(f"{min(twice)} of {form}: is given twice; give it once.")
     try:
-        return model.model_validate({**given, **named})
+        return model.model_validate({**arguments, **named})
     except ValidationError as error:
         argument, colon, rest = sentences(error, model)[0].partition(": ")
         raise ValueError(f"{argument} of {form}: {rest}" if colon else argument) from None
@@ -90,15 +90,15 @@ def expression_of(distribution: Any) -> str:
     >>> Choice(kind="choice", values=(1, 2), weights=(3, 1)), Uniform(kind="uniform", low=0.5, high=1, share_of="load_n")
     (choice(1, 2, weights=(3, 1)), uniform(0.5, 1) * load_n)
     """
-    given = {name: value for name, value in distribution if name in distribution.model_fields_set}
-    kind, share = distribution.kind, given.pop("share_of", None)
-    given.pop("kind", None)
-    positional = [given.pop(name) for name in distribution.arguments[:2]]
-    if kind == "constant" and not given:
+    fields = {name: value for name, value in distribution if name in distribution.model_fields_set}
+    kind, share = distribution.kind, fields.pop("share_of", None)
+    fields.pop("kind", None)
+    positional = [fields.pop(name) for name in distribution.arguments[:2]]
+    if kind == "constant" and not fields:
         text = _shown(positional[0])
     else:
         values = positional[0] if isinstance(positional[0], tuple) else positional
-        text = f"{kind}({', '.join([*map(_shown, values), *(f'{name}={_shown(value)}' for name, value in given.items())])})"
+        text = f"{kind}({', '.join([*map(_shown, values), *(f'{name}={_shown(value)}' for name, value in fields.items())])})"
     return text if share is None else f"{text} * {share}"
 
 

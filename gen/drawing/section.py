@@ -107,15 +107,15 @@ class Section(BaseModel):
                 drawn[key] = value.about(of.value(key, value))
         if shares:
             drawn = of.with_shares(bounds_of(type(self)), drawn, shares)
-        sections, known = self.below(), of.known
+        sections, wholes = self.below(), of.wholes
         if sections and drawn:  # they can name the numbers of this one
             numbers = {name: value * split_unit(name)[1] for name, value in drawn.items() if isinstance(value, float)}
-            known = {**known, **numbers}
+            wholes = {**wholes, **numbers}
         # sections within this one, each under its own name
         for key, value in sections:
-            inner = of.within(key, own, known)
+            inner = of.within(key, own, wholes)
             if isinstance(value, tuple):
-                drawn[key] = tuple(one.draw(inner.within(_name(one), own)) for one in value)
+                drawn[key] = tuple(section.draw(inner.within(_name(section), own)) for section in value)
             elif (new := value.draw(inner)) is not value:
                 drawn[key] = new
         return self.model_copy(update=drawn) if drawn else self
@@ -144,7 +144,7 @@ class Section(BaseModel):
                 drawn[key] = (value.value,) * (1 if stated is None else stated) if each else value.value
         for key, value in self.below():
             if isinstance(value, tuple):
-                drawn[key] = tuple(one.as_drawn(f"{place}{key}[{number}].") for number, one in enumerate(value))
+                drawn[key] = tuple(section.as_drawn(f"{place}{key}[{number}].") for number, section in enumerate(value))
             elif (new := value.as_drawn(f"{place}{key}.")) is not value:
                 drawn[key] = new
         return self.model_copy(update=drawn) if drawn else self
@@ -184,12 +184,12 @@ class Section(BaseModel):
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Copy of the section with some other values, which are not checked; that of pydantic takes four times as long."""
         copy, new = object.__new__(type(self)), update or {}
-        values, given = {**self.__dict__, **new}, self.__pydantic_fields_set__
+        values, set_keys = {**self.__dict__, **new}, self.__pydantic_fields_set__
         # values in SI units that were kept belong to the old numbers
         values.pop("_si", None)
         for name, value in (
             ("__dict__", values),
-            ("__pydantic_fields_set__", given if given >= new.keys() else given | new.keys()),
+            ("__pydantic_fields_set__", set_keys if set_keys >= new.keys() else set_keys | new.keys()),
             ("__pydantic_extra__", None),
             ("__pydantic_private__", None),
         ):
@@ -210,13 +210,13 @@ class Section(BaseModel):
         return getattr(self, "kind", type(self).__name__)
 
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        given = self.model_fields_set - {"kind"}
-        return ((key, value) for key, value in super().__repr_args__() if key in given)
+        set_keys = self.model_fields_set - {"kind"}
+        return ((key, value) for key, value in super().__repr_args__() if key in set_keys)
 
 
-def _name(one: Any) -> str:
+def _name(section: Any) -> str:
     """Name of a section among others, which does not depend on its place."""
-    return str(getattr(one, "name", "") or getattr(one, "kind", ""))
+    return str(getattr(section, "name", "") or getattr(section, "kind", ""))
 
 
 @functools.cache
@@ -234,7 +234,7 @@ def _section_keys(section: type[Section]) -> list[str]:
         key
         for key, field in fields
         if get_origin(field.annotation) is not dict
-        and any(issubclass(one, Section) for one in models_in(field.annotation))
+        and any(issubclass(model, Section) for model in models_in(field.annotation))
     ]
 
 
@@ -246,8 +246,8 @@ def sections_with_places(section: Section, place: str = "") -> Iterator[tuple[st
         if isinstance(value, Section):
             yield from sections_with_places(value, path)
         else:
-            for number, one in enumerate(value):
-                yield from sections_with_places(one, f"{path}[{number}]")
+            for number, inner in enumerate(value):
+                yield from sections_with_places(inner, f"{path}[{number}]")
 
 
 def composed(name: str, module: str, bases: tuple[type[Section], ...], meaning: str | None, **keys: Any) -> Any:
@@ -274,10 +274,10 @@ def plain(value: Any) -> Any:
         return value.written
     if isinstance(value, BaseModel):  # its kind names the section, also if it was not given
         own = sorted(type(value).model_fields, key=lambda name: name != "kind")
-        given = [name for name in own if name in value.model_fields_set or name == "kind"]
+        keys = [name for name in own if name in value.model_fields_set or name == "kind"]
         fields = type(value).model_fields  # null says nothing where nothing is the default
-        given = [name for name in given if getattr(value, name) is not None or fields[name].default is not None]
-        return {name: plain(getattr(value, name)) for name in given}
+        keys = [name for name in keys if getattr(value, name) is not None or fields[name].default is not None]
+        return {name: plain(getattr(value, name)) for name in keys}
     if isinstance(value, Mapping):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

@@ -215,8 +215,8 @@ def _all_parts(
                 from gen.generation.compilation import compile_kernels  # loaded while the processes start
 
                 compile_kernels(recipe, notice)
-            with closing(run(task, missing, place)) as made:
-                for part, outcome in zip(missing, made, strict=True):
+            with closing(run(task, missing, place)) as results:
+                for part, outcome in zip(missing, results, strict=True):
                     outcomes[part] = outcome
                     report(counts[part])
     return [outcomes[part] for part in parts]
@@ -244,11 +244,11 @@ def _write(recipe: Recipe, folder: Path, code: str, part: int) -> Outcome:
         )
     from gen.generation.make_part import make_part  # the simulator, which takes a second and a half to load
 
-    made = make_part(recipe, recipe.records_of_part(part))
+    dataset = make_part(recipe, recipe.records_of_part(part))
     path = folder / "parts" / part_file(recipe, part)
-    made = with_file_codes(made, added_classes(recipe))
-    row = write_part(made, path, recipe.storage.codec) if made.sizes["record"] else None
-    return Outcome(row, failures_of(made))
+    dataset = with_file_codes(dataset, added_classes(recipe))
+    row = write_part(dataset, path, recipe.storage.codec) if dataset.sizes["record"] else None
+    return Outcome(row, failures_of(dataset))
 
 
 def _kept(recipe: Recipe, folder: Path, part: int) -> Outcome | None:
@@ -274,12 +274,14 @@ def _finish(target: Path, folder: Path, text: bytes, outcomes: list[Outcome], fa
     if not rows:
         raise CorpusError(f"{target}: no record could be simulated; {outcomes[0].failures[0]}")
     failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
-    made = None
+    manifest = None
     with suppress(CorpusError):  # a corpus that has all its parts stays as it is, with its card
-        made = finished(folder)
-    if made is None or made.parts != tuple(rows):
+        manifest = finished(folder)
+    if manifest is None or manifest.parts != tuple(rows):
         # recipe first, manifest last: a folder without a manifest of finished parts is unfinished
         with writing(folder):
             write_durably(text, folder / RECIPE_NAME)
-        made = finish_corpus(folder, rows, None if target == folder else target, **facts, failures=failures)
-    return Generated(target, made.records, len(rows), sum(outcome.kept for outcome in outcomes), failures, made.signals)
+        manifest = finish_corpus(folder, rows, None if target == folder else target, **facts, failures=failures)
+    return Generated(
+        target, manifest.records, len(rows), sum(outcome.kept for outcome in outcomes), failures, manifest.signals
+    )

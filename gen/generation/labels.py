@@ -38,12 +38,12 @@ def part_dataset(
     scenarios = [
         record.scenario if record.detectable or not hidden else record.scenario.without_fault() for record in records
     ]
-    runs = [replace(record.run, scenario=one) for record, one in zip(records, scenarios, strict=True)]
+    runs = [replace(record.run, scenario=scenario) for record, scenario in zip(records, scenarios, strict=True)]
     # what only records of lives have
-    lives = [life for one in scenarios if (life := one.origin.life) is not None]
+    lives = [life for scenario in scenarios if (life := scenario.origin.life) is not None]
     life_labels = LIFE if lives or recipe.life is not None else ()
     of_mechanisms = [
-        label_values(one.recipe, record.chain_labels) for one, record in zip(scenarios, records, strict=True)
+        label_values(scenario.recipe, record.chain_labels) for scenario, record in zip(scenarios, records, strict=True)
     ]
     # each stage gives the labels of what it knows
     columns: dict[str, ArrayLike] = {
@@ -58,7 +58,7 @@ def part_dataset(
     ):
         columns |= {label.name: label.column(rows) for label in labels}
     # 0 in a record without the mechanism
-    mechanism_labels = labels_with(plugins_of(recipe, *(one.recipe for one in scenarios)))
+    mechanism_labels = labels_with(plugins_of(recipe, *(scenario.recipe for scenario in scenarios)))
     columns |= {label.name: [values.get(label.name, 0) for values in of_mechanisms] for label in mechanism_labels}
     per_unit, n_channels = counts_per_unit(recipe), len(recipe.recording.channels)
     # filled row by row, so that memory holds each signal once

@@ -33,19 +33,19 @@ def make_part(recipe: Recipe, numbers: range) -> xr.Dataset:
     SimulationError
         If a record needs finer steps than the recipe allows, or every life has ended before these records.
     """
-    made = make_records(recipe, numbers) if recipe.origin is None else made_from(draw_scenarios(recipe))
-    kept = [record for record in made if isinstance(record, Measured)]
-    part = labelled(recipe, made, step_errors(recipe, numbers, kept))
+    outcomes = make_records(recipe, numbers) if recipe.origin is None else made_from(draw_scenarios(recipe))
+    kept = [record for record in outcomes if isinstance(record, Measured)]
+    part = labelled(recipe, outcomes, step_errors(recipe, numbers, kept))
     if recipe.origin is not None:  # the only record of its corpus, whatever its numbers in another one
         part = part.assign({name: part[name].copy(data=np.minimum(part[name], 0)) for name in NUMBERS})
     return part.assign_attrs(part_attributes(recipe, failures_of(part)))
 
 
-def labelled(recipe: Recipe, made: Sequence[Made], step_error: NDArray[Any] | None = None) -> xr.Dataset:
+def labelled(recipe: Recipe, outcomes: Sequence[Made], step_error: NDArray[Any] | None = None) -> xr.Dataset:
     """Records with their labels, without those that are left out; the attribute ``failures`` says why."""
-    records = [record for record in made if isinstance(record, Measured)]
+    records = [record for record in outcomes if isinstance(record, Measured)]
     # a record behind the end of a life has no sentence
-    sentences = [record for record in made if isinstance(record, str) and record]
+    sentences = [record for record in outcomes if isinstance(record, str) and record]
     return part_dataset(recipe, records, step_error).assign_attrs(failures=json.dumps(sentences))
 
 

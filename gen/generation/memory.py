@@ -120,12 +120,14 @@ def simulate(scenarios: Sequence[Scenario]) -> xr.Dataset:
     SimulationError
         If scenarios have different recordings, or no record can be simulated.
     """
-    if not isinstance(scenarios, Sequence) or not all(isinstance(one, Scenario) for one in scenarios):
+    if not isinstance(scenarios, Sequence) or not all(isinstance(scenario, Scenario) for scenario in scenarios):
         raise RecipeError(f"scenarios: {type(scenarios).__name__} given; give a list of scenarios.")
-    made = made_from([*scenarios])
-    part = labelled(scenarios[0].recipe, made)
+    outcomes = made_from([*scenarios])
+    part = labelled(scenarios[0].recipe, outcomes)
     return _joined(
-        [part], failures_of(part), {"versions": json.dumps(library_versions(*(one.recipe for one in scenarios)))}
+        [part],
+        failures_of(part),
+        {"versions": json.dumps(library_versions(*(scenario.recipe for scenario in scenarios)))},
     )
 
 

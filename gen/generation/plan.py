@@ -86,10 +86,10 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     count = round(whole.n_records * present)
     # by chance, since evenly spaced records might meet the same cell of every grid
     places = sorted(np.random.default_rng(0).permutation(len(drawn))[:MOST_CHECKED].tolist())
-    found = list(steps_of([drawn[place] for place in places]))
+    outcomes = list(steps_of([drawn[place] for place in places]))
     # a record that cannot be simulated has a sentence in place of its steps
-    steps = [one for one in found if isinstance(one, int)]
-    failures = [one for one in found if isinstance(one, str)]
+    steps = [outcome for outcome in outcomes if isinstance(outcome, int)]
+    failures = [outcome for outcome in outcomes if isinstance(outcome, str)]
     if not steps:
         raise SimulationError(failures[0])
     recording = whole.recording
@@ -112,8 +112,8 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         checked=len(places),
         left_out=round(len(failures) * of_checked),
         first_left_out=failures[0] if failures else None,
-        classes=_scaled((one.fault for one in drawn), FAULTS, of_drawn),
-        splits=_scaled((one.origin.split for one in drawn), SPLITS, of_drawn),
+        classes=_scaled((scenario.fault for scenario in drawn), FAULTS, of_drawn),
+        splits=_scaled((scenario.origin.split for scenario in drawn), SPLITS, of_drawn),
         steps_per_sample=_scaled(steps, sorted(set(steps)), of_checked),
     )
 
@@ -129,8 +129,12 @@ def steps_of(scenarios: Sequence[Scenario]) -> Iterator[int | str]:
     for first in range(0, len(scenarios), AT_ONCE):
         some = scenarios[first : first + AT_ONCE]
         inputs = kernel_inputs([draw_motion(scenario) for scenario in some])
-        for given, scenario in zip(inputs, some, strict=True):
-            yield str(given) if isinstance(given, SimulationError) else steps_per_sample(given, scenario)
+        for kernel_input, scenario in zip(inputs, some, strict=True):
+            yield (
+                str(kernel_input)
+                if isinstance(kernel_input, SimulationError)
+                else steps_per_sample(kernel_input, scenario)
+            )
 
 
 def _scaled(values: Iterable[Any], order: Iterable[Any], scale: float) -> dict[Any, int]:

@@ -50,4 +50,4 @@ def replay(path: Path | str, record: int) -> Replayed:
     again = labelled(scenario.recipe, made_from([scenario]))
     (signal,) = decoded([again])[SIGNAL].values
     # a copy may have fewer channels, in another order and under other names
-    return Replayed(again, all(any(np.array_equal(channel, one) for one in signal) for channel in stored))
+    return Replayed(again, all(any(np.array_equal(channel, other) for other in signal) for channel in stored))

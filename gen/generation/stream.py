@@ -171,9 +171,9 @@ class Stream(Iterator[xr.Dataset]):
 
 def _batches(recipe: Recipe, first: int, size: int, workers: int) -> Generator[xr.Dataset]:
     """Records from the number ``first`` on, ``size`` at a time."""
-    with closing(records_from(recipe, first, workers=workers)) as made:
+    with closing(records_from(recipe, first, workers=workers)) as parts:
         ready: list[xr.Dataset] = []
-        for records in made:
+        for records in parts:
             ready.append(records)
             if (count := sum(some.sizes["record"] for some in ready)) < size:
                 continue
@@ -211,9 +211,9 @@ def records_from(
 ) -> Generator[xr.Dataset]:
     """Records from the number ``first`` on, in rising order, a part at a time: every ``shards``-th part, beginning with ``shard``."""
     parts, warned = range(first // recipe.storage.records_per_part, recipe.n_parts)[shard::shards], False
-    with closing(run(partial(make_part, recipe), map(recipe.records_of_part, parts), workers)) as made:
+    with closing(run(partial(make_part, recipe), map(recipe.records_of_part, parts), workers)) as results:
         # a part at a time, so that memory does not grow with the stream
-        for part in made:
+        for part in results:
             failures = failures_of(part)
             if not part.sizes["record"]:
                 raise SimulationError(failures[0])

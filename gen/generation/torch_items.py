@@ -30,16 +30,18 @@ class TorchStream(IterableDataset[tuple[Any, ...]]):
         for records in self.shard(shard=place, shards=count):
             if self.label not in records:
                 raise RecipeError(f"label: there is no variable {self.label}{nearest(self.label, per_record(records))}")
-            known = operating_variables(records) if self.operating else {}
+            variables = operating_variables(records) if self.operating else {}
             for place, (signal, label) in enumerate(
                 zip(records["acceleration"].values, records[self.label].values, strict=True)
             ):
-                on_site = [{name: _plain(values[place]) for name, values in known.items()}] if self.operating else []
+                on_site = (
+                    [{name: _plain(values[place]) for name, values in variables.items()}] if self.operating else []
+                )
                 whole = signal.astype(np.float32, copy=False)
                 yield whole if self.transform is None else self.transform(whole, *on_site), *on_site, _plain(label)
 
 
 def _plain(value: Any) -> Any:
     """A number in single precision, as the signals are; a code or a text as it is in Python."""
-    one = np.asarray(value)
-    return np.float32(one) if one.dtype.kind == "f" else one.item()
+    array = np.asarray(value)
+    return np.float32(array) if array.dtype.kind == "f" else array.item()

@@ -57,8 +57,8 @@ def make_records(recipe: Recipe, numbers: range) -> list[Made]:
                     f"{advice}, or choose truth.undetected: keep."
                 )
         # records with another fault replace those with the fault before
-        made = {run.scenario.origin.record: record for run, record in zip(runs, records, strict=True)}
-        final.update({number: record for number, record in made.items() if number in numbers})
+        by_number = {run.scenario.origin.record: record for run, record in zip(runs, records, strict=True)}
+        final.update({number: record for number, record in by_number.items() if number in numbers})
     if not final:
         raise SimulationError(f"records {numbers.start}-{numbers.stop - 1}: every life has ended before them.")
     return [final[number] for number in numbers if number in final]
@@ -80,7 +80,7 @@ def _further_ratios(recipe: Recipe, runs: list[Run]) -> dict[int, Sequence[float
     """Ratios of the further tries of the level of records with a fault, by their number."""
     scenarios, snr = [run.scenario for run in runs], recipe.level.kind == "snr"
     faulty = [scenarios[place] for place in _largest_places(scenarios) if snr]
-    return {one.origin.record: further_ratios(recipe, one, LEVEL_TRIES - 1) for one in faulty}
+    return {scenario.origin.record: further_ratios(recipe, scenario, LEVEL_TRIES - 1) for scenario in faulty}
 
 
 def _with_hits(recipe: Recipe, scenarios: list[Scenario]) -> list[Scenario]:
@@ -99,9 +99,15 @@ def _with_hits(recipe: Recipe, scenarios: list[Scenario]) -> list[Scenario]:
 
 def _redrawn(recipe: Recipe, unseen: Iterable[Scenario]) -> list[Scenario]:
     """All records of the specimens of some records, with the next fault, unless the last one has been tried."""
-    tries = {one.origin.specimen: one.origin.fault_try + 1 for one in unseen if one.origin.fault_try < FAULT_TRIES - 1}
+    tries = {
+        scenario.origin.specimen: scenario.origin.fault_try + 1
+        for scenario in unseen
+        if scenario.origin.fault_try < FAULT_TRIES - 1
+    }
     ranges = [recipe.records_of(specimen) for specimen in sorted(tries)]
-    return [one for some in ranges for one in draw_scenarios(recipe, some.start, some.stop, fault_tries=tries)]
+    return [
+        scenario for some in ranges for scenario in draw_scenarios(recipe, some.start, some.stop, fault_tries=tries)
+    ]
 
 
 def _unseen(runs: list[Run], records: list[Made]) -> dict[int, Scenario]:
@@ -114,4 +120,4 @@ def _unseen(runs: list[Run], records: list[Made]) -> dict[int, Scenario]:
 def _largest_places(scenarios: list[Scenario]) -> list[int]:
     """Places of the records with a fault; of a group, that of the largest severity alone."""
     rungs = [*(scenario.origin.rung for scenario in scenarios), -1]
-    return [at for at, one in enumerate(scenarios) if one.fault != "healthy" and rungs[at + 1] <= rungs[at]]
+    return [at for at, scenario in enumerate(scenarios) if scenario.fault != "healthy" and rungs[at + 1] <= rungs[at]]

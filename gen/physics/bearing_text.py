@@ -89,9 +89,9 @@ def bearing_from_text(text: str) -> Bearing:
     CorpusError
         If the text is none of them.
     """
-    known = known_designation(text)
-    if known is not None:
-        return CATALOGUE[known]
+    designation = known_designation(text)
+    if designation is not None:
+        return CATALOGUE[designation]
     if "=" not in text:
         near = difflib.get_close_matches(text, CATALOGUE, 1)
         guess = f"did you mean {near[0]}?" if near else f"the catalogue has {', '.join(CATALOGUE)}."
@@ -113,10 +113,10 @@ def bearing_from_text(text: str) -> Bearing:
     return _of_values(values)
 
 
-def bearing_of_label(given: Any) -> Bearing:
+def bearing_of_label(label: Any) -> Bearing:
     """Bearing of a text, or of a dict of dimensions or orders; ValueError if it is none of them."""
     try:
-        return _of_values(given) if isinstance(given, Mapping) else bearing_from_text(str(given))
+        return _of_values(label) if isinstance(label, Mapping) else bearing_from_text(str(label))
     except CorpusError as error:
         raise ValueError(str(error)) from None
 
@@ -138,18 +138,18 @@ def _of_values(values: Mapping[str, Any]) -> Bearing:
     """Bearing of dimensions, or of orders if there is one among the keys."""
     model, example = (PrintedOrders, _ORDERS) if {*FaultOrders._fields} & {*values} else (Geometry, _EXAMPLE)
     try:
-        given = model.model_validate(values)
+        checked = model.model_validate(values)
     except ValidationError as error:
         raise CorpusError(f"bearing: {' '.join(sentences(error, model))} Write it like {example}.") from None
-    if isinstance(given, PrintedOrders):
-        printed = FaultOrders(given.ftf, given.bpfo, given.bpfi, given.bsf)
-        n_balls = round(given.bpfo + given.bpfi)
-        return Bearing(given.designation, n_balls, math.nan, math.nan, printed_orders=printed)
+    if isinstance(checked, PrintedOrders):
+        printed = FaultOrders(checked.ftf, checked.bpfo, checked.bpfi, checked.bsf)
+        n_balls = round(checked.bpfo + checked.bpfi)
+        return Bearing(checked.designation, n_balls, math.nan, math.nan, printed_orders=printed)
     return Bearing(
-        given.designation,
-        given.n_balls,
-        to_si(given.pitch_diameter_mm, "mm"),
-        to_si(given.ball_diameter_mm, "mm"),
-        to_si(given.contact_angle_deg, "deg"),
+        checked.designation,
+        checked.n_balls,
+        to_si(checked.pitch_diameter_mm, "mm"),
+        to_si(checked.ball_diameter_mm, "mm"),
+        to_si(checked.contact_angle_deg, "deg"),
         rolling_element="roller" if any("roller" in key for key in values) else "ball",
     )

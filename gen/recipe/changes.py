@@ -14,13 +14,13 @@ class Changes(Section):
 
     model_config = ConfigDict(validate_default=False)
 
-    def given(self) -> dict[str, Any]:
+    def stated(self) -> dict[str, Any]:
         """Value of every key that is given, in the order of the section."""
         return {key: value for key, value in self if key in self.model_fields_set}
 
     @model_serializer(mode="plain")
     def _only_given(self) -> dict[str, Any]:
-        return self.given()
+        return self.stated()
 
 
 def _changes_of(section: type[Section], name: str, meaning: str) -> Any:

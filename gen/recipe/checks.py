@@ -44,9 +44,9 @@ def _numbers_of_a_record(recipe: Sections) -> int:
     """Count of the numbers of profiles and traces that each record holds."""
     tables = [
         sum(
-            2 * len(one.times_s)
-            for one in (conditions.speed_profile, conditions.load_profile)
-            if isinstance(one, Table)
+            2 * len(profile.times_s)
+            for profile in (conditions.speed_profile, conditions.load_profile)
+            if isinstance(profile, Table)
         )
         for conditions in recipe.operations().values()
     ]
@@ -130,7 +130,10 @@ def _sensing(recipe: Sections) -> Iterator[str]:
     channels = recipe.recording.channels
     if recipe.machine.resonator is None and any("sensor" in channel.body for channel in channels):
         yield "recording.channels: body sensor needs machine.resonator; give one, or use body: housing."
-    paths = {"path": recipe.path, **{f"recording.channels[{n}].path": one.path for n, one in enumerate(channels)}}
+    paths = {
+        "path": recipe.path,
+        **{f"recording.channels[{n}].path": channel.path for n, channel in enumerate(channels)},
+    }
     for place, path in paths.items():
         if path is not None and path.silent():
             yield f"{place}.direct: 0 without modes transmits nothing; give modes or a direct part above 0."
@@ -149,8 +152,8 @@ def _operation(recipe: Sections) -> Iterator[str]:
             yield f"{place}.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."
         yield from load_problems(recipe.bearing, operation, reach, place)
         # a key without an effect is a misunderstanding
-        given = "temperature_celsius" in operation.model_fields_set and recipe.origin is None
-        if given and recipe.contact.lubricant is None:
+        states_temperature = "temperature_celsius" in operation.model_fields_set and recipe.origin is None
+        if states_temperature and recipe.contact.lubricant is None:
             yield f"{place}.temperature_celsius: has no effect without oil; give contact.lubricant, or leave it out."
         for key in ("speed_profile", "load_profile"):
             profile = getattr(operation, key)

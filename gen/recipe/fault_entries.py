@@ -34,10 +34,10 @@ def fault_entries(value: Any) -> Any:
     defaults, entries = value["defaults"], value["entries"]
     if not isinstance(entries, list | tuple) or not all(isinstance(entry, Mapping) for entry in entries):
         return entries
-    known = {key for entry in entries for fault in (entry, *_parts(entry)) for key in _keys(fault)}
-    unknown = next((key for key in defaults if key not in known), None)
+    keys = {key for entry in entries for fault in (entry, *_parts(entry)) for key in _keys(fault)}
+    unknown = next((key for key in defaults if key not in keys), None)
     if unknown is not None:
-        near = difflib.get_close_matches(str(unknown), known, 1)
+        near = difflib.get_close_matches(str(unknown), keys, 1)
         raise ValueError(
             f"defaults: {unknown} is a key of no entry" + (f"; did you mean {near[0]}?" if near else "; leave it out.")
         )

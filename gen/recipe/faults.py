@@ -30,7 +30,7 @@ def _entry(kind: type[BearingFault]) -> Any:
 
 
 _ENTRIES = tuple(map(_entry, KINDS))
-OF_KIND = {kind: one for one in _ENTRIES for kind in get_args(one.model_fields["kind"].annotation)}
+OF_KIND = {kind: entry for entry in _ENTRIES for kind in get_args(entry.model_fields["kind"].annotation)}
 """Entry of each kind."""
 
 for _kind, _model in OF_KIND.items():

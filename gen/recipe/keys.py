@@ -75,7 +75,11 @@ def fields_below(
         for name in sorted(model.model_fields, key=lambda name: name != "kind"):
             yield path, model, name
             field, below = model.model_fields[name], seen if path or seen is None else set[type[BaseModel]]()
-            inner = [one for one in _sections_of(field) if not any(issubclass(other, one) for other in below or ())]
+            inner = [
+                section
+                for section in _sections_of(field)
+                if not any(issubclass(other, section) for other in below or ())
+            ]
             if below is not None:
                 below.update(inner)
             steps = {tuple: (f"{name}[]",), dict: (name, "NAME")}.get(get_origin(field.annotation) or type, (name,))

@@ -51,17 +51,17 @@ def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | N
     """
     if "faults" in keys and fault is not None:
         raise RecipeError("faults: is given twice, also as fault; give it once.")
-    given: dict[str, Any] = plain(keys)  # a copy
+    remaining: dict[str, Any] = plain(keys)  # a copy
     data: dict[str, Any] = {}
     # whole sections first, then single keys into the sections that have them
-    for name in [name for name in given if name in Recipe.model_fields]:
-        data[name] = given.pop(name)
-    for name, value in given.items():
+    for name in [name for name in remaining if name in Recipe.model_fields]:
+        data[name] = remaining.pop(name)
+    for name, value in remaining.items():
         _set(data, name, value)
     faults = plain("healthy" if fault is None else fault)
     faults = [faults] if isinstance(faults, dict | str) else faults
     if isinstance(faults, list):
-        faults = [{"kind": one} if isinstance(one, str) else one for one in faults]
+        faults = [{"kind": entry} if isinstance(entry, str) else entry for entry in faults]
     data.setdefault("faults", faults)
     # records in memory have defaults of their own where a recipe has none
     for name, value in DEFAULTS.items():
@@ -136,9 +136,9 @@ def _places() -> dict[str, dict[tuple[str, ...], set[str]]]:
     return places
 
 
-def _counted(given: Mapping[str, Any], n_faults: int, n: int | None) -> dict[str, Any]:
+def _counted(keys: Mapping[str, Any], n_faults: int, n: int | None) -> dict[str, Any]:
     """A corpus with all its counts, so that each fault has ``n`` records; wrong counts are left to the model."""
-    corpus: dict[str, Any] = {"records_per_specimen": 1, **given}
+    corpus: dict[str, Any] = {"records_per_specimen": 1, **keys}
     rungs = corpus.get("rungs")
     counts = [corpus[name] for name in _COUNTED if name in corpus]
     if any(type(count) is not int or count < 1 for count in counts) or not isinstance(rungs, list | None):
@@ -156,14 +156,14 @@ def _counted(given: Mapping[str, Any], n_faults: int, n: int | None) -> dict[str
             f"n: {n} records of each fault are no whole number of specimens of {of_a_specimen} records; use a multiple of {of_a_specimen}."
         )
     # the count that is left out follows from the other one
-    for one, other in (("rigs", "specimens_per_rig"), ("specimens_per_rig", "rigs")):
-        if one in corpus and specimens % corpus[one]:
+    for count, other in (("rigs", "specimens_per_rig"), ("specimens_per_rig", "rigs")):
+        if count in corpus and specimens % corpus[count]:
             raise RecipeError(
-                f"n: {n} records of each of {n_faults} faults take {specimens} specimens, which cannot be divided by {one}: {corpus[one]}; "
-                f"change one of the two."
+                f"n: {n} records of each of {n_faults} faults take {specimens} specimens, which cannot be divided by {count}: "
+                f"{corpus[count]}; change one of the two."
             )
-        if one in corpus:
-            corpus = {other: specimens // corpus[one], **corpus}
+        if count in corpus:
+            corpus = {other: specimens // corpus[count], **corpus}
     corpus = {"rigs": 1, "specimens_per_rig": specimens, **corpus}
     if corpus["rigs"] * corpus["specimens_per_rig"] != specimens:
         raise RecipeError(

@@ -70,12 +70,12 @@ def _loads(recipe: Sections, life: LifeSection) -> Iterator[str]:
     bearing = recipe.bearing
     catalogue = isinstance(bearing, CatalogueBearing)
     bearings = bearing.bearings() if catalogue else [Bearing(bearing.designation, 0, math.nan, math.nan)]
-    unrated = [one.designation for one in bearings if one.dynamic_rating is None]
-    rated = [(one.dynamic_rating or math.nan, one.rolling_element) for one in bearings]
+    unrated = [bearing.designation for bearing in bearings if bearing.dynamic_rating is None]
+    rated = [(bearing.dynamic_rating or math.nan, bearing.rolling_element) for bearing in bearings]
     for place, operation in recipe.operations().items():
         for key in ("load_n", "shaft_rpm"):
-            given = getattr(operation, key)
-            if given.per is None and given.support()[0] < given.support()[1]:
+            quantity = getattr(operation, key)
+            if quantity.per is None and quantity.support()[0] < quantity.support()[1]:
                 yield f"{place}.{key}: varies from snapshot to snapshot; add per=specimen, and life has slow histories."
         if reach[place]["axial_load_n"][1] > 0:
             yield f"{place}.axial_load_n: lives are known under radial loads alone; leave it out."

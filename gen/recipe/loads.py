@@ -37,7 +37,7 @@ def load_problems(
 def contact_angles(bearing: CatalogueBearing | GeometryBearing) -> list[float]:
     """Contact angles on the drawings [deg], or the ends of their range."""
     if isinstance(bearing, CatalogueBearing):
-        return [math.degrees(one.contact_angle) for one in bearing.bearings()]
+        return [math.degrees(drawing.contact_angle) for drawing in bearing.bearings()]
     return [*bearing.contact_angle_deg.support()]
 
 

@@ -28,17 +28,17 @@ OF_ROLLERS = {"n_rollers": "n_balls", "roller_diameter_mm": "ball_diameter_mm"}
 _COUNT, _DIAMETER = (Field(validation_alias=AliasChoices(of_balls, key)) for key, of_balls in OF_ROLLERS.items())
 
 
-def _check_rollers(given: Any) -> Any:
+def _check_rollers(dimensions: Any) -> Any:
     """Dimensions as they are given; ValueError for keys of rollers without a length, or beside the same of balls."""
-    if not isinstance(given, Mapping) or not (keys := given.keys() & OF_ROLLERS.keys()):
-        return given
-    if "roller_length_mm" not in given:
+    if not isinstance(dimensions, Mapping) or not (keys := dimensions.keys() & OF_ROLLERS.keys()):
+        return dimensions
+    if "roller_length_mm" not in dimensions:
         raise ValueError(
             f"{min(keys)}: a bearing with rollers needs roller_length_mm; balls have n_balls and ball_diameter_mm."
         )
-    if twice := given.keys() & {OF_ROLLERS[key] for key in keys}:
+    if twice := dimensions.keys() & {OF_ROLLERS[key] for key in keys}:
         raise ValueError(f"{min(keys)}: {min(twice)} says the same; give one of them.")
-    return given
+    return dimensions
 
 
 class OwnBearing(Section):
@@ -125,7 +125,9 @@ class CatalogueBearing(Section):
 
     def bearings(self) -> list[Bearing]:
         """Bearing of each designation, from the entries or from the catalogue."""
-        return [self.entries[one].bearing(one) if one in self.entries else CATALOGUE[one] for one in self.designations]
+        return [
+            self.entries[name].bearing(name) if name in self.entries else CATALOGUE[name] for name in self.designations
+        ]
 
 
 class GeometryBearing(Section):
@@ -208,7 +210,7 @@ def _with_kind(value: Any) -> Any:
     """A bearing with its kind, from a designation, a list of them, or dimensions."""
     if isinstance(value, str | int | list | tuple):
         several = value if isinstance(value, list | tuple) else [value]
-        return {"kind": "catalogue", "designations": [str(one) if type(one) is int else one for one in several]}
+        return {"kind": "catalogue", "designations": [str(name) if type(name) is int else name for name in several]}
     if (
         isinstance(value, Mapping)
         and "kind" not in value

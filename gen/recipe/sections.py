@@ -214,7 +214,7 @@ class Sections(Section):
     def operation_of(self, entry: int) -> OperationSection:
         """Operating conditions of the records of one entry of ``faults``."""
         changes = self.faults[entry].operation
-        return self.operation if changes is None else self.operation.model_copy(update=changes.given())
+        return self.operation if changes is None else self.operation.model_copy(update=changes.stated())
 
     def operations(self) -> dict[str, OperationSection]:
         """Operating conditions by their place: those of all records, and of every fault with changes of its own."""
@@ -224,4 +224,4 @@ class Sections(Section):
     def level_of(self, entry: int) -> PhysicalLevel | SnrLevel:
         """Level of the records of one entry of ``faults``."""
         changes = self.faults[entry].level
-        return self.level if changes is None else self.level.model_copy(update=changes.given())
+        return self.level if changes is None else self.level.model_copy(update=changes.stated())

@@ -95,7 +95,7 @@ def _bearing_ranges(recipe: Sections) -> dict[str, Support | None]:
     if not isinstance(bearing, CatalogueBearing):
         return {"pitch_diameter_mm": _ranges(bearing, {})["pitch_diameter_mm"], "ball_diameter_mm": None}
     pitches, balls = zip(
-        *((1e3 * one.pitch_diameter, 1e3 * one.ball_diameter) for one in bearing.bearings()), strict=True
+        *((1e3 * drawing.pitch_diameter, 1e3 * drawing.ball_diameter) for drawing in bearing.bearings()), strict=True
     )
     return {"pitch_diameter_mm": (min(pitches), max(pitches)), "ball_diameter_mm": (min(balls), max(balls))}
 

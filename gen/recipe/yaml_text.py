@@ -39,8 +39,8 @@ def recipe_text(recipe: Recipe) -> str:
     yaml.default_flow_style, yaml.width = None, 1000
     yaml.representer.sort_base_mapping_type_on_output = False
     text = io.StringIO()
-    given = {key: value for key, value in plain(recipe).items() if value != {}}
-    yaml.dump(_without_points(given), text)
+    keys = {key: value for key, value in plain(recipe).items() if value != {}}
+    yaml.dump(_without_points(keys), text)
     return text.getvalue()
 
 

@@ -61,7 +61,7 @@ def possible_entries(recipe: Recipe, specimen: int, fault: str) -> list[int]:
     """Places in ``faults`` of the entries that a specimen with a fault class can have."""
     if recipe.corpus.fault_choice == "in_turn":
         return [specimen % len(recipe.faults)]
-    return [place for place, one in enumerate(recipe.faults) if class_of(one) == fault]
+    return [place for place, entry in enumerate(recipe.faults) if class_of(entry) == fault]
 
 
 def _offsets(seed: int, rig: int) -> tuple[float, float]:

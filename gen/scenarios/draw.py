@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus import SPLITS
-from gen.drawing import Combination, Draws, Known, Section, quantities, stream, weighted_index
+from gen.drawing import Combination, Draws, Section, Wholes, quantities, stream, weighted_index
 from gen.physics.axial import least_axial_load
 from gen.physics.bearing import free_contact_angle
 from gen.physics.rating import static_rating
@@ -39,7 +39,7 @@ from gen.support.units import split_unit
 _OF_RIG = ("recording", "bearing", "machine", "machine_conditions", "contact", "path", "background", "sensor_faults")
 
 
-Specimen = tuple[Any, Known, tuple[Fault, ...], list[Aged] | None]
+Specimen = tuple[Any, Wholes, tuple[Fault, ...], list[Aged] | None]
 """Recipe of a specimen, quantities that its records can have shares of, its fault at each rung, and the snapshots of its life."""
 
 _ONE = CorpusSection(rigs=1, specimens_per_rig=1, records_per_specimen=1)
@@ -125,8 +125,8 @@ def _draw_rig(recipe: Recipe, draws: Draws) -> tuple[Recipe, Draws]:
         oil.check(f"rig {draws.of}")
     # quantities of which those of lower levels can be shares
     dimensions = {"pitch_diameter_mm": bearing.pitch_diameter, "ball_diameter_mm": bearing.ball_diameter}
-    known = {**_known(recipe.machine, machine), **dimensions}
-    return recipe.model_copy(update=drawn), draws._replace(point=[], known=known, bearing=bearing)
+    wholes = {**_wholes(recipe.machine, machine), **dimensions}
+    return recipe.model_copy(update=drawn), draws._replace(point=[], wholes=wholes, bearing=bearing)
 
 
 @functools.lru_cache(maxsize=16)
@@ -134,10 +134,10 @@ def _highest_speed(recipe: Recipe) -> float:
     return max(of["shaft_rpm"][1] for place, of in ranges(recipe).items() if place.endswith("operation"))
 
 
-def _known(given: Section, drawn: Section) -> dict[str, float]:
+def _wholes(section: Section, drawn: Section) -> dict[str, float]:
     """Drawn quantities of a section by their keys [SI]."""
     values = drawn.si()
-    return {key: values[split_unit(key)[0]] for key in quantities(given)}
+    return {key: values[split_unit(key)[0]] for key in quantities(section)}
 
 
 def _draw_bearing(rig: Recipe, of_rig: Draws, draws: Draws) -> tuple[Section, Draws]:
@@ -153,11 +153,11 @@ def _draw_bearing(rig: Recipe, of_rig: Draws, draws: Draws) -> tuple[Section, Dr
         )
         return free_contact_angle(grooved, value("diametral_clearance_um"))
 
-    known = {**of_rig.known, FREE_ANGLE: free_angle}
-    specimen = rig.specimen.draw(draws._replace(known=known).within("specimen", "specimen"))
+    wholes = {**of_rig.wholes, FREE_ANGLE: free_angle}
+    specimen = rig.specimen.draw(draws._replace(wholes=wholes).within("specimen", "specimen"))
     bearing = as_built(drawing, specimen.si())
     check_bearing(bearing, f"specimen {draws.of}")
-    return specimen, draws._replace(known={**of_rig.known, **_known(rig.specimen, specimen)}, bearing=bearing)
+    return specimen, draws._replace(wholes={**of_rig.wholes, **_wholes(rig.specimen, specimen)}, bearing=bearing)
 
 
 def _draw_entry(recipe: Recipe, rig: int, draws: Draws, fault_try: int) -> int:
@@ -171,7 +171,7 @@ def _draw_entry(recipe: Recipe, rig: int, draws: Draws, fault_try: int) -> int:
         # a fault that is drawn again leaves operating conditions and levels as they are
         first = recipe.faults[entry]
         faults = ((place, recipe.faults[place]) for place in wanted)
-        wanted = [place for place, one in faults if (one.operation, one.level) == (first.operation, first.level)]
+        wanted = [place for place, fault in faults if (fault.operation, fault.level) == (first.operation, first.level)]
     return entry
 
 
@@ -183,8 +183,8 @@ def _draw_specimen(recipe: Recipe, rig: Recipe, of_rig: Draws, draws: Draws, fau
     # of one combination of grids for all specimens of a rig
     of_rig = of_rig._replace(grids=replace(of_rig.grids))
     # keys with per=rig, then those with per=specimen; the rest is drawn for each record
-    for key, given in (("operation", recipe.operation_of(entry)), ("level", recipe.level_of(entry))):
-        drawn[key] = given.draw(of_rig.within(key, "rig")).draw(draws.within(key, "specimen"))
+    for key, undrawn in (("operation", recipe.operation_of(entry)), ("level", recipe.level_of(entry))):
+        drawn[key] = undrawn.draw(of_rig.within(key, "rig")).draw(draws.within(key, "specimen"))
     fault = recipe.faults[entry].draw(built._replace(point=[], attempt=fault_try).within("faults", "specimen"))
     for part in fault.components:
         part.check(built.bearing, f"specimen {draws.of}")
@@ -200,19 +200,19 @@ def _draw_specimen(recipe: Recipe, rig: Recipe, of_rig: Draws, draws: Draws, fau
         split=_draw_split(recipe, of_rig.of, draws.of % recipe.corpus.specimens_per_rig),
         fault_try=fault_try,
     )
-    specimen, known = rig.model_copy(update=drawn), dict(built.known)
+    specimen, wholes = rig.model_copy(update=drawn), dict(built.wholes)
     # loads can be shares of what the bearing carries
-    known[STATIC_RATING] = lambda _: static_rating(of_rig.bearing)
-    known[LEAST_AXIAL_LOAD] = lambda value: least_axial_load(value("load_n"), built.bearing.contact_angle)
+    wholes[STATIC_RATING] = lambda _: static_rating(of_rig.bearing)
+    wholes[LEAST_AXIAL_LOAD] = lambda value: least_axial_load(value("load_n"), built.bearing.contact_angle)
     rungs = (1.0,) if recipe.corpus.rungs is None or not fault.components else recipe.corpus.rungs
     # the same fault at every severity of the ladder
     faults = tuple(fault if share == 1 else sound() if share == 0 else fault.at_severity(share) for share in rungs)
     if recipe.life is None:
-        return specimen, known, faults, None
+        return specimen, wholes, faults, None
     # a life follows from the middle of its conditions, which then vary about it
-    middle = _draws(recipe, "record", 0, 0, np.full(64, 0.5))._replace(known=known)
+    middle = _draws(recipe, "record", 0, 0, np.full(64, 0.5))._replace(wholes=wholes)
     conditions = drawn["operation"].draw(middle.within("operation", "record")).si()
-    return specimen, known, faults, draw_life(recipe, specimen, built.bearing, conditions)
+    return specimen, wholes, faults, draw_life(recipe, specimen, built.bearing, conditions)
 
 
 def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
@@ -249,7 +249,7 @@ def _draw_records(recipe: Recipe, specimens: Mapping[int, Specimen], numbers: ra
     for place in range(rungs):
         points |= points_of(recipe, "record", recipe.item_of(first + place), recipe.item_of(last + place) + 1)
     for number in numbers:
-        specimen, known, faults, life = specimens[recipe.specimen_of(number)]
+        specimen, wholes, faults, life = specimens[recipe.specimen_of(number)]
         group, place = divmod(number, rungs)
         first, placed = number, {}
         if len(faults) > 1:
@@ -257,7 +257,7 @@ def _draw_records(recipe: Recipe, specimens: Mapping[int, Specimen], numbers: ra
             widths = [w for fault in faults for part in fault.components for w in getattr(part, "width_mm", ())]
             first, placed = number - place, {"pair": group, "rung": place, "narrowest_mm": min(widths, default=None)}
         item, origin = recipe.item_of(first), specimen.origin
-        draws = _draws(recipe, "record", first, item, points[item])._replace(known=known)
+        draws = _draws(recipe, "record", first, item, points[item])._replace(wholes=wholes)
         drawn: dict[str, Any] = {
             key: getattr(specimen, key).draw(draws.within(key, "record"))
             for key in ("operation", "level", "sensor_faults")

@@ -33,8 +33,8 @@ class Scenario(Shown):
     def _facts(self) -> Mapping[str, object]:
         bearing, recording = self.bearing, self.recipe.recording
         damage = [
-            f"spall of {1e3 * one.width:.3g} mm, {1e6 * one.depth:.3g} µm deep, in the {one.site}"
-            for one in self.spalls
+            f"spall of {1e3 * spall.width:.3g} mm, {1e6 * spall.depth:.3g} µm deep, in the {spall.site}"
+            for spall in self.spalls
         ]
         return {
             "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of "

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def scenario_texts(scenarios: Sequence[Scenario]) -> list[str]:
     """Recipe of each scenario as a JSON object; :func:`read_scenario` reads it."""
     texts: dict[int, str] = {}  # many records share sections, so each is encoded once
-    return [f"{{{', '.join(_section_texts(one.recipe, texts))}}}" for one in scenarios]
+    return [f"{{{', '.join(_section_texts(scenario.recipe, texts))}}}" for scenario in scenarios]
 
 
 def _section_texts(recipe: Recipe, texts: dict[int, str]) -> list[str]:

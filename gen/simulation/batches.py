@@ -47,8 +47,8 @@ _filters = functools.lru_cache(maxsize=16)(decimation)
 def batches(integrations: Iterable[Integration]) -> list[list[Integration]]:
     """Records of one group each, at most ``LANES`` of them."""
     groups = defaultdict[tuple[Shape, int], list[Integration]](list)
-    for one in integrations:
-        groups[one.group].append(one)
+    for integration in integrations:
+        groups[integration.group].append(integration)
     return [group[first : first + LANES] for group in groups.values() for first in range(0, len(group), LANES)]
 
 

@@ -93,8 +93,8 @@ def _paths(
     if spall.profile not in ("geometric", "trace"):
         arc = ball if spall.site == "ball" else abs(races[0])
         profile, half = PROFILES.index(spall.profile), 0.5 * spall.width / arc
-        one = np.array([cached_drop(profile, x / arc, half, arc, ball, races[0], spall.depth) for x in at])
-        return (one,) * len(races)
+        path = np.array([cached_drop(profile, x / arc, half, arc, ball, races[0], spall.depth) for x in at])
+        return (path,) * len(races)
     depths = np.full(len(at), spall.depth)
     if spall.profile == "trace":
         depths = np.interp(at, np.linspace(at[0], at[-1], len(spall.trace)), spall.trace)

@@ -41,7 +41,9 @@ def loaded_hits(kernel_input: KernelInput, orders: FaultOrders, turns: float) ->
 
 def felt_places(scenarios: Sequence[Scenario]) -> list[bool]:
     """False for each record whose only faults are spalls of the outer race that no loaded ball meets."""
-    outer = [place for place, one in enumerate(scenarios) if one.spalls and one.damaged_parts == ["outer"]]
+    outer = [
+        place for place, scenario in enumerate(scenarios) if scenario.spalls and scenario.damaged_parts == ["outer"]
+    ]
     felt = [True] * len(scenarios)
     inputs = resting(bare_inputs([draw_motion(scenarios[place]) for place in outer]))
     for place, kernel_input in zip(outer, inputs, strict=True):

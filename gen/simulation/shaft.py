@@ -43,10 +43,10 @@ def shaft_angles(records: xr.Dataset) -> xr.DataArray:
     angles = np.empty((rows.sizes["record"], rows.sizes["elapsed_time"]))
     for place in range(len(angles)):
         angles[place] = _record_angles(rows.isel(record=[place]), place)
-    known = xr.DataArray(angles, dims=("record", "elapsed_time"), name="shaft_angle")
-    known.attrs = {"long_name": "angle of the shaft", "units": "rad"}
-    known = known.assign_coords(elapsed_time=records["elapsed_time"])
-    return known if rows is records else known[0]
+    shaft_angle = xr.DataArray(angles, dims=("record", "elapsed_time"), name="shaft_angle")
+    shaft_angle.attrs = {"long_name": "angle of the shaft", "units": "rad"}
+    shaft_angle = shaft_angle.assign_coords(elapsed_time=records["elapsed_time"])
+    return shaft_angle if rows is records else shaft_angle[0]
 
 
 def _record_angles(row: xr.Dataset, place: int) -> FloatArray:

@@ -31,7 +31,7 @@ class Run:
     @property
     def integrations(self) -> list[Integration]:
         """Of the record and of its twin, as far as there are any."""
-        return [one for one in (self.own, self.twin) if isinstance(one, Integration)]
+        return [integration for integration in (self.own, self.twin) if isinstance(integration, Integration)]
 
     @property
     def healthy(self) -> Integration | None:
@@ -65,7 +65,10 @@ class Run:
         if isinstance(self.own, SimulationError):
             return str(self.own)
         # with its twin: if that diverged, what the fault adds is not known
-        diverged = max(one.diverged for one in self.integrations) / self.scenario.recipe.recording.sample_rate_hz
+        diverged = (
+            max(integration.diverged for integration in self.integrations)
+            / self.scenario.recipe.recording.sample_rate_hz
+        )
         return failure(self.scenario.origin.record, self.oversampling, diverged, self.step_phase)
 
 
@@ -82,8 +85,8 @@ def simulate(scenarios: list[Scenario]) -> list[Run]:
     return runs
 
 
-def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] = {}) -> list[Run]:
-    """Integrations that scenarios need; ``known`` are integrated runs, by number, of the same records with another fault.
+def runs_of(scenarios: list[Scenario], earlier: Mapping[int, Run] = {}) -> list[Run]:
+    """Integrations that scenarios need; ``earlier`` are integrated runs, by number, of the same records with another fault.
 
     Records of a group differ in their severity alone, so they share one twin: the record before the damage, if it is among them.
 
@@ -94,7 +97,7 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] = {}) -> list[Ru
     """
     twins, motions = same_recording(scenarios).truth.twins, [draw_motion(scenario) for scenario in scenarios]
     # a fault that is drawn again needs no second integration of its twin
-    integrated = {(number, one.steps): one for number, run in known.items() if (one := run.healthy)}
+    integrated = {(number, healthy.steps): healthy for number, run in earlier.items() if (healthy := run.healthy)}
     of_group = dict[tuple[int, int], Integration | None]()
     runs = list[Run]()
     for motion, kernel_input in zip(motions, kernel_inputs(motions), strict=True):
@@ -119,7 +122,9 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] = {}) -> list[Ru
 
 def open_integrations(runs: Iterable[Run]) -> list[Integration]:
     """Integrations that have not been done yet, each once."""
-    return list(dict.fromkeys(one for run in runs for one in run.integrations if one.response is None))
+    return list(
+        dict.fromkeys(integration for run in runs for integration in run.integrations if integration.response is None)
+    )
 
 
 def integrate_runs(runs: list[Run]) -> None:

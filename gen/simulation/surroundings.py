@@ -127,14 +127,14 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
     heaviest, oil = heaviest_ball_load(scenario), lubricant.si()
     lubricant = Lubricant(oil["viscosity_40"], oil["viscosity_100"], oil["density"], oil["pressure_viscosity"])
     # the film of the most loaded ball, in series with the contact
-    made = film(bearing, lubricant, conditions["temperature"], conditions["shaft_rate"], heaviest)
-    if made.thickness > THICKEST_FILM:
+    oil_film = film(bearing, lubricant, conditions["temperature"], conditions["shaft_rate"], heaviest)
+    if oil_film.thickness > THICKEST_FILM:
         raise ValueError(
-            f"an oil film of {made.thickness * 1e6:.3g} um is above the {THICKEST_FILM * 1e6:g} um for which film formulas hold; "
+            f"an oil film of {oil_film.thickness * 1e6:.3g} um is above the {THICKEST_FILM * 1e6:g} um for which film formulas hold; "
             f"take thinner or warmer oil."
         )
-    softer = lubricated_factor(factor, contact_exponent(bearing), heaviest, made.stiffness)
-    return softer, made.damping, clearance / 2 - made.thickness
+    softer = lubricated_factor(factor, contact_exponent(bearing), heaviest, oil_film.stiffness)
+    return softer, oil_film.damping, clearance / 2 - oil_film.thickness
 
 
 def heaviest_ball_load(scenario: Scenario) -> float:

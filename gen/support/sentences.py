@@ -99,7 +99,7 @@ def _place(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
             place += f"[{step}]"
         elif node.branches(step):
             node = node.of_kind(step)
-        elif place and any(step in getattr(one, "arguments", ()) for one in node.models):
+        elif place and any(step in getattr(section, "arguments", ()) for section in node.models):
             node = node.into(step)  # a number, or a list, that stands for a distribution without its key
         elif node.knows(step) or (step not in _FORMS and (not node.models or step not in _branches())):
             shown = step if step.isprintable() and len(step) <= _LONGEST_KEY else reprlib.repr(step)

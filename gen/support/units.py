@@ -125,8 +125,8 @@ def range_text(name: str, low: float, high: float, stored: str) -> str:
     """
     unit, factor = shown_unit(name, stored)
     shown, in_stored = (
-        f"{_number(one)} {of}" if one == other else f"{_number(one)} to {_number(other)} {of}"
-        for one, other, of in ((low / factor, high / factor, unit), (low, high, stored))
+        f"{_number(lowest)} {of}" if lowest == other else f"{_number(lowest)} to {_number(other)} {of}"
+        for lowest, other, of in ((low / factor, high / factor, unit), (low, high, stored))
     )
     return shown if unit == stored else f"{shown} ({in_stored})"
 
@@ -172,7 +172,7 @@ def decibel_to_ratio(level: Quantity) -> Quantity:
     if isinstance(level, float | int):
         return 10 ** (level / 20)
     ratios = level.copy()  # one by one: powers of arrays have other last bits on other processors
-    ratios[:] = [10 ** (one / 20) for one in level.tolist()]
+    ratios[:] = [10 ** (decibel / 20) for decibel in level.tolist()]
     return ratios
 
 

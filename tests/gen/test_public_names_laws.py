@@ -17,9 +17,9 @@ HEAVY = {"numba", "distributed", "scipy.stats", "sklearn", "matplotlib"}
 def test_every_public_name_is_there_and_listed(package):
     assert set(package.__all__) <= set(dir(package))
     for name in package.__all__:
-        found = getattr(package, name)
-        if inspect.isfunction(found) or inspect.isclass(found):
-            assert found.__name__ == name
+        public = getattr(package, name)
+        if inspect.isfunction(public) or inspect.isclass(public):
+            assert public.__name__ == name
 
 
 @pytest.mark.parametrize("package", [gen, gen.corpus, features], ids=lambda package: package.__name__)

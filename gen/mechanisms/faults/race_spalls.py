@@ -66,7 +66,7 @@ class Spalls(BearingFault):
     def draw(self, of: Draws) -> Any:
         """Spalls of one part of a bearing, whose widths can be shares of the distance between balls."""
         if self.part in RACES:
-            of = of._replace(known={**of.known, BALL_SPACING: ball_spacing(of.bearing, self.part)})
+            of = of._replace(wholes={**of.wholes, BALL_SPACING: ball_spacing(of.bearing, self.part)})
         return super().draw(of)
 
     def check(self, bearing: Bearing, item: str) -> None:

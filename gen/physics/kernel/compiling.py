@@ -28,8 +28,8 @@ class _NoAlias(Compiler):
     Otherwise LLVM compiles every loop twice, in vectors and in scalars, and tests each time which of them is allowed.
     """
 
-    def __init__(self, *given: Any) -> None:
-        super().__init__(*given)
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
         self.state.flags.noalias = True
 
 

@@ -60,5 +60,5 @@ def test_values_at_even_quantiles_follow_the_distribution_they_are_named_after(d
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=5).filter(lambda weights: sum(weights) > 0.1))
 def test_a_weighted_choice_gives_each_value_its_share(weights):
-    found = np.bincount([weighted_index(tuple(weights), u) for u in EVEN], minlength=len(weights)) / len(EVEN)
-    np.testing.assert_allclose(found, np.array(weights) / sum(weights), atol=1e-3)
+    shares = np.bincount([weighted_index(tuple(weights), u) for u in EVEN], minlength=len(weights)) / len(EVEN)
+    np.testing.assert_allclose(shares, np.array(weights) / sum(weights), atol=1e-3)

@@ -16,6 +16,8 @@ from tests.recipes import EVERYTHING
 
 RECIPES = (*shipped_recipes(), "everything")
 EXTENDED = ("machine", "path", "background", "specimen", "operation")
+
+
 def drawn_keys(mechanism):
     """Keys of a mechanism that half of the items have, each required one drawn from the beginning of its range."""
     keys = {"probability": 0.5}
@@ -60,12 +62,12 @@ def extended(section):
 
 def added(recipe, larger):
     """Values by which the scenarios of a larger recipe have more than those of a recipe, whose values they have too."""
-    found = []
-    for one, other in zip(draw_scenarios(recipe, 0, 48), draw_scenarios(larger, 0, 48), strict=True):
-        before, after = numbers_of(one), numbers_of(other)
+    further = []
+    for scenario, other in zip(draw_scenarios(recipe, 0, 48), draw_scenarios(larger, 0, 48), strict=True):
+        before, after = numbers_of(scenario), numbers_of(other)
         assert {path: after.get(path) for path in before} == before
-        found.append({path: value for path, value in after.items() if path not in before})
-    return found
+        further.append({path: value for path, value in after.items() if path not in before})
+    return further
 
 
 @pytest.mark.parametrize("name", RECIPES)

@@ -16,9 +16,9 @@ def test_the_kernel_is_compiled_for_the_types_of_the_arguments_it_is_called_with
         {"operation.speed_profile": {"kind": "run_up", "from_percent": 50, "to_percent": 120, "lasting_s": 0.1}}
     )
     for scenario in draw_scenarios(recipe, 0, 8):
-        given = input_of(scenario)
-        shape = input_shape(given)
-        arguments = (shape, lay_out([given], shape, 1e-4), 1e-5, 4, decimation(4), 3, 5)
+        kernel_input = input_of(scenario)
+        shape = input_shape(kernel_input)
+        arguments = (shape, lay_out([kernel_input], shape, 1e-4), 1e-5, 4, decimation(4), 3, 5)
         assert tuple(map(numba.typeof, arguments)) == signature()
 
 

@@ -31,8 +31,8 @@ def test_one_call_makes_one_file_with_the_same_records(single, whole):
     facts = read_manifest(whole.path).model_copy(update={"parts": ()})
     assert read_manifest(single.path) == facts
     assert recipe_text(single.path) == recipe_text(whole.path)
-    with open_corpus(single.path) as one, open_corpus(whole.path) as other:
-        assert one.identical(other)
+    with open_corpus(single.path) as file, open_corpus(whole.path) as folder:
+        assert file.identical(folder)
 
 
 @pytest.mark.usefixtures("started_processes")

@@ -67,7 +67,9 @@ def test_parts_of_one_corpus_made_apart_are_completed_or_joined(recipe_file, who
 
 @pytest.mark.parametrize("parts", [range(3, 4), range(0), range(2, 1), range(0, 3, 2), range(-1, 2)])
 def test_parts_that_a_corpus_does_not_have_are_refused(recipe_file, tmp_path, parts):
-    with pytest.raises(RecipeError, match=r"^parts: .* is not allowed; small has the parts 0-2, give a range of them\.$"):
+    with pytest.raises(
+        RecipeError, match=r"^parts: .* is not allowed; small has the parts 0-2, give a range of them\.$"
+    ):
         generate(recipe_file, tmp_path / "c", parts=parts)
     with pytest.raises(CorpusError, match="is one file, which has all parts; give a folder"):
         generate(recipe_file, tmp_path / "c.nc", parts=range(1))

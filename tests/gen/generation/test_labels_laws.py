@@ -25,10 +25,10 @@ OUTER = {"kind": "outer", "width_mm": 0.8, "angle_deg": 15}
 CAGE = {"kind": "cage", "pitch_error_deg": 4, "knock_n": 30}
 
 
-def labels(recipe, **given):
+def labels(recipe, **options):
     """Labels of all records of a recipe whose bodies are at rest; labels do not depend on the motion."""
     scenarios = draw_scenarios(recipe)
-    return part_dataset(recipe, measure(runs_of(scenarios)), **given)
+    return part_dataset(recipe, measure(runs_of(scenarios)), **options)
 
 
 @pytest.fixture
@@ -36,28 +36,28 @@ def labels_with(recipe_with):
     return lambda changes: labels(recipe_with(STEADY | changes))
 
 
-def first(found, name):
-    return found[name].values[0]
+def first(records, name):
+    return records[name].values[0]
 
 
 @pytest.mark.parametrize(("percent", "labelled"), [(2, 30.6), (-2, 29.4), (0, 30.0)])
 def test_a_tachometer_that_reads_too_high_labels_too_high_a_rate(labels_with, percent, labelled):
-    found = labels_with({"operation.label_error_percent": percent})
-    assert found["shaft_rate"].values == pytest.approx(labelled)
-    assert found["true_shaft_rate"].values == pytest.approx(30.0)
-    assert found["first_shaft_rate"].values == pytest.approx(30.0)
-    assert found["last_shaft_rate"].values == pytest.approx(30.0)
+    records = labels_with({"operation.label_error_percent": percent})
+    assert records["shaft_rate"].values == pytest.approx(labelled)
+    assert records["true_shaft_rate"].values == pytest.approx(30.0)
+    assert records["first_shaft_rate"].values == pytest.approx(30.0)
+    assert records["last_shaft_rate"].values == pytest.approx(30.0)
 
 
 def test_the_orders_are_nominal_and_the_true_ones_have_the_slip(labels_with):
-    found = labels_with({"operation.mean_slip_percent": 1})
+    records = labels_with({"operation.mean_slip_percent": 1})
     gamma = BALL / PITCH
     ftf, bsf = (1 - gamma) / 2, PITCH / (2 * BALL) * (1 - gamma**2)
     expected = {"ftf": ftf, "bpfo": Z * ftf, "bpfi": Z * (1 - ftf), "bsf": bsf}
     slipping = {"ftf": 0.99 * ftf, "bpfo": Z * 0.99 * ftf, "bpfi": Z * (1 - 0.99 * ftf), "bsf": bsf}
     for name in expected:
-        assert found[name].values == pytest.approx(expected[name])
-        assert found[f"true_{name}"].values == pytest.approx(slipping[name])
+        assert records[name].values == pytest.approx(expected[name])
+        assert records[f"true_{name}"].values == pytest.approx(slipping[name])
 
 
 def test_the_contact_angle_of_a_specimen_is_in_the_true_orders_alone(labels_with):
@@ -78,16 +78,16 @@ def test_the_largest_drop_is_that_of_the_depth_where_a_ball_reaches_the_floor(la
 
 def test_several_faults_are_labelled_by_the_widest_spall_and_by_all_parts(labels_with):
     deep = INNER | {"depth_um": 300}
-    found = labels_with({"faults": [{"kind": "compound", "parts": [deep, OUTER | {"depth_um": 2}, CAGE]}]})
-    assert FAULTS[first(found, "fault")] == "compound"
-    assert first(found, "parts") == "inner+outer+cage"
-    assert first(found, "n_spalls") == 2
-    assert first(found, "width") == pytest.approx(0.8e-3)
-    assert first(found, "depth") == pytest.approx(2e-6)
-    assert first(found, "largest_drop") == pytest.approx(2e-6)
-    assert first(found, "pitch_error") == pytest.approx(math.radians(4))
-    assert first(found, "knock") == 30
-    assert first(found, "wear") == 0
+    records = labels_with({"faults": [{"kind": "compound", "parts": [deep, OUTER | {"depth_um": 2}, CAGE]}]})
+    assert FAULTS[first(records, "fault")] == "compound"
+    assert first(records, "parts") == "inner+outer+cage"
+    assert first(records, "n_spalls") == 2
+    assert first(records, "width") == pytest.approx(0.8e-3)
+    assert first(records, "depth") == pytest.approx(2e-6)
+    assert first(records, "largest_drop") == pytest.approx(2e-6)
+    assert first(records, "pitch_error") == pytest.approx(math.radians(4))
+    assert first(records, "knock") == 30
+    assert first(records, "wear") == 0
 
 
 def test_the_temperature_is_labelled_where_there_is_oil(labels_with):
@@ -99,8 +99,8 @@ def test_the_temperature_is_labelled_where_there_is_oil(labels_with):
 def test_both_clearances_are_diametral(labels_with):
     """A hotter inner ring reduces the operating clearance, and not the clearance as built."""
     cold, warm = labels_with({}), labels_with({"operation.inner_ring_hotter_k": 10})
-    for found in (cold, warm):
-        assert found["diametral_clearance"].values == pytest.approx(10e-6)
+    for records in (cold, warm):
+        assert records["diametral_clearance"].values == pytest.approx(10e-6)
     assert cold["operating_clearance"].values == pytest.approx(10e-6)
     outer = (PITCH + BALL) / 2
     assert warm["operating_clearance"].values == pytest.approx(10e-6 - 2 * 10 * 12.5e-6 * outer)
@@ -109,10 +109,10 @@ def test_both_clearances_are_diametral(labels_with):
 def test_what_the_run_found_stands_beside_its_record(recipe_with):
     recipe = recipe_with({"records": 4})
     errors = np.array([np.nan, 1e-4, 2e-4, np.nan])
-    found = labels(recipe, step_error=errors)
-    assert found["oversampling"].values.tolist() == [2, 3, 4, 5]
-    assert (np.diff(found["step_phase"].values) < 0).all()
-    np.testing.assert_array_equal(found["step_error"].values, errors)
+    records = labels(recipe, step_error=errors)
+    assert records["oversampling"].values.tolist() == [2, 3, 4, 5]
+    assert (np.diff(records["step_phase"].values) < 0).all()
+    np.testing.assert_array_equal(records["step_error"].values, errors)
     assert np.isnan(labels(recipe)["step_error"].values).all()
 
 
@@ -121,40 +121,40 @@ def test_signal_ratio_and_clipped_samples_are_those_that_were_measured(recipe_wi
     scenarios, n = draw_scenarios(recipe), timeline(recipe).lead + recipe.n_samples
     hiss = 4 * np.random.default_rng(0).standard_normal((3, 1, n)).astype(np.float32)
     records = measure(runs_of(scenarios, hiss))
-    measured, found = side_by_side(records), part_dataset(recipe, records)
-    np.testing.assert_array_equal(found["snr"].values, measured.snr)
-    np.testing.assert_array_equal(found["clipped"].values, measured.clipped)
-    np.testing.assert_array_equal(found["acceleration"].values, measured.signal)
+    measured, dataset = side_by_side(records), part_dataset(recipe, records)
+    np.testing.assert_array_equal(dataset["snr"].values, measured.snr)
+    np.testing.assert_array_equal(dataset["clipped"].values, measured.clipped)
+    np.testing.assert_array_equal(dataset["acceleration"].values, measured.signal)
     assert measured.clipped.all()
-    assert found["acceleration"].attrs["scale_factor"] == pytest.approx(2.0 / 32767)
+    assert dataset["acceleration"].attrs["scale_factor"] == pytest.approx(2.0 / 32767)
 
 
 def test_a_record_knows_its_place(recipe_with):
     recipe = recipe_with({"machine.load_angle_deg": "uniform(-100, -80)"})
-    scenarios, found = draw_scenarios(recipe), labels(recipe)
-    assert found["recording"].values.tolist() == list(range(24))
-    assert found["specimen"].values.tolist() == [number // 2 for number in range(24)]
-    assert found["rig"].values.tolist() == [number // 8 for number in range(24)]
-    assert found["source"].values.tolist() == [f"small/{number}" for number in range(24)]
-    assert found["bearing"].values.tolist() == ["6205"] * 24
-    assert [SPLITS[code] for code in found["split"].values] == [scenario.origin.split for scenario in scenarios]
-    assert [FAULTS[code] for code in found["fault"].values] == [scenario.fault for scenario in scenarios]
-    for scenario, text in zip(scenarios, found["draws"].values, strict=True):
+    scenarios, records = draw_scenarios(recipe), labels(recipe)
+    assert records["recording"].values.tolist() == list(range(24))
+    assert records["specimen"].values.tolist() == [number // 2 for number in range(24)]
+    assert records["rig"].values.tolist() == [number // 8 for number in range(24)]
+    assert records["source"].values.tolist() == [f"small/{number}" for number in range(24)]
+    assert records["bearing"].values.tolist() == ["6205"] * 24
+    assert [SPLITS[code] for code in records["split"].values] == [scenario.origin.split for scenario in scenarios]
+    assert [FAULTS[code] for code in records["fault"].values] == [scenario.fault for scenario in scenarios]
+    for scenario, text in zip(scenarios, records["draws"].values, strict=True):
         assert read_scenario(text) == scenario
 
 
 def test_a_record_has_the_identity_that_its_numbers_have_in_every_corpus_of_the_same_draws(recipe_with):
-    found = labels(recipe_with({}))
-    corpora = {text.partition("/")[0] for text in found["identity"].values}
+    records = labels(recipe_with({}))
+    corpora = {text.partition("/")[0] for text in records["identity"].values}
     assert corpora == {
         corpus_identity(recipe_with({"storage.records_per_part": 5, "title": "Another title", "records": 9}))
     }
     assert corpora != {corpus_identity(recipe_with({"seed": 8}))}
-    numbers = [tuple(map(int, text.split("/")[1:])) for text in found["identity"].values]
-    wanted = [found[name].values.tolist() for name in ("rig", "specimen", "recording", "pair")]
+    numbers = [tuple(map(int, text.split("/")[1:])) for text in records["identity"].values]
+    wanted = [records[name].values.tolist() for name in ("rig", "specimen", "recording", "pair")]
     assert numbers == list(zip(*wanted, strict=True))
 
 
 def test_every_label_of_the_measuring_chain_is_a_variable_and_0_without_faults(labels_with):
-    found = labels_with({})
-    assert all((found[label.name].values == 0).all() for mechanism in CHAIN for label in mechanism.labels)
+    records = labels_with({})
+    assert all((records[label.name].values == 0).all() for mechanism in CHAIN for label in mechanism.labels)

@@ -36,11 +36,11 @@ def replayed(directory):
 
 
 def test_one_record_is_the_only_one_of_records():
-    one = gen.record(OUTER, **SHORT)
-    assert one[SIGNAL].dims == ("channel", "elapsed_time")
-    assert one["bpfo"].dims == ()
+    record = gen.record(OUTER, **SHORT)
+    assert record[SIGNAL].dims == ("channel", "elapsed_time")
+    assert record["bpfo"].dims == ()
     alone = gen.records(OUTER, name="record", **SHORT).isel(record=0)
-    assert one.drop_attrs(deep=False).identical(alone.drop_attrs(deep=False))
+    assert record.drop_attrs(deep=False).identical(alone.drop_attrs(deep=False))
 
 
 @pytest.mark.usefixtures("started_processes")
@@ -98,13 +98,13 @@ def test_every_record_of_a_dataset_that_was_cut_or_joined_is_replayed(ladder, tm
     ids=["cut", "scaled", "half changed", "twice", "without truth", "without scenarios", "two converters"],
 )
 def test_a_record_that_was_changed_is_written_without_its_scenario(ladder, tmp_path, changed, stored, replayable):
-    given = changed(ladder)
-    directory = gen.write_corpus(given, tmp_path / "corpus")
+    dataset = changed(ladder)
+    directory = gen.write_corpus(dataset, tmp_path / "corpus")
     assert gen.validate_corpus(directory) == []
     assert (directory / "recipe.yaml").exists() == (replayable == 6)
     with gen.open_corpus(directory) as corpus:
         assert corpus[SIGNAL].encoding["dtype"] == stored
-        np.testing.assert_array_equal(corpus[SIGNAL], given[SIGNAL].astype(np.float32))
+        np.testing.assert_array_equal(corpus[SIGNAL], dataset[SIGNAL].astype(np.float32))
         with_scenario = corpus["draws"].values != "" if "draws" in corpus else np.zeros(corpus.sizes["record"], bool)
     assert with_scenario.sum() == replayable
     for record in np.flatnonzero(with_scenario)[-1:]:
@@ -155,9 +155,9 @@ def test_records_of_two_recipes_in_one_dataset_are_replayed_and_their_machines_k
 def test_a_record_that_cannot_be_simulated_is_an_error_or_left_out_with_a_warning(tmp_path):
     crushing = {"load_n": gen.grid([500, 30_000]), "bearing": "6205"}
     with pytest.warns(UserWarning, match=r"1 of 3 records are left out; the first: record 1: .*static rating"):
-        found = gen.records(OUTER, 3, **SHORT, **crushing)
-    assert found["recording"].values.tolist() == [0, 2]
-    directory = gen.write_corpus(found, tmp_path / "corpus")
+        records = gen.records(OUTER, 3, **SHORT, **crushing)
+    assert records["recording"].values.tolist() == [0, 2]
+    directory = gen.write_corpus(records, tmp_path / "corpus")
     assert gen.validate_corpus(directory) == []
     assert replayed(directory)
 
@@ -183,22 +183,22 @@ def test_drawn_scenarios_give_the_records_of_their_recipe(ladder):
 def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_path):
     recipe = gen.make_recipe([OUTER, INNER], 3, rungs=[0, 0.5, 1], level=SNR, **SHORT)
     scenarios = gen.draw_scenarios(recipe)
-    faster = [one.with_(operation={"shaft_rpm": 60 * 61}) for one in scenarios]
-    made = gen.simulate(faster[3:] + faster[:3])
-    assert np.allclose(made["true_shaft_rate"], 61, rtol=0.02)
-    directory = gen.write_corpus(made.isel(record=[2, 0, 1, 5, 4, 3]), tmp_path / "corpus")
+    faster = [scenario.with_(operation={"shaft_rpm": 60 * 61}) for scenario in scenarios]
+    records = gen.simulate(faster[3:] + faster[:3])
+    assert np.allclose(records["true_shaft_rate"], 61, rtol=0.02)
+    directory = gen.write_corpus(records.isel(record=[2, 0, 1, 5, 4, 3]), tmp_path / "corpus")
     assert gen.validate_corpus(directory) == []
     assert replayed(directory)
     with gen.open_corpus(directory) as corpus:
         (stored,) = gen.read_scenarios(corpus.isel(record=1))
     assert stored.edited(level=faster[3].recipe.level) == faster[3]
-    assert replayed(gen.write_corpus(made.isel(record=[0, 1]), tmp_path / "cut"))
+    assert replayed(gen.write_corpus(records.isel(record=[0, 1]), tmp_path / "cut"))
 
 
 def test_scenarios_of_one_rig_that_were_given_different_paths_and_backgrounds_keep_their_own(ladder):
-    one, other, *_ = gen.read_scenarios(ladder)
-    other = other.edited(origin=other.origin.model_copy(update={"rig": one.origin.rig}))
-    some = [one, other.with_(path={"direct": 0.1}), other.with_(background={"slope": 2.0})]
+    first, other, *_ = gen.read_scenarios(ladder)
+    other = other.edited(origin=other.origin.model_copy(update={"rig": first.origin.rig}))
+    some = [first, other.with_(path={"direct": 0.1}), other.with_(background={"slope": 2.0})]
     together = gen.simulate(some)
     for place, scenario in enumerate(some):
         alone = gen.simulate([scenario])
@@ -225,10 +225,10 @@ def test_a_change_that_no_recipe_allows_is_refused(ladder, misfit):
 
 
 def test_scenarios_of_different_recordings_are_simulated_in_different_calls(ladder):
-    one, other, *_ = gen.read_scenarios(ladder)
+    first, other, *_ = gen.read_scenarios(ladder)
     for change in ({"seed": 6}, {"truth": {"twins": False}}, {"recording": {"duration_s": 0.2}}):
         with pytest.raises(SimulationError, match=r"scenarios\[1\]: its recording or truth is not that of"):
-            gen.simulate([one, other.with_(**change)])
+            gen.simulate([first, other.with_(**change)])
 
 
 WRONG_TYPES = [

@@ -21,22 +21,22 @@ def written(records, folder):
 
 
 def test_any_record_can_be_made_again_bit_for_bit(whole, single):
-    for made, record in ((whole, 0), (whole, 7), (whole, 8), (single, 23)):
-        replayed = replay(made.path, record)
+    for generated, record in ((whole, 0), (whole, 7), (whole, 8), (single, 23)):
+        replayed = replay(generated.path, record)
         assert replayed.identical
         assert replayed.dataset["recording"].values.tolist() == [record]
-        with open_corpus(made.path) as corpus:
+        with open_corpus(generated.path) as corpus:
             for name in ("draws", "fault", "shaft_rate", "snr", "true_bpfo"):
                 assert replayed.dataset[name].values[0] == corpus[name].values[record]
 
 
 def test_a_record_that_was_tampered_with_is_not_what_replay_makes(write_recipe, tmp_path):
     floating = {"recording.converter": {"kind": "float32"}, "storage.codec": "none", "records": 8}
-    made = generate(write_recipe(tmp_path / "r.yaml", floating), tmp_path / "c")
-    with edited(made.path / "parts" / part_name(0)) as part:
+    generated = generate(write_recipe(tmp_path / "r.yaml", floating), tmp_path / "c")
+    with edited(generated.path / "parts" / part_name(0)) as part:
         part[SIGNAL][3, 0, 100] += 1e-4
-    seal(made.path)
-    assert [replay(made.path, record).identical for record in range(2, 5)] == [True, False, True]
+    seal(generated.path)
+    assert [replay(generated.path, record).identical for record in range(2, 5)] == [True, False, True]
 
 
 def test_records_of_faults_and_levels_that_were_drawn_again_are_replayed_bit_for_bit(write_recipe, tmp_path):
@@ -97,8 +97,8 @@ def one_record(write_recipe, tmp_path_factory):
     folder = tmp_path_factory.mktemp("one")
     level = {"kind": "snr", "faulty_db": "uniform(-20, 10)", "healthy_db": "uniform(-15, 10)"}
     changes = {"level": level, "recording.duration_s": 0.25, "truth.undetected": "redraw", "storage.codec": "none"}
-    made = generate(write_recipe(folder / "r.yaml", changes), folder / "whole")
-    with open_corpus(made.path) as corpus:
+    generated = generate(write_recipe(folder / "r.yaml", changes), folder / "whole")
+    with open_corpus(generated.path) as corpus:
         tried = (corpus["level_tries"].values > 0) & (corpus["fault"].values == FAULTS.index("outer"))
         record = corpus.isel(record=np.flatnonzero(tried)[[-1]]).load()
     (scenario,) = read_scenarios(record)

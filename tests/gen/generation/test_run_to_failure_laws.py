@@ -23,8 +23,8 @@ SHORT = LIVES | {"corpus": LIVES["corpus"] | {"rigs": 1}, "life": LIVES["life"] 
 @pytest.fixture(scope="module")
 def lives(recipe_with, tmp_path_factory):
     folder = tmp_path_factory.mktemp("lives") / "c"
-    made = generate(recipe_with(SHORT), folder)
-    assert made.failures == ()
+    generated = generate(recipe_with(SHORT), folder)
+    assert generated.failures == ()
     return folder
 
 
@@ -94,17 +94,17 @@ def test_two_workers_and_an_interrupted_call_give_the_same_files(lives, recipe_w
 
 
 def test_a_spall_that_grows_lays_bare_more_of_the_same_floor(recipe_with):
-    one = next(of for of in draw_scenarios(recipe_with(LIVES)) if of.fault == "inner")
+    scenario = next(of for of in draw_scenarios(recipe_with(LIVES)) if of.fault == "inner")
 
     class PointBall(Scenario):
         """A scenario with a ball that reaches every point of the floor."""
 
-        bearing = replace(one.bearing, ball_diameter=1e-9)
+        bearing = replace(scenario.bearing, ball_diameter=1e-9)
 
     def floor_at(places, width):
         grown = {"width_mm": (1e3 * width,), "depth_um": (100.0,)}
-        fault = one.recipe.faults[0].model_copy(update=grown)
-        (path,) = spall_paths(PointBall(one.recipe).edited(faults=(fault,)), 0)
+        fault = scenario.recipe.faults[0].model_copy(update=grown)
+        (path,) = spall_paths(PointBall(scenario.recipe).edited(faults=(fault,)), 0)
         return np.interp(places, spall_positions(width), path)
 
     places = np.linspace(-4e-4, 4e-4, 100)

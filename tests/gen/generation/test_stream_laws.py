@@ -31,8 +31,8 @@ def test_the_stream_has_the_records_of_a_corpus_and_goes_on(recipe, tmp_path):
     assert numbers_of(batches) == list(range(48))
     corpus = gen.open_corpus(gen.generate(recipe, tmp_path / "c", records=40).path)
     for name in ("acceleration", "fault", "rig", "identity", "width", "snr"):
-        made = np.concatenate([batch[name].values for batch in batches])[:40]
-        np.testing.assert_array_equal(made, corpus[name].values)
+        streamed = np.concatenate([batch[name].values for batch in batches])[:40]
+        np.testing.assert_array_equal(streamed, corpus[name].values)
 
 
 def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
@@ -41,35 +41,35 @@ def test_a_stream_goes_on_behind_the_last_record_of_another(recipe):
         start = fresh.next_record
         expected = next(fresh)
     with gen.stream(recipe, batch=7, start=start) as other:
-        found = next(other)
-    assert numbers_of([found]) == list(range(7, 14))
-    np.testing.assert_array_equal(found["acceleration"].values, expected["acceleration"].values)
+        batch = next(other)
+    assert numbers_of([batch]) == list(range(7, 14))
+    np.testing.assert_array_equal(batch["acceleration"].values, expected["acceleration"].values)
 
 
 def test_a_stream_goes_on_where_it_was_after_its_processes_were_lost(recipe, monkeypatch):
     """After processes are killed: tests/thorough/test_lost_cluster.py."""
 
-    def lost_after_two(*given):
-        yield from itertools.islice(run(*given), 2)
+    def lost_after_two(*arguments):
+        yield from itertools.islice(run(*arguments), 2)
         raise ClusterError("all worker processes have ended.")
 
     with gen.stream(recipe, batch=12) as fresh, monkeypatch.context() as patch:
         patch.setattr("gen.generation.stream.run", lost_after_two)
-        found = [next(fresh)]
+        batches = [next(fresh)]
         with pytest.raises(ClusterError, match="all worker processes have ended"):
             next(fresh)
         patch.undo()
-        found.append(next(fresh))
-    assert numbers_of(found) == list(range(24))
+        batches.append(next(fresh))
+    assert numbers_of(batches) == list(range(24))
 
 
 @pytest.mark.usefixtures("started_processes")
 def test_several_processes_give_the_same_batches(recipe, monkeypatch):
     monkeypatch.setattr("gen.support.executor.cores", lambda: 2)
     with gen.stream(recipe, batch=20, workers=2) as by_two, gen.stream(recipe, batch=20) as by_one:
-        for one, two in itertools.islice(zip(by_one, by_two, strict=True), 2):
-            np.testing.assert_array_equal(one["acceleration"].values, two["acceleration"].values)
-            assert one["identity"].values.tolist() == two["identity"].values.tolist()
+        for alone, two in itertools.islice(zip(by_one, by_two, strict=True), 2):
+            np.testing.assert_array_equal(alone["acceleration"].values, two["acceleration"].values)
+            assert alone["identity"].values.tolist() == two["identity"].values.tolist()
 
 
 def test_shards_share_all_records_out_and_have_none_in_common(recipe):
@@ -129,10 +129,12 @@ def test_workers_of_a_data_loader_and_ranks_have_no_record_in_common(recipe, mon
     )  # worker 1 of 2 on rank 1 of 3
     np.testing.assert_array_equal(signal, -expected["acceleration"].values[0])
     assert label == expected["fault"].values[0]
-    fresh = gen.torch_stream(recipe, operating=True, transform=lambda signal, known: signal / known["shaft_rate"])
-    signal, known, _ = next(iter(fresh))
+    fresh = gen.torch_stream(
+        recipe, operating=True, transform=lambda signal, operating: signal / operating["shaft_rate"]
+    )
+    signal, operating, _ = next(iter(fresh))
     first = expected.isel(record=0)
-    assert known["bpfo"] == np.float32(first["bpfo"])
+    assert operating["bpfo"] == np.float32(first["bpfo"])
     np.testing.assert_array_equal(signal, first["acceleration"].values / np.float32(first["shaft_rate"]))
     with pytest.raises(RecipeError, match="there is no variable faut; the nearest is fault"):
         next(iter(gen.torch_stream(recipe, label="faut")))

@@ -26,37 +26,37 @@ TRAINING = {
 }
 
 
-def scenarios_of(made):
-    return [record.scenario for record in made if isinstance(record, Measured)]
+def scenarios_of(records):
+    return [record.scenario for record in records if isinstance(record, Measured)]
 
 
 @pytest.fixture(scope="module")
 def redrawing(recipe_with):
     recipe = recipe_with(TRAINING | {"truth.undetected": "redraw"})
-    made = make_records(recipe, range(recipe.n_records))
-    assert all(isinstance(record, Measured) for record in made)
-    return recipe, made
+    records = make_records(recipe, range(recipe.n_records))
+    assert all(isinstance(record, Measured) for record in records)
+    return recipe, records
 
 
 def assert_same(records, others):
-    for one, other in zip(records, others, strict=True):
-        np.testing.assert_array_equal(one.signal, other.signal)
-        assert (one.fault_snr == other.fault_snr) or math.isnan(one.fault_snr)
-        assert one.scenario == other.scenario
+    for record, other in zip(records, others, strict=True):
+        np.testing.assert_array_equal(record.signal, other.signal)
+        assert (record.fault_snr == other.fault_snr) or math.isnan(record.fault_snr)
+        assert record.scenario == other.scenario
 
 
 def test_every_fault_of_a_recipe_that_redraws_can_be_seen(redrawing):
-    _, made = redrawing
-    faulty = [record for record in made if record.scenario.fault != "healthy"]
+    _, records = redrawing
+    faulty = [record for record in records if record.scenario.fault != "healthy"]
     assert len(faulty) > 10
     assert all(record.detectable == 1 for record in faulty)
-    assert any(record.scenario.origin.fault_try for record in made)
-    assert any(record.scenario.origin.level_try for record in made)
+    assert any(record.scenario.origin.fault_try for record in records)
+    assert any(record.scenario.origin.level_try for record in records)
 
 
 def test_a_fault_that_is_drawn_again_leaves_everything_else_as_it_was(redrawing):
-    recipe, made = redrawing
-    for first, final in zip(draw_scenarios(recipe), scenarios_of(made), strict=True):
+    recipe, records = redrawing
+    for first, final in zip(draw_scenarios(recipe), scenarios_of(records), strict=True):
         others = set(type(recipe).model_fields) - {"faults", "level", "origin"}
         for section in others:
             assert getattr(final.recipe, section) == getattr(first.recipe, section)
@@ -73,8 +73,8 @@ def test_a_fault_that_is_drawn_again_keeps_the_conditions_of_its_entry(recipe_wi
     assert len({scenario.origin.entry for scenario in first}) == 2
     for fault_try in (1, 2):
         again = draw_scenarios(recipe, fault_tries=dict.fromkeys(range(32), fault_try))
-        assert [one.conditions for one in again] == [one.conditions for one in first]
-        assert [one.spalls for one in again] != [one.spalls for one in first]
+        assert [scenario.conditions for scenario in again] == [scenario.conditions for scenario in first]
+        assert [scenario.spalls for scenario in again] != [scenario.spalls for scenario in first]
 
 
 def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing):
@@ -111,18 +111,18 @@ def test_a_record_is_the_same_whether_its_fault_is_known_apart_or_not(recipe_wit
     }
     whole, apart = (make_records(recipe_with(changes | {"truth.twins": twins}), range(8)) for twins in (False, True))
     assert any(record.fault_snr > 0 for record in apart)
-    for one, other in zip(apart, whole, strict=True):
-        np.testing.assert_allclose(one.signal, other.signal, rtol=0, atol=2e-6 * np.abs(other.signal).max())
-        assert one.snr == pytest.approx(other.snr, abs=1e-4)
+    for record, other in zip(apart, whole, strict=True):
+        np.testing.assert_allclose(record.signal, other.signal, rtol=0, atol=2e-6 * np.abs(other.signal).max())
+        assert record.snr == pytest.approx(other.snr, abs=1e-4)
 
 
 def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
     recipe = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}]})
     integrate = simulation.integrate_all
 
-    def second_twin_diverges(integrations, *given):
-        integrate(integrations, *given)
-        (_, twin) = (one for one in integrations if not one.kernel_input.spalls)
+    def second_twin_diverges(integrations, *axis):
+        integrate(integrations, *axis)
+        (_, twin) = (integration for integration in integrations if not integration.kernel_input.spalls)
         twin.diverged = 100
 
     monkeypatch.setattr(simulation, "integrate_all", second_twin_diverges)
@@ -133,8 +133,8 @@ def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
 
 def test_without_truth_nothing_is_simulated_twice_and_nothing_judged(recipe_with):
     recipe = recipe_with({"truth.twins": False})
-    made = make_records(recipe, range(8))
-    for record in made:
+    records = make_records(recipe, range(8))
+    for record in records:
         assert record.run.twin is None
         assert math.isnan(record.fault_snr)
         assert record.detectable == (0 if record.scenario.fault == "healthy" else 2)
@@ -159,8 +159,8 @@ def test_a_fault_that_adds_exactly_nothing_keeps_its_label_or_is_called_healthy(
 
 
 def test_a_fault_that_no_draw_makes_visible_is_left_out_with_a_sentence(recipe_with):
-    _, made = hidden(recipe_with, "redraw")
-    for sentence in made:
+    _, sentences = hidden(recipe_with, "redraw")
+    for sentence in sentences:
         assert f"none of {FAULT_TRIES} drawn faults of class outer" in sentence
 
 
@@ -179,49 +179,52 @@ def ladders(recipe_with, request):
     return recipe, make_records(recipe, range(18))
 
 
-def groups_of(made):
-    found = {}
-    for place, record in enumerate(made):
+def groups_of(records):
+    groups = {}
+    for place, record in enumerate(records):
         if isinstance(record, Measured) and record.scenario.origin.pair >= 0:
-            found.setdefault(record.scenario.origin.pair, []).append(place)
-    return list(found.values())
+            groups.setdefault(record.scenario.origin.pair, []).append(place)
+    return list(groups.values())
 
 
 def test_records_of_a_group_differ_in_what_the_fault_adds_alone(ladders):
     """Background and bearing have the same gains at every severity, so the difference to the first rung is the fault."""
-    recipe, made = ladders
+    recipe, records = ladders
     exact = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"converter": FLOAT})})
     signal = [record.signal.astype(float) for record in make_records(exact, range(18))]
-    groups = groups_of(made)
+    groups = groups_of(records)
     assert groups
     for group in groups:
         healthy, *damaged = (signal[place] for place in group)
         rest = np.sqrt(np.mean(healthy**2))
         for place, record in zip(group[1:], damaged, strict=True):
             added = np.sqrt(np.mean((record - healthy) ** 2))
-            assert 20 * np.log10(added / rest) == pytest.approx(made[place].fault_snr, abs=0.05)
+            assert 20 * np.log10(added / rest) == pytest.approx(records[place].fault_snr, abs=0.05)
 
 
 def test_the_largest_severity_of_a_group_has_the_drawn_level(ladders):
-    recipe, made = ladders
-    for *_, largest in groups_of(made):
+    recipe, records = ladders
+    for *_, largest in groups_of(records):
         (drawn,) = draw_scenarios(recipe, largest, largest + 1)
-        level_try = made[largest].scenario.origin.level_try
+        level_try = records[largest].scenario.origin.level_try
         ratios = [drawn.recipe.level.faulty_db, *further_ratios(recipe, drawn, level_try)]
-        assert made[largest].fault_snr == pytest.approx(ratios[-1], abs=0.05)
+        assert records[largest].fault_snr == pytest.approx(ratios[-1], abs=0.05)
 
 
 def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with):
     quiet = LEVEL | {"faulty_db": "uniform(-40, 10)"}
     recipe = recipe_with(LADDER | {"level": quiet, "truth.undetected": "redraw"})
-    made = make_records(recipe, range(18))
+    records = make_records(recipe, range(18))
     tried = 0
-    for group in groups_of(made):
-        scenarios = [made[place].scenario for place in group]
-        levels = {(one.recipe.level.gain, one.recipe.level.background_m_s2, one.origin.level_try) for one in scenarios}
+    for group in groups_of(records):
+        scenarios = [records[place].scenario for place in group]
+        levels = {
+            (scenario.recipe.level.gain, scenario.recipe.level.background_m_s2, scenario.origin.level_try)
+            for scenario in scenarios
+        }
         assert len(levels) == 1
         (again,) = made_from(scenarios[:1])
-        np.testing.assert_array_equal(again.signal, made[group[0]].signal)
+        np.testing.assert_array_equal(again.signal, records[group[0]].signal)
         tried += levels.pop()[-1] > 0
     assert tried > 0
 
@@ -231,28 +234,30 @@ def test_a_smaller_severity_that_misses_the_load_zone_does_not_change_the_fault_
     angles = "uniform(20, 180)"
     changes = {"faults": [{"kind": "outer", "width_mm": 12, "angle_deg": angles}], "truth.undetected": "redraw"}
     recipe = recipe_with(LADDER | {"corpus.rungs": [0.1, 1], "corpus.rigs": 6} | changes)
-    made = make_records(recipe, range(recipe.n_records))
-    tries = {one.origin.specimen: one.origin.fault_try for one in scenarios_of(made)}
+    records = make_records(recipe, range(recipe.n_records))
+    tries = {scenario.origin.specimen: scenario.origin.fault_try for scenario in scenarios_of(records)}
     drawn = draw_scenarios(recipe, fault_tries=tries)
-    missed = {one.origin.record for one, felt in zip(drawn, felt_places(drawn), strict=True) if not felt}
+    missed = {scenario.origin.record for scenario, felt in zip(drawn, felt_places(drawn), strict=True) if not felt}
     assert any(
-        one.origin.record in missed and one.origin.record + 1 not in missed for one in drawn if one.origin.rung == 0
+        scenario.origin.record in missed and scenario.origin.record + 1 not in missed
+        for scenario in drawn
+        if scenario.origin.rung == 0
     )
 
 
 def test_the_rest_of_a_group_has_the_level_of_its_largest_severity_that_did_not_diverge(recipe_with):
     recipe = recipe_with(LADDER)
-    scenarios = [one for one in draw_scenarios(recipe, 0, 18) if one.origin.pair >= 0][:6]
+    scenarios = [scenario for scenario in draw_scenarios(recipe, 0, 18) if scenario.origin.pair >= 0][:6]
     runs = simulate(scenarios)
     runs[2].own.diverged = 100
-    made = made_of(runs)
+    records = made_of(runs)
     drawn = scenarios[1].recipe.level
-    assert made[1].fault_snr == pytest.approx(drawn.faulty_db, abs=0.05)
+    assert records[1].fault_snr == pytest.approx(drawn.faulty_db, abs=0.05)
     scale = recipe.recording.converter.full_scale_m_s2 / 32767
-    rms = np.sqrt(np.mean((made[1].signal * scale) ** 2))
+    rms = np.sqrt(np.mean((records[1].signal * scale) ** 2))
     assert rms == pytest.approx(drawn.rms_m_s2, rel=1e-3)
-    assert made[0].signal.any()
-    assert "record 2 diverged" in made[2]
+    assert records[0].signal.any()
+    assert "record 2 diverged" in records[2]
 
 
 def test_a_group_is_not_cut_by_a_part(ladders):

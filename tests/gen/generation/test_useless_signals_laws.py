@@ -28,9 +28,9 @@ def loud(write_recipe, tmp_path_factory):
 
 
 def test_each_part_has_its_own_count(loud):
-    _, made = loud
-    assert part_counts(made.path) == [{}, {"clipped": 8}, {}]
-    assert made.signals == {"clipped": 8}
+    _, generated = loud
+    assert part_counts(generated.path) == [{}, {"clipped": 8}, {}]
+    assert generated.signals == {"clipped": 8}
 
 
 def test_recordings_that_cannot_be_used_are_counted_when_they_are_imported(tmp_path):
@@ -38,10 +38,10 @@ def test_recordings_that_cannot_be_used_are_counted_when_they_are_imported(tmp_p
     rng = np.random.default_rng(0)
     cut_off = np.clip(rng.normal(size=1000), -1, 1)
     signal = np.concatenate([rng.normal(size=1000), cut_off, np.zeros(1000), np.full(1000, 0.5), rng.normal(size=1000)])
-    made = Recording(0, 0, 0, CATALOGUE["6205"], 25.0, "inner", signal)
+    recording = Recording(0, 0, 0, CATALOGUE["6205"], 25.0, "inner", signal)
     import_recordings(
         Collection("test", "A set", "Mine.", 1000.0, ("housing",)),
-        [Candidate("a", lambda: made)],
+        [Candidate("a", lambda: recording)],
         tmp_path / "c",
         window=1.0,
     )

@@ -94,6 +94,6 @@ def test_a_life_beyond_its_history_goes_on_at_the_mean_rate():
 
 def test_the_factor_of_the_standard_multiplies_the_time_to_the_spall_alone():
     share = life_share(0.5, "ball")
-    one, tenth = (Life(steady(0.4, factor=factor), LAW, share, 0.3e-3) for factor in (1.0, 0.1))
-    assert tenth.initiation == pytest.approx(one.initiation / 10)
-    assert tenth.age_at(4e-3) - tenth.initiation == pytest.approx(one.age_at(4e-3) - one.initiation)
+    whole, tenth = (Life(steady(0.4, factor=factor), LAW, share, 0.3e-3) for factor in (1.0, 0.1))
+    assert tenth.initiation == pytest.approx(whole.initiation / 10)
+    assert tenth.age_at(4e-3) - tenth.initiation == pytest.approx(whole.age_at(4e-3) - whole.initiation)

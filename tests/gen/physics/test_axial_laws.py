@@ -57,9 +57,9 @@ def test_balls_squeezed_by_the_approach_carry_radial_and_axial_load_at_once(
         force = machine.contact_cosine * ball_forces(machine, approach, micrometres * 1e-6, places)
         return (force @ np.stack([np.cos(places), np.sin(places)], axis=1) - load * towards) / load
 
-    found = root(unbalanced, towards)
-    assert found.success
-    forces = ball_forces(machine, approach, found.x * 1e-6, places)
+    solution = root(unbalanced, towards)
+    assert solution.success
+    forces = ball_forces(machine, approach, solution.x * 1e-6, places)
     assert math.sin(angle) * forces.sum() == pytest.approx(axial, rel=1e-4)
 
 
@@ -67,8 +67,8 @@ def test_balls_squeezed_by_the_approach_carry_radial_and_axial_load_at_once(
 def test_without_a_radial_load_all_balls_share_the_axial_one(angle, clearance, rolling, places, axial):
     factor, exponent = rolling
     each = (axial / (N_BALLS * math.sin(angle) * factor)) ** (1 / exponent)
-    found = approach_of(slanted(angle, clearance, rolling), axial, places)
-    assert found == pytest.approx(each + clearance, rel=1e-5, abs=1e-11)
+    approach = approach_of(slanted(angle, clearance, rolling), axial, places)
+    assert approach == pytest.approx(each + clearance, rel=1e-5, abs=1e-11)
 
 
 @given(

@@ -24,21 +24,21 @@ def test_slip_takes_from_the_outer_race_what_it_gives_to_the_inner_one(bearing, 
 @given(bearings())
 def test_balls_roll_without_sliding_on_both_races(bearing):
     """Surface speeds in the frame of the cage, in which ball centres are at rest [pitch diameters times shaft rate]."""
-    found = orders(bearing)
-    ball = found.bsf * bearing.ball_diameter
-    assert ball == pytest.approx((1 - found.ftf) * 2 * bearing.inner_radius, rel=1e-12)
-    assert ball == pytest.approx(found.ftf * 2 * bearing.outer_radius, rel=1e-12)
+    of_bearing = orders(bearing)
+    ball = of_bearing.bsf * bearing.ball_diameter
+    assert ball == pytest.approx((1 - of_bearing.ftf) * 2 * bearing.inner_radius, rel=1e-12)
+    assert ball == pytest.approx(of_bearing.ftf * 2 * bearing.outer_radius, rel=1e-12)
 
 
 @given(bearings(), slips)
 def test_balls_counted_over_a_mark_on_either_race_come_at_the_ball_pass_orders(bearing, slip):
-    found = slipping_orders(bearing, slip)
+    slipping = slipping_orders(bearing, slip)
     turns = 1000
     places = np.arange(bearing.n_balls) / bearing.n_balls
-    over_outer = np.floor(places + turns * found.ftf) - np.floor(places)
-    over_inner = np.floor(places + turns * (1 - found.ftf)) - np.floor(places)
-    assert over_outer.sum() == pytest.approx(turns * found.bpfo, abs=1.01)
-    assert over_inner.sum() == pytest.approx(turns * found.bpfi, abs=1.01)
+    over_outer = np.floor(places + turns * slipping.ftf) - np.floor(places)
+    over_inner = np.floor(places + turns * (1 - slipping.ftf)) - np.floor(places)
+    assert over_outer.sum() == pytest.approx(turns * slipping.bpfo, abs=1.01)
+    assert over_inner.sum() == pytest.approx(turns * slipping.bpfi, abs=1.01)
 
 
 @given(bearings(), st.floats(0, 1e-4))

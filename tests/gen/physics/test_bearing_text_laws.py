@@ -18,20 +18,20 @@ def printed(of: FaultOrders) -> str:
 
 @every_bearing
 def test_printed_orders_of_any_bearing_are_taken_as_they_are(bearing):
-    known = orders(bearing)
-    taken = bearing_from_text(printed(known))
+    exact = orders(bearing)
+    taken = bearing_from_text(printed(exact))
     assert taken.n_balls == bearing.n_balls
-    assert orders(taken) == tuple(round(order, 3) for order in known)
+    assert orders(taken) == tuple(round(order, 3) for order in exact)
 
 
 @every_bearing
 def test_orders_of_no_bearing_are_refused_with_the_one_that_is_wrong(bearing):
-    known = orders(bearing)
+    exact = orders(bearing)
     for wrong, said in (
-        (known._replace(bsf=2 * known.bsf), "2 BSF"),
-        (known._replace(bpfo=known.bpfi, bpfi=known.bpfo), "ftf is not bpfo"),
-        (known._replace(ftf=0.9 * known.ftf), "ftf is not bpfo"),
-        (known._replace(bpfi=known.bpfi + 0.4), "no number of balls"),
+        (exact._replace(bsf=2 * exact.bsf), "2 BSF"),
+        (exact._replace(bpfo=exact.bpfi, bpfi=exact.bpfo), "ftf is not bpfo"),
+        (exact._replace(ftf=0.9 * exact.ftf), "ftf is not bpfo"),
+        (exact._replace(bpfi=exact.bpfi + 0.4), "no number of balls"),
     ):
         with pytest.raises(CorpusError, match=said):
             bearing_from_text(printed(wrong))

@@ -81,8 +81,8 @@ rated = for_each(RATED, lambda bearing: bearing.designation)
 @for_each(TIMKEN)
 def test_the_orders_are_the_frequency_coefficients_of_the_maker(designation):
     """Three printed digits, and a ball rounded to a commercial size moves the spin by 0.001."""
-    found = orders(CATALOGUE[designation])
-    assert (found.ftf, found.bsf, found.bpfo, found.bpfi) == pytest.approx(TIMKEN[designation], abs=1.6e-3)
+    computed = orders(CATALOGUE[designation])
+    assert (computed.ftf, computed.bsf, computed.bpfo, computed.bpfi) == pytest.approx(TIMKEN[designation], abs=1.6e-3)
 
 
 def test_every_row_of_a_size_of_the_table_that_differs_by_more_than_its_rounding_is_listed():
@@ -99,10 +99,10 @@ def test_every_row_of_a_size_of_the_table_that_differs_by_more_than_its_rounding
 @for_each(PUBLISHED)
 def test_the_orders_are_those_published_with_the_recordings(row):
     designation, *published, digits = row
-    found = orders(CATALOGUE[designation])
+    computed = orders(CATALOGUE[designation])
     for name, value in zip(("ftf", "bsf", "bpfo", "bpfi"), published, strict=True):
         if value is not None:
-            assert getattr(found, name) == pytest.approx(value, abs=digits), name
+            assert getattr(computed, name) == pytest.approx(value, abs=digits), name
 
 
 @rated

@@ -79,11 +79,11 @@ STUDY = {"inner": (0.77e-3, 0.083e-3, 1.50e9, 3.95e-6), "outer": (0.75e-3, 0.103
 def test_the_ellipse_of_a_6205_is_that_of_the_model_study(race):
     bearing = CATALOGUE["6205"]
     long, short, pressure, approach = list(STUDY.values())[race]
-    found = footprints(bearing, LOAD)[race]
-    length = found * ellipticity(*race_curvatures(bearing)[race])
-    assert found == pytest.approx(short, abs=0.51e-6)  # the last figure given; 82.5 um was rounded up
+    width = footprints(bearing, LOAD)[race]
+    length = width * ellipticity(*race_curvatures(bearing)[race])
+    assert width == pytest.approx(short, abs=0.51e-6)  # the last figure given; 82.5 um was rounded up
     assert length == pytest.approx(long, abs=0.5e-5)
-    assert 1.5 * LOAD / (math.pi * length * found) == pytest.approx(pressure, abs=0.5e7)
+    assert 1.5 * LOAD / (math.pi * length * width) == pytest.approx(pressure, abs=0.5e7)
     assert (LOAD / race_factors(bearing)[race]) ** (2 / 3) == pytest.approx(approach, abs=0.5e-8)
 
 

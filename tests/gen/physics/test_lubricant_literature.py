@@ -89,8 +89,8 @@ def test_the_oil_table_of_the_model_page_is_what_the_formulas_give():
     films = [film_of_the_page(celsius) for celsius in (20, 60, 100)]
     rows = {
         "viscosity [mPa s]": [1e3 * dynamic_viscosity(Lubricant(), celsius) for celsius in (20, 60, 100)],
-        "film, both contacts [um]": [1e6 * one.thickness for one in films],
-        "damping [N s/m]": [one.damping for one in films],
+        "film, both contacts [um]": [1e6 * of_oil.thickness for of_oil in films],
+        "damping [N s/m]": [of_oil.damping for of_oil in films],
     }
     for name, values in rows.items():
         assert f"| {name} | {' | '.join(f'{value:.3g}' for value in values)} |" in PAGE

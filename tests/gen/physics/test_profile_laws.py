@@ -31,16 +31,16 @@ def integral(profile, start, end):
 @both
 @given(points())
 def test_a_profile_goes_through_its_points(smooth, given_points):
-    times, found = given_points
-    np.testing.assert_allclose(share_at(Profile(times, found, smooth), np.array(times)), found, rtol=1e-9)
+    times, shares_there = given_points
+    np.testing.assert_allclose(share_at(Profile(times, shares_there, smooth), np.array(times)), shares_there, rtol=1e-9)
 
 
 @both
 @given(points(), st.floats(0, 100))
 def test_a_profile_is_constant_before_its_first_point_and_after_its_last(smooth, given_points, beyond):
-    times, found = given_points
-    ends = share_at(Profile(times, found, smooth), np.array([times[0] - beyond, times[-1] + beyond]))
-    np.testing.assert_allclose(ends, [found[0], found[-1]], rtol=0, atol=1e-15 * max(found))
+    times, shares_there = given_points
+    ends = share_at(Profile(times, shares_there, smooth), np.array([times[0] - beyond, times[-1] + beyond]))
+    np.testing.assert_allclose(ends, [shares_there[0], shares_there[-1]], rtol=0, atol=1e-15 * max(shares_there))
 
 
 @both

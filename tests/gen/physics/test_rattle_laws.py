@@ -25,27 +25,27 @@ def test_a_rattling_sensor_is_never_pulled_harder_than_it_is_held_and_comes_back
     shaken, holding, damping, frequency
 ):
     held = np.concatenate([shaken, REST])
-    found, impacts = rattling(held, frequency, damping, holding, FS)
-    assert found.min() >= -holding
+    rattled, impacts = rattling(held, frequency, damping, holding, FS)
+    assert rattled.min() >= -holding
     assert (impacts > 0) == bool((held < -holding).any())
-    assert np.abs(found[-1000:]).max() < 1e-6 * holding
+    assert np.abs(rattled[-1000:]).max() < 1e-6 * holding
 
 
 @given(arrays(np.float64, 200, elements=st.floats(-100, 100, width=32)), st.floats(100, 1000))
 def test_a_sensor_that_is_held_hard_enough_keeps_every_bit(shaken, holding):
-    found, impacts = rattling(shaken, 1500.0, 0.05, holding, FS)
+    rattled, impacts = rattling(shaken, 1500.0, 0.05, holding, FS)
     assert impacts == 0
-    np.testing.assert_array_equal(found, shaken)
+    np.testing.assert_array_equal(rattled, shaken)
 
 
 @given(st.floats(20, 90), st.integers(24, 240))
 def test_a_flight_takes_the_time_of_a_thrown_body(fall, samples):
     """The machine falls away faster than the sensor follows, which then closes the gap with the holding acceleration of 10 m/s2."""
     held = np.concatenate([np.zeros(1000), np.full(samples, -fall), REST])
-    found, _ = rattling(held, 5000.0, 0.3, 10.0, FS)
+    rattled, _ = rattling(held, 5000.0, 0.3, 10.0, FS)
     excess, time = fall - 10.0, samples / FS
     rest = (excess * time + math.sqrt(excess**2 * time**2 + 10 * excess * time**2)) / 10
-    landed = 1000 + int(np.argmax(found[1000:] != -10.0))
+    landed = 1000 + int(np.argmax(rattled[1000:] != -10.0))
     assert (landed - 1000) / FS == pytest.approx(time + rest, abs=3 / FS)
 
 
@@ -53,9 +53,11 @@ def test_the_motion_does_not_depend_on_the_sample_rate():
     """Landings between two samples are found: a coarse rate gives the samples of a fine one, for as long as bounces do not grow apart."""
     fine = -100 * np.sin(2 * np.pi * 100 * np.arange(1920) / 192_000) * np.hanning(1920)
     fine = np.concatenate([fine, np.zeros(3840)])
-    (exact, impacts), (found, same) = (rattling(fine[::every], 1500.0, 0.2, 20.0, 192_000 / every) for every in (1, 16))
+    (exact, impacts), (coarse, same) = (
+        rattling(fine[::every], 1500.0, 0.2, 20.0, 192_000 / every) for every in (1, 16)
+    )
     assert same == impacts >= 2
-    assert np.sqrt(np.mean((found - exact[::16]) ** 2)) < 0.1 * np.std(exact)
+    assert np.sqrt(np.mean((coarse - exact[::16]) ** 2)) < 0.1 * np.std(exact)
 
 
 def test_the_motion_is_that_of_a_mass_on_a_spring_that_cannot_pull():
@@ -78,6 +80,6 @@ def test_the_motion_is_that_of_a_mass_on_a_spring_that_cannot_pull():
     linear, its_rate, d, rate = solved.y
     held = -(omega**2) * linear - 2 * zeta * omega * its_rate
     sensor = np.maximum(-(omega**2) * (linear + d) - 2 * zeta * omega * (its_rate + rate), -holding)
-    found, impacts = rattling(held, 800.0, zeta, holding, fs)
+    rattled, impacts = rattling(held, 800.0, zeta, holding, fs)
     assert impacts >= 3
-    assert np.sqrt(np.mean((found - sensor)[first] ** 2)) < 0.05 * np.std(sensor)
+    assert np.sqrt(np.mean((rattled - sensor)[first] ** 2)) < 0.05 * np.std(sensor)

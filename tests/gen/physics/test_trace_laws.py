@@ -26,8 +26,8 @@ def test_over_sound_edges_and_a_flat_floor_a_ball_follows_the_geometric_path(wid
     """A spall this narrow is as good as flat: chord and arc differ by 2e-4, and the sagitta by twice that."""
     arc = abs(race)
     expected = [drop(GEOMETRIC, x / arc, width / 2 / arc, arc, BALL, race, depth) for x in spall_positions(width)]
-    found = ball_path(np.full(9, depth), width, BALL, race)
-    np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-15)
+    path = ball_path(np.full(9, depth), width, BALL, race)
+    np.testing.assert_allclose(path, expected, rtol=1e-3, atol=1e-15)
 
 
 @given(surfaces, st.floats(0.15e-3, 12e-3), races)
@@ -57,10 +57,10 @@ def test_under_a_contact_the_pressure_weighs_as_half_an_ellipse():
     """Over a step the contact feels the share of its load that has crossed it: 1/2 + (u sqrt(1 - u^2) + asin u) / pi."""
     width, footprint = 2e-3, 1e-4
     at = spall_positions(width + 2 * footprint)
-    found = contact_mean(np.ones(TABLE_POINTS), width, footprint, footprint)
+    mean = contact_mean(np.ones(TABLE_POINTS), width, footprint, footprint)
     across = np.abs(at + width / 2) < 0.9 * footprint
     u = (at[across] + width / 2) / footprint
-    np.testing.assert_allclose(found[across], 0.5 + (u * np.sqrt(1 - u**2) + np.arcsin(u)) / math.pi, atol=0.05)
+    np.testing.assert_allclose(mean[across], 0.5 + (u * np.sqrt(1 - u**2) + np.arcsin(u)) / math.pi, atol=0.05)
 
 
 @given(st.integers(0, 2**32), st.floats(1e-8, 5e-5))

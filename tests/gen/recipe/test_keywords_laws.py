@@ -92,7 +92,9 @@ def test_faults_in_turn_have_no_weights():
 def test_a_fault_in_turn_that_is_drawn_again_keeps_its_entry():
     recipe = gen.make_recipe([gen.outer(width_mm=gen.uniform(0.1 + n, 0.5 + n)) for n in range(3)], n=4)
     first, again = gen.draw_scenarios(recipe), gen.draw_scenarios(recipe, fault_tries=dict.fromkeys(range(12), 1))
-    assert [one.origin.entry for one in first] == [one.origin.entry for one in again] == [0, 1, 2] * 4
+    assert (
+        [scenario.origin.entry for scenario in first] == [scenario.origin.entry for scenario in again] == [0, 1, 2] * 4
+    )
     assert all(a.spalls[0].width != b.spalls[0].width for a, b in zip(first, again, strict=True))
 
 

@@ -60,9 +60,9 @@ def test_a_recipe_some_of_whose_draws_may_be_borne_is_read(recipe_with, changes)
 def test_a_single_record_beyond_the_limit_is_left_out_and_named(write_recipe, tmp_path):
     """Grids follow the number of the record: one record of four is 100 N too heavy."""
     path = write_recipe(tmp_path / "r.yaml", {"operation.load_n": f"grid(500, {LIMIT + 100}, 500, 500)", "records": 4})
-    made = generate(path, tmp_path / "corpus")
-    assert made.records == 3
-    (sentence,) = made.failures
+    generated = generate(path, tmp_path / "corpus")
+    assert generated.records == 3
+    (sentence,) = generated.failures
     assert sentence == (
         "record 1: an equivalent static load of 1.59e+04 N is more than 2 times the static rating of its bearing 6205, 7900 N; "
         "lower operation.load_n and axial_load_n, or take a larger bearing."
@@ -78,4 +78,4 @@ def test_no_shipped_recipe_asks_for_a_load_near_the_limit(name):
         return
     drawn = draw_scenarios(recipe, 0, min(recipe.n_records, 500))
     highest = 0.35 if recipe.life is None else 0.6  # bearings tire under higher loads alone
-    assert max(one.conditions["load"] / static_rating(one.drawing) for one in drawn) < highest
+    assert max(scenario.conditions["load"] / static_rating(scenario.drawing) for scenario in drawn) < highest

@@ -42,13 +42,13 @@ STEADY = {
 def signal_of(recipe_with):
     """Acceleration of the housing along x of the first record of the steady machine with some values replaced [m s-2]."""
 
-    def made(changes):
+    def first_record(changes):
         recipe = recipe_with(STEADY | changes)
         (run,) = simulate(draw_scenarios(recipe, 0, 1))
         assert run.failure is None
         return run.acceleration[0, timeline(recipe).lead :]
 
-    return made
+    return first_record
 
 
 def line(signal, order):

@@ -56,8 +56,8 @@ def test_every_property_of_the_schema_has_a_description():
     silent = [
         f"{name}.{key}"
         for name, section in sections.items()
-        for key, found in section.get("properties", {}).items()
-        if not found.get("description")
+        for key, described in section.get("properties", {}).items()
+        if not described.get("description")
     ]
     assert silent == []
 

@@ -26,21 +26,21 @@ named = for_each(LEAVES, lambda key: "-".join([key.key, *key.kinds]))
 
 def written(key, value):
     """Sections of a recipe with this key alone, and its place in the words of an error."""
-    names, found, place = key.key.split("."), value, ""
+    names, sections, place = key.key.split("."), value, ""
     for depth in range(len(names), 0, -1):
         above = ".".join(names[:depth])
         name = "mine" if names[depth - 1] == "NAME" else names[depth - 1]
         allowed = KEYS[above].allowed if above in KEYS and depth < len(names) else ""
         if "section: " in allowed or "sections: " in allowed:
             below = KEYS[".".join(names[: depth + 1])].kinds
-            found = {"kind": (below or (allowed.partition(": ")[2].partition(",")[0],))[0], **found}
+            sections = {"kind": (below or (allowed.partition(": ")[2].partition(",")[0],))[0], **sections}
         if allowed.startswith("list of sections"):
-            found, name_there = [found], f"{name}[0]"
+            sections, name_there = [sections], f"{name}[0]"
         else:
             name_there = name
         place = f"{name_there}.{place}" if place else name_there
-        found = {name: found}
-    return found, place
+        sections = {name: sections}
+    return sections, place
 
 
 def sentences_about(key, value):

@@ -24,8 +24,8 @@ def faults(weights):
 
 def counted(recipe, rigs):
     """Number of specimens of each class on each rig, shape (rig, class)."""
-    found = [Counter(fault_of_each_specimen(recipe, rig)) for rig in range(rigs)]
-    return np.array([[counts[kind] for kind in CLASSES] for counts in found])
+    counters = [Counter(fault_of_each_specimen(recipe, rig)) for rig in range(rigs)]
+    return np.array([[counts[kind] for kind in CLASSES] for counts in counters])
 
 
 @given(seeds, st.integers(1, 9), weights_of_all, st.integers(0, 3))
@@ -74,6 +74,6 @@ def test_the_first_record_of_each_class_is_the_first_one_drawn_with_it(recipe_wi
     records = None if groups is None else groups * len(rungs or [1])
     changes = {"corpus.specimens_per_rig": specimens, "records": records, "faults": faults((4, 1, 1, 1))}
     recipe = recipe_with(changes | {"corpus.rungs": rungs})
-    drawn = [(one.fault, one.origin.record) for one in draw_scenarios(recipe)]
+    drawn = [(scenario.fault, scenario.origin.record) for scenario in draw_scenarios(recipe)]
     assert first_records(recipe) == dict(reversed(drawn))
     assert set(first_specimens(recipe)) >= set(first_records(recipe)) - {"healthy"}

@@ -13,10 +13,10 @@ from tests.drawn_values import anywhere, with_key_of
 
 def of_each(scenarios, level, name):
     """Values of an operating quantity of each rig or specimen."""
-    found = {}
+    by_number = {}
     for scenario in scenarios:
-        found.setdefault(getattr(scenario.origin, level), []).append(scenario.conditions[name])
-    return [np.array(values) for values in found.values()]
+        by_number.setdefault(getattr(scenario.origin, level), []).append(scenario.conditions[name])
+    return [np.array(values) for values in by_number.values()]
 
 
 @pytest.mark.parametrize("level", ["rig", "specimen"])
@@ -30,8 +30,8 @@ def test_a_rig_or_specimen_has_one_value(recipe_with, level, key, sampling):
     values = of_each(draw_scenarios(common), level, name)
     assert all(len(set(of_one)) == 1 for of_one in values)
     assert len({of_one[0] for of_one in values}) == len(values)
-    for one, other in zip(draw_scenarios(common), draw_scenarios(usual), strict=True):
-        assert with_key_of(one, other, "operation", key) == anywhere(other)
+    for scenario, other in zip(draw_scenarios(common), draw_scenarios(usual), strict=True):
+        assert with_key_of(scenario, other, "operation", key) == anywhere(other)
 
 
 @pytest.mark.parametrize("level", ["rig", "specimen"])
@@ -45,7 +45,7 @@ def test_records_scatter_about_the_value_of_their_rig_or_specimen(recipe_with, l
         )
         for more in ({}, {"scatter_percent": 2})
     )
-    deviations = np.concatenate([found / value[0] - 1 for found, value in zip(scattered, steady, strict=True)])
+    deviations = np.concatenate([values / value[0] - 1 for values, value in zip(scattered, steady, strict=True)])
     assert np.abs(deviations).max() <= 0.02 * (1 + 1e-9)
     assert np.abs(deviations).max() > 0.0195
     assert deviations.std() == pytest.approx(0.02 / 3**0.5, rel=0.05)  # of a uniform distribution
@@ -62,11 +62,15 @@ def test_grids_of_a_rig_enumerate_all_combinations_with_those_of_its_machine(rec
     }
     scenarios = draw_scenarios(recipe_with(changes))
     rigs = {}
-    for one in scenarios:
-        conditions = one.conditions
-        rigs[one.origin.rig] = (one.machine["shaft_mass"], round(60 * conditions["shaft_rate"]), conditions["load"])
+    for scenario in scenarios:
+        conditions = scenario.conditions
+        rigs[scenario.origin.rig] = (
+            scenario.machine["shaft_mass"],
+            round(60 * conditions["shaft_rate"]),
+            conditions["load"],
+        )
     assert sorted(rigs.values()) == sorted(product([2, 3], [600, 900, 1200], [100, 200]))
-    slips = [100 * one.conditions["slip"] for one in scenarios]
+    slips = [100 * scenario.conditions["slip"] for scenario in scenarios]
     assert slips == pytest.approx([1, 2] * (len(scenarios) // 2))
 
 
@@ -101,27 +105,27 @@ def test_a_change_is_of_its_fault_alone_and_moves_no_other_quantity(recipe_with,
     factor = split_unit(key)[1]
     without = draw_scenarios(recipe_with(usual | {"faults": changed()}))
     drawn = draw_scenarios(recipe_with(usual | {"faults": changed(operation={key: value})}))
-    for one, other in zip(drawn, without, strict=True):
-        if one.fault != "outer":
-            assert anywhere(one) == anywhere(other)
+    for scenario, other in zip(drawn, without, strict=True):
+        if scenario.fault != "outer":
+            assert anywhere(scenario) == anywhere(other)
             continue
-        assert with_key_of(one, other, "operation", key) == anywhere(other)
-        assert 4.9 * factor < one.conditions[name] < 9.1 * factor
+        assert with_key_of(scenario, other, "operation", key) == anywhere(other)
+        assert 4.9 * factor < scenario.conditions[name] < 9.1 * factor
 
 
 def test_a_changed_level_is_of_its_fault_alone(recipe_with):
     level = {"faulty_db": uniform(20, 30), "rms_m_s2": uniform(7, 8)}
     without = draw_scenarios(recipe_with(GRIDS | {"faults": changed()}))
     drawn = draw_scenarios(recipe_with(GRIDS | {"faults": changed(level=level)}))
-    for one, other in zip(drawn, without, strict=True):
-        if one.fault != "outer":
-            assert anywhere(one) == anywhere(other)
+    for scenario, other in zip(drawn, without, strict=True):
+        if scenario.fault != "outer":
+            assert anywhere(scenario) == anywhere(other)
             continue
-        level, usual = one.recipe.level, other.recipe.level
+        level, usual = scenario.recipe.level, other.recipe.level
         assert 20 < level.faulty_db < 30
         assert (level.faulty_db - 20) / 10 == pytest.approx((usual.faulty_db + 5) / 10)  # at the same quantile
         assert 7 < level.rms_m_s2 < 8
-        assert anywhere(one.edited(level=usual)) == anywhere(other)
+        assert anywhere(scenario.edited(level=usual)) == anywhere(other)
 
 
 def test_the_balance_grade_holds_at_the_highest_speed_of_all_faults(recipe_with):

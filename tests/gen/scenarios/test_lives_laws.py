@@ -12,7 +12,9 @@ from tests.recipes import LIVES
 
 def lives_of(recipe):
     """Scenarios of each bearing, by its number."""
-    return {number: list(of) for number, of in groupby(draw_scenarios(recipe), lambda one: one.origin.specimen)}
+    return {
+        number: list(of) for number, of in groupby(draw_scenarios(recipe), lambda scenario: scenario.origin.specimen)
+    }
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +23,7 @@ def lives(recipe_with):
 
 
 def states(scenarios, name):
-    return np.array([getattr(one.origin.life, name) for one in scenarios])
+    return np.array([getattr(scenario.origin.life, name) for scenario in scenarios])
 
 
 def test_some_bearings_fail_and_some_are_censored(lives):
@@ -42,37 +44,37 @@ def test_half_the_cadence_changes_no_remaining_life(recipe_with, lives):
     denser = LIVES["life"] | {"cadence_h": 20}
     changed = LIVES | {"life": denser, "corpus": LIVES["corpus"] | {"records_per_specimen": 80}}
     for number, of in lives_of(recipe_with(changed)).items():
-        known = dict(zip(states(of, "age"), states(of, "rul"), strict=True))
-        for one in lives[number]:
-            assert known[one.origin.life.age] == pytest.approx(one.origin.life.rul, rel=1e-9)
+        rul_at = dict(zip(states(of, "age"), states(of, "rul"), strict=True))
+        for scenario in lives[number]:
+            assert rul_at[scenario.origin.life.age] == pytest.approx(scenario.origin.life.rul, rel=1e-9)
 
 
 def test_a_spall_stays_itself_while_it_grows(lives):
     for of in lives.values():
         lengths = states(of, "spall_length")
-        damaged = [one for one in of if one.origin.life.spall_length > 0]
+        damaged = [scenario for scenario in of if scenario.origin.life.spall_length > 0]
         assert (np.diff(lengths[lengths > 0]) > 0).all()
         assert ((states(of, "age") >= states(of, "initiation_time")) == (lengths > 0)).all()
-        for one in damaged:
-            (spall,), (first,) = one.spalls, damaged[0].spalls
+        for scenario in damaged:
+            (spall,), (first,) = scenario.spalls, damaged[0].spalls
             assert (spall.angle, spall.ball, spall.site) == (first.angle, first.ball, first.site)
-            assert spall.depth == one.origin.life.spall_depth == pytest.approx(280e-6 * min(1, spall.width / 2e-3))
-            assert spall.width == one.origin.life.spall_length
-            assert one.fault == spall.site
-        for one in of[: len(of) - len(damaged)]:
-            assert (one.fault, one.spalls) == ("healthy", [])
+            assert spall.depth == scenario.origin.life.spall_depth == pytest.approx(280e-6 * min(1, spall.width / 2e-3))
+            assert spall.width == scenario.origin.life.spall_length
+            assert scenario.fault == spall.site
+        for scenario in of[: len(of) - len(damaged)]:
+            assert (scenario.fault, scenario.spalls) == ("healthy", [])
 
 
 def test_wear_opens_the_clearance_in_proportion_to_the_turns(lives):
     for of in lives.values():
         turns = of[0].origin.life.rul_revolutions - states(of, "rul_revolutions")
         for name in ("diametral_clearance", "waviness"):
-            worn = np.array([one.properties[name] for one in of])
+            worn = np.array([scenario.properties[name] for scenario in of])
             assert np.corrcoef(turns, worn)[0, 1] > 1 - 1e-9
 
 
 def test_load_and_speed_vary_slowly_about_their_values(lives):
-    loads = [np.log([one.conditions["load"] for one in of]) for of in lives.values() if len(of) == 40]
+    loads = [np.log([scenario.conditions["load"] for scenario in of]) for of in lives.values() if len(of) == 40]
     spread = np.sqrt(np.mean([np.var(of, ddof=1) for of in loads]))
     assert 0.05 < spread < 0.12
     assert np.mean([np.std(np.diff(of)) for of in loads]) < 0.8 * spread * np.sqrt(2)
@@ -111,7 +113,7 @@ def test_bearings_live_as_the_standard_says(recipe_with):
     of = draw_scenarios(
         recipe_with(LIVES | operation | {"corpus": corpus, "life": life, "storage.records_per_part": 400})
     )
-    begun = np.sort([one.origin.life.initiation_time for one in of])
+    begun = np.sort([scenario.origin.life.initiation_time for scenario in of])
     turns = rating_life(4000 / of[0].drawing.dynamic_rating, "ball") / 25
     expected = turns * np.array([life_share(share, "ball") for share in (0.25, 0.5, 0.75)])
     np.testing.assert_allclose(np.quantile(begun, (0.25, 0.5, 0.75)), expected, rtol=0.2)

@@ -23,11 +23,11 @@ SAMPLINGS = ("random", "sobol", "halton")
 
 def groups_of(scenarios):
     """Scenarios of each pair, by its number."""
-    found = {}
+    groups = {}
     for scenario in scenarios:
         if scenario.origin.pair >= 0:
-            found.setdefault(scenario.origin.pair, []).append(scenario)
-    return found
+            groups.setdefault(scenario.origin.pair, []).append(scenario)
+    return groups
 
 
 def at_place_of(scenario, other):
@@ -42,11 +42,11 @@ def test_the_records_of_a_group_differ_in_severity_alone(recipe_with, sampling):
     assert len(groups) > 20
     for group in groups.values():
         last = group[-1]
-        assert [one.origin.rung for one in group] == [0, 1, 2, 3]
-        for one in group:
-            assert at_place_of(last, one) == at_place_of(last, last.at_severity(RUNGS[one.origin.rung]))
+        assert [scenario.origin.rung for scenario in group] == [0, 1, 2, 3]
+        for scenario in group:
+            assert at_place_of(last, scenario) == at_place_of(last, last.at_severity(RUNGS[scenario.origin.rung]))
             for name in ("motion", "noise", "load wander", "knocks"):
-                assert one.stream(name).random() == last.stream(name).random()
+                assert scenario.stream(name).random() == last.stream(name).random()
 
 
 def test_a_rung_is_its_share_of_the_severity(recipe_with):
@@ -56,12 +56,12 @@ def test_a_rung_is_its_share_of_the_severity(recipe_with):
         faults_seen.add(whole.fault)
         assert at_place_of(whole, group[0]) == whole.without_fault()
         assert group[0].fault == "healthy"
-        for one, share in zip(group[1:], RUNGS[1:], strict=True):
-            assert one.fault == whole.fault
-            for spall, of_whole in zip(one.spalls, whole.spalls, strict=True):
+        for scenario, share in zip(group[1:], RUNGS[1:], strict=True):
+            assert scenario.fault == whole.fault
+            for spall, of_whole in zip(scenario.spalls, whole.spalls, strict=True):
                 assert (spall.width, spall.depth) == pytest.approx((share * of_whole.width, share * of_whole.depth))
                 assert max(spall.trace, default=spall.depth) == pytest.approx(spall.depth)
-            for part, of_whole in zip(one.components, whole.components, strict=True):
+            for part, of_whole in zip(scenario.components, whole.components, strict=True):
                 sizes = {key: value for key in SIZES if (value := getattr(of_whole, key, None)) is not None}
                 for key, value in sizes.items():
                     assert getattr(part, key) == pytest.approx(share * np.array(value))
@@ -73,14 +73,14 @@ def test_groups_are_neighbours_and_specimens_are_whole(recipe_with):
     recipe = recipe_with(LADDERS)
     scenarios = draw_scenarios(recipe)
     assert recipe.n_records == len(scenarios) == 8 * 4 * 3 * 4
-    assert [one.origin.record for one in scenarios] == list(range(len(scenarios)))
-    assert [one.origin.specimen for one in scenarios] == [number // 12 for number in range(len(scenarios))]
+    assert [scenario.origin.record for scenario in scenarios] == list(range(len(scenarios)))
+    assert [scenario.origin.specimen for scenario in scenarios] == [number // 12 for number in range(len(scenarios))]
     for pair, group in groups_of(scenarios).items():
-        assert [one.origin.record for one in group] == list(range(4 * pair, 4 * pair + 4))
-    healthy = [one for one in scenarios if one.origin.pair < 0]
-    assert {one.fault for one in healthy} == {"healthy"}
-    assert {one.origin.rung for one in healthy} == {-1}
-    speeds = Counter(one.conditions["shaft_rate"] for one in healthy)
+        assert [scenario.origin.record for scenario in group] == list(range(4 * pair, 4 * pair + 4))
+    healthy = [scenario for scenario in scenarios if scenario.origin.pair < 0]
+    assert {scenario.fault for scenario in healthy} == {"healthy"}
+    assert {scenario.origin.rung for scenario in healthy} == {-1}
+    speeds = Counter(scenario.conditions["shaft_rate"] for scenario in healthy)
     assert max(speeds.values()) == 1  # each record of a healthy specimen has conditions of its own
 
 
@@ -88,10 +88,10 @@ def test_the_last_rung_of_a_ladder_is_the_record_without_rungs(recipe_with):
     """The weights are such that the classes of the specimens are the same with rungs and without."""
     without = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}]})
     ladder = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}], "corpus.rungs": (0.5, 1)})
-    for one, other in zip(draw_scenarios(without), draw_scenarios(ladder)[1::2], strict=True):
+    for scenario, other in zip(draw_scenarios(without), draw_scenarios(ladder)[1::2], strict=True):
         drawn_per_record = {"operation": other.recipe.operation, "level": other.recipe.level, "origin": other.origin}
-        assert one.edited(**drawn_per_record) == other
-    assert all(one.origin.pair == one.origin.rung == -1 for one in draw_scenarios(without))
+        assert scenario.edited(**drawn_per_record) == other
+    assert all(scenario.origin.pair == scenario.origin.rung == -1 for scenario in draw_scenarios(without))
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
@@ -101,8 +101,11 @@ def test_the_conditions_of_faulty_specimens_cover_their_ranges(recipe_with, samp
         {"corpus.rungs": (0, 1), "corpus.rigs": 32, "corpus.sampling": sampling, "faults": MANY_HEALTHY}
     )
     drawn = draw_scenarios(recipe)
-    for groups in ([one for one in drawn if one.origin.pair >= 0], [one for one in drawn if one.origin.pair < 0]):
-        quantiles = [(60 * one.conditions["shaft_rate"] - 1500) / 500 for one in groups]
+    for groups in (
+        [scenario for scenario in drawn if scenario.origin.pair >= 0],
+        [scenario for scenario in drawn if scenario.origin.pair < 0],
+    ):
+        quantiles = [(60 * scenario.conditions["shaft_rate"] - 1500) / 500 for scenario in groups]
         assert set(np.digitize(quantiles, np.arange(1, 8) / 8)) == set(range(8))
 
 
@@ -111,10 +114,10 @@ def test_the_rungs_of_a_pair_are_on_one_side_of_every_split(recipe_with, by):
     recipe = recipe_with(LADDERS | {"corpus.split": {"by": by, "test": 0.25, "validation": 0.25}})
     scenarios = draw_scenarios(recipe)
     for group in groups_of(scenarios).values():
-        assert len({one.origin.split for one in group}) == 1
-    fault = np.array([FAULTS.index(one.fault) for one in scenarios])
-    unit = np.array([getattr(one.origin, by) for one in scenarios])
-    pair = np.array([one.origin.pair for one in scenarios])
+        assert len({scenario.origin.split for scenario in group}) == 1
+    fault = np.array([FAULTS.index(scenario.fault) for scenario in scenarios])
+    unit = np.array([getattr(scenario.origin, by) for scenario in scenarios])
+    pair = np.array([scenario.origin.pair for scenario in scenarios])
     for train, test in grouped_splits(fault, unit, 3, 0):
         assert not set(pair[train][pair[train] >= 0]) & set(pair[test])
 
@@ -127,22 +130,22 @@ def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_p
     }  # fmt: skip
     path = write_recipe(tmp_path / "r.yaml", changes)
     planned = plan(path)
-    made = generate(path, tmp_path / "c")
-    assert (made.records, planned.records, planned.specimens, planned.parts) == (12, 12, 4, 3)
-    with open_corpus(made.path) as corpus:
-        found = corpus[["fault", "pair", "rung", "specimen", "recording", "draws"]].load()
-    assert found["recording"].values.tolist() == list(range(12))
-    in_pair = found["pair"].values >= 0
-    assert (found["pair"].values[in_pair] == np.arange(12)[in_pair] // 3).all()
-    assert (found["rung"].values[in_pair] == np.arange(12)[in_pair] % 3).all()
-    healthy = found["fault"].values == 0
-    assert (healthy == (~in_pair | (found["rung"].values == 0))).all()
+    generated = generate(path, tmp_path / "c")
+    assert (generated.records, planned.records, planned.specimens, planned.parts) == (12, 12, 4, 3)
+    with open_corpus(generated.path) as corpus:
+        records = corpus[["fault", "pair", "rung", "specimen", "recording", "draws"]].load()
+    assert records["recording"].values.tolist() == list(range(12))
+    in_pair = records["pair"].values >= 0
+    assert (records["pair"].values[in_pair] == np.arange(12)[in_pair] // 3).all()
+    assert (records["rung"].values[in_pair] == np.arange(12)[in_pair] % 3).all()
+    healthy = records["fault"].values == 0
+    assert (healthy == (~in_pair | (records["rung"].values == 0))).all()
     assert planned.classes == {"healthy": healthy.sum(), "inner": (~healthy).sum()}
-    card = data_card(made.path)
+    card = data_card(generated.path)
     assert f"\n{in_pair.sum() // 3} groups of records (`pair`) differ in the severity" in card
     assert f"\n| healthy | {healthy.sum()} | " in card
     for record in (int(np.flatnonzero(in_pair)[0]), int(np.flatnonzero(in_pair)[-1])):
-        again = replay(made.path, record)
+        again = replay(generated.path, record)
         assert again.identical
-        assert read_scenarios(found.isel(record=record))[0].origin.rung == int(found["rung"][record])
-        assert again.dataset["pair"][0] == found["pair"][record].item()
+        assert read_scenarios(records.isel(record=record))[0].origin.rung == int(records["rung"][record])
+        assert again.dataset["pair"][0] == records["pair"][record].item()

@@ -35,9 +35,9 @@ def test_nothing_but_the_fault_knows_the_fault(recipe_with, only, sampling):
     mixed = draw_scenarios(recipe_with(changes))
     alike = draw_scenarios(recipe_with(changes | {"faults": faults(**{only: 1.0})}))
     assert {scenario.fault for scenario in alike} == {only}
-    for one, other in zip(mixed, alike, strict=True):
-        origin = one.origin.model_copy(update={"entry": other.origin.entry})
-        assert anywhere(one.edited(faults=other.recipe.faults, origin=origin)) == anywhere(other)
+    for scenario, other in zip(mixed, alike, strict=True):
+        origin = scenario.origin.model_copy(update={"entry": other.origin.entry})
+        assert anywhere(scenario.edited(faults=other.recipe.faults, origin=origin)) == anywhere(other)
 
 
 @given(*[st.integers(1, 5)] * 5, st.integers(2, 3) | st.none())
@@ -55,9 +55,9 @@ def test_rigs_specimens_records_and_parts_are_numbered_without_gaps(rigs, per_ri
     )
     every = list(range(recipe.n_records))
     assert [number for part in range(recipe.n_parts) for number in recipe.records_of_part(part)] == every
-    assert [number for one in range(recipe.n_specimens) for number in recipe.records_of(one)] == every
+    assert [number for specimen in range(recipe.n_specimens) for number in recipe.records_of(specimen)] == every
     assert all(number in recipe.records_of(recipe.specimen_of(number)) for number in every)
-    assert {recipe.rig_of(one) for one in range(recipe.n_specimens)} == set(range(recipe.n_rigs))
+    assert {recipe.rig_of(specimen) for specimen in range(recipe.n_specimens)} == set(range(recipe.n_rigs))
     assert len({recipe.item_of(number) for number in every}) == len(every)
 
 
@@ -157,12 +157,12 @@ def test_grids_of_one_level_give_every_combination_once_before_they_come_again(r
     clearances: dict[int, set[float]] = {}
     for scenario in draw_scenarios(recipe):
         conditions = scenario.conditions
-        found = round(conditions["shaft_rate"] * 60), conditions["load"]
-        combinations.setdefault(scenario.origin.specimen, []).append(found)
+        combination = round(conditions["shaft_rate"] * 60), conditions["load"]
+        combinations.setdefault(scenario.origin.specimen, []).append(combination)
         of_rig = clearances.setdefault(scenario.origin.rig, set())
         of_rig.add(round(scenario.properties["diametral_clearance"] * 1e6))
-    assert all(sorted(found) == sorted(product(rpm, load)) for found in combinations.values())
-    assert all(found == set(clearance) for found in clearances.values())
+    assert all(sorted(of_specimen) == sorted(product(rpm, load)) for of_specimen in combinations.values())
+    assert all(of_rig == set(clearance) for of_rig in clearances.values())
 
 
 MECHANISMS = {

@@ -28,9 +28,9 @@ def test_an_axial_load_is_its_share_of_the_radial_load_of_the_same_record(recipe
     axial = {"operation.axial_load_n": share("load_n", 0.1, 0.6), "corpus.sampling": sampling}
     numbers = {"operation.axial_load_n": uniform(0.1, 0.6), "corpus.sampling": sampling}
     drawn, own = (draw_scenarios(recipe_with(SLANTED | changes)) for changes in (axial, numbers))
-    for one, other in zip(drawn, own, strict=True):
-        expected = other.conditions["axial_load"] * one.conditions["load"]
-        assert one.conditions["axial_load"] == pytest.approx(expected)
+    for scenario, other in zip(drawn, own, strict=True):
+        expected = other.conditions["axial_load"] * scenario.conditions["load"]
+        assert scenario.conditions["axial_load"] == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
@@ -47,11 +47,11 @@ def test_to_make_a_quantity_a_share_moves_no_other(recipe_with, key, named):
     usual = SLANTED | {"machine.bow_n": 1000.0, "operation.speed_profile": profile}
     without = draw_scenarios(recipe_with(usual))
     drawn = draw_scenarios(recipe_with(usual | {f"operation.{key}": share(named, 0.05, 0.06)}))
-    for one, other in zip(drawn, without, strict=True):
-        assert getattr(one.recipe.operation, key) != getattr(other.recipe.operation, key)
+    for scenario, other in zip(drawn, without, strict=True):
+        assert getattr(scenario.recipe.operation, key) != getattr(other.recipe.operation, key)
         # the balance grade holds at the highest speed of the recipe
-        balanced = one.recipe.machine.model_copy(update={"balance_rpm": other.recipe.machine.balance_rpm})
-        assert with_key_of(one.edited(machine=balanced), other, "operation", key) == anywhere(other)
+        balanced = scenario.recipe.machine.model_copy(update={"balance_rpm": other.recipe.machine.balance_rpm})
+        assert with_key_of(scenario.edited(machine=balanced), other, "operation", key) == anywhere(other)
 
 
 def test_a_share_can_name_quantities_of_every_level_above(recipe_with):
@@ -117,8 +117,10 @@ def test_a_spall_can_be_a_share_of_the_arc_between_two_balls(recipe_with, site):
         "depth_um": share("width_mm", 0.01, 0.01),
         "n_spalls": 3,
     }
-    spalls = [(one, spall) for one in draw_scenarios(recipe_with({"faults": [entry]})) for spall in one.spalls]
-    shares = [spall.width / ball_spacing(one.bearing, site) for one, spall in spalls]
+    spalls = [
+        (scenario, spall) for scenario in draw_scenarios(recipe_with({"faults": [entry]})) for spall in scenario.spalls
+    ]
+    shares = [spall.width / ball_spacing(scenario.bearing, site) for scenario, spall in spalls]
     assert 0.1 <= min(shares) < 0.15 < 0.25 < max(shares) <= 0.3
     assert [spall.depth for _, spall in spalls] == pytest.approx([0.01 * spall.width for _, spall in spalls])
 
@@ -154,7 +156,7 @@ def test_every_product_lies_in_its_support(recipe_with, shares, loads, seed):
 def test_the_unbalance_follows_the_highest_product_of_a_speed_that_is_a_share(recipe_with):
     rated = {"machine.support_frequency_hz": uniform(200, 500), "machine.balance_mm_s": 1}
     share_of_it, plain = share("support_frequency_hz", 0.02, 0.1), uniform(240, 3000)
-    one, other = (
+    scenario, other = (
         draw_scenarios(recipe_with(rated | {"operation.shaft_rpm": speed}), 0, 1)[0] for speed in (share_of_it, plain)
     )
-    assert one.recipe.machine.unbalance == pytest.approx(other.recipe.machine.unbalance)
+    assert scenario.recipe.machine.unbalance == pytest.approx(other.recipe.machine.unbalance)

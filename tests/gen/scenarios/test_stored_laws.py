@@ -28,7 +28,7 @@ def scenarios_of(name):
 def damaged_text():
     """Text of a scenario with a spall on a race."""
     scenarios = scenarios_of("every_fault")
-    return next(text for text, one in zip(scenario_texts(scenarios), scenarios, strict=True) if one.spalls)
+    return next(text for text, scenario in zip(scenario_texts(scenarios), scenarios, strict=True) if scenario.spalls)
 
 
 @pytest.mark.parametrize("name", RECIPES)

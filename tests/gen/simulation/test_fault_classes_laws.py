@@ -58,11 +58,11 @@ def test_every_class_is_labelled_by_what_is_damaged_and_how_much(whole, drawn):
     assert whole.failures == ()
     assert {kind_of(scenario) for scenario in drawn} == set(LABELS)
     with open_corpus(whole.path) as corpus:
-        found = {name: corpus[name].values for name in (*KNOWN, "width", "largest_drop", "angle")}
+        columns = {name: corpus[name].values for name in (*KNOWN, "width", "largest_drop", "angle")}
     for place, scenario in enumerate(drawn):
         kind = kind_of(scenario)
         parts, n_spalls, wear, pitch_error, knock, width, passed = LABELS[kind]
-        label = {name: values[place] for name, values in found.items()}
+        label = {name: values[place] for name, values in columns.items()}
         assert (FAULTS[label["fault"]], label["parts"], label["n_spalls"]) == (kind.split()[-1], parts, n_spalls)
         assert (label["wear"], label["pitch_error"], label["knock"]) == pytest.approx((wear, pitch_error, knock))
         assert label["width"] == pytest.approx(width)
@@ -71,9 +71,9 @@ def test_every_class_is_labelled_by_what_is_damaged_and_how_much(whole, drawn):
         assert (label["largest_drop"] > 0) == (n_spalls > 0)
 
 
-def assert_same_waviness(one, other):
-    np.testing.assert_array_equal(one.races, other.races)
-    np.testing.assert_array_equal(one.balls, other.balls)
+def assert_same_waviness(waviness, other):
+    np.testing.assert_array_equal(waviness.races, other.races)
+    np.testing.assert_array_equal(waviness.balls, other.balls)
 
 
 def test_a_twin_without_the_fault_is_what_healthy_bearings_alone_would_be(write_recipe, drawn, tmp_path):
@@ -92,7 +92,7 @@ def test_a_twin_without_the_fault_is_what_healthy_bearings_alone_would_be(write_
 
 def test_a_broken_cage_displaces_one_ball_and_knocks_and_wear_is_on_its_race_alone(drawn):
     for scenario in drawn:
-        damaged, twin = (input_of(one) for one in (scenario, scenario.without_fault()))
+        damaged, twin = (input_of(other) for other in (scenario, scenario.without_fault()))
         if "cage" in scenario.damaged_parts:
             assert damaged.turning.late_by == pytest.approx(math.radians(3))
             assert damaged.turning.late_ball == 0
@@ -126,5 +126,5 @@ def test_the_fault_alone_tells_a_record_from_its_twin(drawn):
     damaged, sound = (
         accelerations_of(simulate(batch)) for batch in (some, [scenario.without_fault() for scenario in some])
     )
-    for scenario, one, other in zip(some, damaged, sound, strict=True):
-        assert np.array_equal(one, other) == (scenario.fault == "healthy")
+    for scenario, own, other in zip(some, damaged, sound, strict=True):
+        assert np.array_equal(own, other) == (scenario.fault == "healthy")

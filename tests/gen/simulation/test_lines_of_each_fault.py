@@ -90,9 +90,9 @@ def drawn(recipe_with):
 
 
 def of(drawn, fault):
-    found = [envelope for kind, envelope in drawn if kind == fault]
-    assert len(found) == 8
-    return found
+    chosen = [envelope for kind, envelope in drawn if kind == fault]
+    assert len(chosen) == 8
+    return chosen
 
 
 @pytest.mark.parametrize("fault", LINES)

@@ -31,11 +31,11 @@ means = pytest.mark.parametrize(("profile", "mean"), MEANS, ids=[profile["kind"]
 def record_of(recipe_with):
     """Kernel input of the first record of the small recipe with some values replaced."""
 
-    def made(changes):
+    def first_record(changes):
         recipe = recipe_with(changes)
         return input_of(draw_scenarios(recipe, 0, 1)[0])
 
-    return made
+    return first_record
 
 
 def labels(recipe):
@@ -64,13 +64,13 @@ def test_an_axial_load_takes_up_clearance_and_leaves_the_rest_of_the_machine(rec
 def test_a_bearing_of_ones_own_reaches_the_kernel(record_of):
     mine = {"n_balls": 11, "pitch_diameter_mm": 50, "ball_diameter_mm": 9, "contact_angle_deg": 15}
     catalogue = {"kind": "catalogue", "designations": ["mine"], "entries": {"mine": mine}}
-    found = record_of({"bearing": catalogue})
-    assert found.bearing.n_balls == 11
-    assert (found.bearing.pitch_diameter, found.bearing.ball_diameter) == pytest.approx((0.05, 0.009))
-    assert found.machine.ball_radius == pytest.approx(0.0045)
-    assert found.machine.contact_cosine == pytest.approx(math.cos(math.radians(15)))
-    assert found.machine.contact_exponent == POINT_EXPONENT
-    assert input_shape(found).balls == 11
+    record = record_of({"bearing": catalogue})
+    assert record.bearing.n_balls == 11
+    assert (record.bearing.pitch_diameter, record.bearing.ball_diameter) == pytest.approx((0.05, 0.009))
+    assert record.machine.ball_radius == pytest.approx(0.0045)
+    assert record.machine.contact_cosine == pytest.approx(math.cos(math.radians(15)))
+    assert record.machine.contact_exponent == POINT_EXPONENT
+    assert input_shape(record).balls == 11
 
 
 NU206 = {"n_balls": 13, "pitch_diameter_mm": 46.5, "ball_diameter_mm": 9, "roller_length_mm": 10}
@@ -108,9 +108,9 @@ def test_outer_spalls_alone_count_from_the_load_in_the_kernel_and_in_the_labels(
 @means
 def test_labels_of_load_and_shaft_rate_follow_the_mean_of_their_profile(recipe_with, profile, mean):
     steady = {"operation.shaft_rpm": 1800, "operation.load_n": 400}
-    found = labels(recipe_with(steady | {"operation.speed_profile": profile, "operation.load_profile": profile}))
-    assert found["shaft_rate"].values == pytest.approx(30 * mean, rel=1e-4)
-    assert found["load"].values == pytest.approx(400 * mean, rel=1e-4)
+    records = labels(recipe_with(steady | {"operation.speed_profile": profile, "operation.load_profile": profile}))
+    assert records["shaft_rate"].values == pytest.approx(30 * mean, rel=1e-4)
+    assert records["load"].values == pytest.approx(400 * mean, rel=1e-4)
 
 
 @means

@@ -44,8 +44,8 @@ def test_records_of_a_corpus_have_the_angle_of_their_scenarios_and_imported_ones
     axis = timeline(read_scenarios(some)[0].recipe)
     angles = shaft_angles(some)
     assert angles.dims == ("record", "elapsed_time")
-    for found, scenario in zip(angles.values, read_scenarios(some), strict=True):
-        np.testing.assert_array_equal(found, angles_of(draw_motion(scenario))[axis.kept])
+    for angle, scenario in zip(angles.values, read_scenarios(some), strict=True):
+        np.testing.assert_array_equal(angle, angles_of(draw_motion(scenario))[axis.kept])
     np.testing.assert_array_equal(shaft_angles(some.isel(record=1)), angles[1])
     imported = some.drop_vars("draws")
     turns = shaft_angles(imported) / (2 * np.pi)

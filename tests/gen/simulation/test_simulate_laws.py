@@ -47,15 +47,15 @@ def test_a_response_is_the_decimated_motion_of_its_bodies_along_its_channels(rec
     response = accelerations_of(simulate(scenarios))
     n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
     taps = decimation_taps(8)
-    for trip, found in zip(
+    for trip, channels_found in zip(
         march_lanes([input_of(scenario) for scenario in scenarios], n_knots, 8, 1 / FS), response, strict=True
     ):
         full_rate = trip.accelerations
         tilted = math.cos(math.pi / 6) * full_rate[:, 4] + math.sin(math.pi / 6) * full_rate[:, 5]
-        for channel, signal in zip(found, (tilted, full_rate[:, 3]), strict=True):
+        for channel, signal in zip(channels_found, (tilted, full_rate[:, 3]), strict=True):
             decimated = np.convolve(signal, taps, mode="same")[::8]
             inside = slice(100, recipe.n_samples)  # the whole filter within the march
-            expected = decimated[n_knots - found.shape[1] :][inside]
+            expected = decimated[n_knots - channels_found.shape[1] :][inside]
             single = 8 * np.finfo(np.float32).eps  # rounding of the history, and of sums of a hundred taps
             np.testing.assert_allclose(channel[inside], expected, rtol=0, atol=single * np.abs(signal).max())
 
@@ -121,16 +121,16 @@ def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_wi
 def test_records_of_a_group_share_the_integration_without_their_fault(recipe_with):
     faults = [{"kind": "healthy", "weight": 1}, {"kind": "outer", "width_mm": 1}, {"kind": "ball", "width_mm": 1}]
     recipe = recipe_with({"corpus.rungs": [0, 0.5, 1], "corpus.specimens_per_rig": 3, "faults": faults})
-    scenarios = [one for one in draw_scenarios(recipe) if one.origin.pair >= 0][:9]
+    scenarios = [scenario for scenario in draw_scenarios(recipe) if scenario.origin.pair >= 0][:9]
     runs = runs_of(scenarios)
-    assert len({one.origin.pair for one in scenarios}) == 3
+    assert len({scenario.origin.pair for scenario in scenarios}) == 3
     assert len(open_integrations(runs)) == 9
     assert all(run.healthy is runs[place // 3 * 3].own for place, run in enumerate(runs))
     together = simulate(scenarios)
     for run, scenario in zip(together, scenarios, strict=True):
         (alone,) = simulate([scenario])
-        for one, other in zip(run.integrations, alone.integrations, strict=True):
-            np.testing.assert_array_equal(one.response, other.response)
+        for integration, other in zip(run.integrations, alone.integrations, strict=True):
+            np.testing.assert_array_equal(integration.response, other.response)
 
 
 def test_a_record_does_not_depend_on_whether_its_neighbours_have_waviness(recipe_with):

@@ -31,8 +31,8 @@ ROUGH = {
 
 
 def step_errors_of(recipe, numbers):
-    made = made_from(draw_scenarios(recipe, numbers.start, numbers.stop))
-    return step_errors(recipe, numbers, [one for one in made if isinstance(one, Measured)])
+    outcomes = made_from(draw_scenarios(recipe, numbers.start, numbers.stop))
+    return step_errors(recipe, numbers, [outcome for outcome in outcomes if isinstance(outcome, Measured)])
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,7 @@ LAYOUTS = {
 @pytest.mark.parametrize("layout", LAYOUTS.values(), ids=LAYOUTS)
 def test_every_class_and_a_batch_of_every_eighth_part_are_tried_whatever_the_layout(recipe_with, layout):
     recipe = recipe_with({"corpus.rigs": 60, "records": 397} | layout)
-    faults = [one.fault for one in draw_scenarios(recipe)]
+    faults = [scenario.fault for scenario in draw_scenarios(recipe)]
     checked = checked_records(recipe, faults)
     assert len(set(faults)) == len(recipe.faults)
     assert {faults[number] for numbers in checked.values() for number in numbers} == set(faults)
@@ -112,9 +112,9 @@ def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
     scenarios = draw_scenarios(recipe)
     faults = [scenario.fault for scenario in scenarios]
     failed = faults.index("inner")
-    made = [place for place in range(len(scenarios)) if place != failed]
-    tried = checked_places(recipe, range(24), [faults[place] for place in made], made)
-    assert faults.index("inner", failed + 1) in [made[place] for place in tried]
+    places = [place for place in range(len(scenarios)) if place != failed]
+    tried = checked_places(recipe, range(24), [faults[place] for place in places], places)
+    assert faults.index("inner", failed + 1) in [places[place] for place in tried]
 
 
 def test_chosen_steps_follow_the_stiffest_contacts_and_no_finer_than_they_need(checked):
@@ -136,20 +136,22 @@ def test_the_step_phase_is_that_of_the_stiffest_contacts_of_the_record(checked):
 
 def test_records_whose_contacts_outgrow_the_step_are_left_out_with_a_sentence(write_recipe, tmp_path):
     recipe = write_recipe(tmp_path / "r.yaml", ROUGH)
-    made = generate(recipe, tmp_path / "c")
-    assert (made.records, made.parts) == (16, 2)
-    assert [sentence.partition(":")[0] for sentence in made.failures] == [f"record {number}" for number in range(8, 16)]
+    generated = generate(recipe, tmp_path / "c")
+    assert (generated.records, generated.parts) == (16, 2)
+    assert [sentence.partition(":")[0] for sentence in generated.failures] == [
+        f"record {number}" for number in range(8, 16)
+    ]
     grown = "its contacts became stiffer than 1 steps per sample can follow; set recording.oversampling to "
-    for sentence in made.failures:
+    for sentence in generated.failures:
         assert grown in sentence
         assert int(sentence.rstrip(".").split()[-1]) > 1 / FINE_STEP
-    assert read_manifest(made.path).failures == made.failures
-    assert validate_corpus(made.path) == []
-    with open_corpus(made.path) as corpus:
+    assert read_manifest(generated.path).failures == generated.failures
+    assert validate_corpus(generated.path) == []
+    with open_corpus(generated.path) as corpus:
         assert corpus["recording"].values.tolist() == [*range(8), *range(16, 24)]
         assert (corpus["step_phase"].values < COARSEST_STEP).all()
     again = generate(recipe, tmp_path / "c")
-    assert (again.records, again.kept, again.failures) == (16, 2, made.failures)
+    assert (again.records, again.kept, again.failures) == (16, 2, generated.failures)
 
 
 def test_as_many_steps_as_the_sentence_asks_for_are_enough(recipe_with):

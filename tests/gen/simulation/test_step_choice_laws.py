@@ -103,7 +103,7 @@ def test_the_records_of_a_group_have_one_step_together_and_alone(recipe_with, sh
     scenarios = draw_scenarios(recipe, 0, 12 * len(shares))
     for scenario, run in zip(scenarios, runs_of(scenarios), strict=True):
         (alone,) = runs_of([scenario])
-        steps[scenario.origin.pair] |= {one.steps for one in (*run.integrations, *alone.integrations)}
+        steps[scenario.origin.pair] |= {integration.steps for integration in (*run.integrations, *alone.integrations)}
     steps.pop(-1, None)
     assert steps
     assert all(len(of_group) == 1 for of_group in steps.values())

@@ -15,10 +15,12 @@ from tests.same_corpora import assert_the_same_corpus
 @pytest.fixture
 def threaded():
     """A cluster whose workers are threads of this process, four each."""
-    found = LocalCluster(n_workers=2, threads_per_worker=4, processes=False, dashboard_address="127.0.0.1:0")
+    cluster_of_threads = LocalCluster(
+        n_workers=2, threads_per_worker=4, processes=False, dashboard_address="127.0.0.1:0"
+    )
     with dask.config.set({"distributed.comm.timeouts.connect": "1s"}):
-        yield found
-        found.close(timeout=2)
+        yield cluster_of_threads
+        cluster_of_threads.close(timeout=2)
 
 
 def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, tmp_path):

@@ -114,8 +114,8 @@ def test_a_script_without_a_main_guard_uses_processes_and_sends_what_it_defines(
             print(list(run(squared, range(5), 2)))
             """)
     )
-    made = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, cwd=Path.cwd())
-    assert (made.stdout, made.stderr) == ("[0, 1, 4, 9, 16]\n", "")
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, cwd=Path.cwd())
+    assert (done.stdout, done.stderr) == ("[0, 1, 4, 9, 16]\n", "")
 
 
 def test_processes_end_with_the_one_that_started_them():

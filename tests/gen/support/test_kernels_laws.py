@@ -67,4 +67,4 @@ def test_a_damaged_file_is_compiled_again_once(twice, tmp_path, damage):
         function = twice()
         with event.install_recorder("numba:compile") as recorder:
             assert function(1.5) == 3.0
-        assert sum(one.is_start for _, one in recorder.buffer) == compiled
+        assert sum(compilation.is_start for _, compilation in recorder.buffer) == compiled

@@ -110,9 +110,9 @@ def test_recipes_and_common_keys_of_labels_are_read_alike(tmp_path, read, name):
     ],
 )  # fmt: skip
 def test_plain_values_are_those_of_yaml_1_2(tmp_path, text, expected):
-    found = value(tmp_path, text)
-    assert found == expected
-    assert repr(found) == repr(expected)
+    read = value(tmp_path, text)
+    assert read == expected
+    assert repr(read) == repr(expected)
 
 
 VALUES = st.recursive(

@@ -43,13 +43,13 @@ def errors(case, seed=0):
         spalls = [Spall("inner", 0.53e-3, 5e-6, inner, 0, profile), Spall("outer", 0.36e-3, 5e-6, -1.5, 0, profile)]
         some.append(record(RIG._replace(half_clearance=half_clearance), motion, spalls if profile else ()))
     marches = ([trip.states[:, :6] for trip in march_lanes(some, N_KNOTS, n, KNOT)] for n in [EXACT, *STEPS])
-    exact, *found = map(np.array, marches)
-    return np.array([np.abs(trips - exact).max(axis=(1, 2)) for trips in found])
+    exact, *coarse = map(np.array, marches)
+    return np.array([np.abs(trips - exact).max(axis=(1, 2)) for trips in coarse])
 
 
-def order(found, steps):
+def order(errors_found, steps):
     """Slope of the median error over the step, for ``found`` of the shape (step size, start)."""
-    return -np.polyfit(np.log(steps), np.log(np.median(found, axis=1)), 1)[0]
+    return -np.polyfit(np.log(steps), np.log(np.median(errors_found, axis=1)), 1)[0]
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -47,8 +47,8 @@ def energy(states):
 def energy_drift(n_steps):
     start = np.zeros(12)
     start[1] = 8e-6  # 0.1 s: the shaft falls, hits the race and vibrates
-    found = energy(march_lanes([record(UNDAMPED, STANDING)], 1200, n_steps, KNOT, start)[0].states)
-    return np.abs(found - found[0]).max() / abs(found[0])
+    energies = energy(march_lanes([record(UNDAMPED, STANDING)], 1200, n_steps, KNOT, start)[0].states)
+    return np.abs(energies - energies[0]).max() / abs(energies[0])
 
 
 def test_without_damping_and_rotation_the_energy_stays_and_the_more_so_the_finer_the_step():

@@ -35,7 +35,7 @@ def hardest(nearest):
     numbers with ``abs(k) < nearest`` come from the square roots ``n`` of each ``k`` modulo 2**54 and 2**55, of which an odd ``k`` has four
     if it is 1 modulo 8, and none otherwise.
     """
-    found = []
+    numbers = []
     for bits, unit in ((54, 2.0**-52), (55, 2.0**-51)):
         modulus = 1 << bits
         for k in range(1 - nearest // 8 * 8, nearest, 8):
@@ -47,8 +47,8 @@ def hardest(nearest):
                 middle = some % modulus
                 m = (middle * middle - k) >> bits
                 if middle >> 53 == 1 and 1 <= m * unit < 4 and (m * unit < 2) == (bits == 54):
-                    found.append(m * unit)
-    return np.array(found)
+                    numbers.append(m * unit)
+    return np.array(numbers)
 
 
 def test_the_root_is_right_where_it_is_hardest_to_round():

@@ -34,16 +34,16 @@ def test_off_the_spall_nothing_drops(profile, beyond, half, race, depth):
 @every_profile
 @given(shares, halves, races, depths)
 def test_a_ball_drops_no_deeper_than_the_spall_and_alike_on_both_sides(profile, share, half, race, depth):
-    found = fall(profile, share * half, half, race, depth)
-    assert 0.0 <= found <= depth * (1 + 1e-12)
-    assert fall(profile, -share * half, half, race, depth) == found
+    fallen = fall(profile, share * half, half, race, depth)
+    assert 0.0 <= fallen <= depth * (1 + 1e-12)
+    assert fall(profile, -share * half, half, race, depth) == fallen
 
 
 @every_profile
 @given(st.floats(-1, 1), halves, races, depths)
 def test_the_drop_in_the_cache_has_the_bits_of_that_in_the_kernel(profile, share, half, race, depth):
-    given = profile, share * half, half, abs(race), BALL, race, depth
-    assert cached_drop(*given) == drop(*given)
+    arguments = profile, share * half, half, abs(race), BALL, race, depth
+    assert cached_drop(*arguments) == drop(*arguments)
 
 
 @given(st.floats(1.0, 2.5), st.floats(0, 0.25), races, st.floats(1e-6, 1e-4))

@@ -69,9 +69,9 @@ def test_a_machine_turned_as_a_whole_gives_the_turned_record(drawn, turn, off):
     )
     start = rest_of(here) + off * np.repeat([1.0, 100.0], 6)
     moved = turned_record(here, turn)
-    one, near = (turned(way, turn) for way in (ways(here, start), nearby(here, start)))
+    trip, near = (turned(way, turn) for way in (ways(here, start), nearby(here, start)))
     other = ways(moved, turned(start.reshape(6, 2), turn).ravel())
-    assert_alike(one, other, near)
+    assert_alike(trip, other, near)
 
 
 def ways(there, start):
@@ -93,10 +93,10 @@ def nearby(there, start):
     return ways(there._replace(turning=motion), start + aside)
 
 
-def assert_alike(one, other, near):
+def assert_alike(trip, other, near):
     """Equal except for rounding, which play in the support amplifies: the difference never exceeds that of ``near`` so far."""
     for part in (slice(0, 3), slice(3, 6)):
-        apart, nearby, size = (np.abs(way[:, part]).max(axis=(1, 2)) for way in (other - one, near - one, one))
+        apart, nearby, size = (np.abs(way[:, part]).max(axis=(1, 2)) for way in (other - trip, near - trip, trip))
         np.testing.assert_array_less(apart, np.maximum.accumulate(nearby) + 1e-11 * size.max())
 
 
@@ -152,5 +152,5 @@ def test_a_mirrored_machine_gives_the_mirrored_record(drawn):
         waviness=mirrored_waviness(there.waviness),
     )
     sign, start = np.tile([-1.0, 1.0], 6), rest_of(there)
-    one, near = (way * sign.reshape(6, 2) for way in (ways(there, start), nearby(there, start)))
-    assert_alike(one, ways(mirrored, start * sign), near)
+    trip, near = (way * sign.reshape(6, 2) for way in (ways(there, start), nearby(there, start)))
+    assert_alike(trip, ways(mirrored, start * sign), near)

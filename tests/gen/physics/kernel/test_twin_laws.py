@@ -68,7 +68,7 @@ def assert_what_comes_out_is_the_twins(drawn, seed, slack):
     (drawn,) = at_rest([drawn._replace(pickups=pickups)])
     shape = input_shape(drawn)
     knot, n_knots = KNOT / 4, 32
-    found = integrate(shape, lay_out([drawn], shape, knot), knot, 1, decimation(1), 0, n_knots)
+    integral = integrate(shape, lay_out([drawn], shape, knot), knot, 1, decimation(1), 0, n_knots)
     start = lay_out([drawn], shape, knot).state.reshape(-1, LANES)[:N_DYNAMIC, 0]
     slow = slow_motion(drawn, knot, n_knots)
     states = march_twin(drawn, start, n_knots, 1, knot).states[:-1]
@@ -78,11 +78,13 @@ def assert_what_comes_out_is_the_twins(drawn, seed, slack):
         rates = [right_hand_side(drawn, slow, knot, at, 0.0, y) for at, y in enumerate(states)]
         expected = np.array(rates)[:, 6:] @ pickups.T
     largest = np.abs(expected).max()
-    np.testing.assert_allclose(found.response[..., 0].T, expected, rtol=np.finfo(np.float32).eps, atol=1e-9 * largest)
+    np.testing.assert_allclose(
+        integral.response[..., 0].T, expected, rtol=np.finfo(np.float32).eps, atol=1e-9 * largest
+    )
     squeezes = [contacts(drawn, slow, at, 0.0, y).squeeze for at, y in enumerate(states)]
     low, high = (max(contact_stiffness(drawn.machine, s + off) for s in squeezes) for off in (-slack, slack))
-    assert low * (1 - 1e-9) <= found.steepest[0] <= high * (1 + 1e-9)
-    assert (found.diverged == -1).all()
+    assert low * (1 - 1e-9) <= integral.steepest[0] <= high * (1 + 1e-9)
+    assert (integral.diverged == -1).all()
 
 
 @law
