@@ -5,8 +5,7 @@
 ============== =============================================================================
 module         responsibility
 ============== =============================================================================
-record_sources hash of the source files that make records
-identity       file name and origin of a part
+identity       file name of a part; its recipe, sources and libraries
 labels         variables written beside each record
 undetected     records drawn, simulated and measured; faults that cannot be seen drawn again
 step_checks    some records integrated again at half their step

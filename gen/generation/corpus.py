@@ -35,15 +35,12 @@ from gen.corpus import (
     writing,
 )
 from gen.corpus.schema import with_file_codes
-from gen.generation.identity import added_classes, failures_of, made_by, part_file
-from gen.generation.record_sources import sources_sha256
+from gen.generation.identity import added_classes, failures_of, made_by, other_code, part_file
 from gen.generation.target import check_parts, check_same, claim, part_numbers, prepare, remove_other_parts
-from gen.mechanisms.mechanism import plugins_of
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.display import Shown
 from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.executor import Workers, connected, run, too_many
-from gen.support.plugins import plugin_versions
 from gen.support.progress import Progress, counter
 
 if TYPE_CHECKING:
@@ -209,7 +206,7 @@ def _all_parts(
         here = isinstance(workers, int)
         if here and (sentence := too_many(workers)) is not None:
             notice(sentence)
-        task = partial(_write, recipe, folder.resolve(), _code(recipe))
+        task = partial(_write, recipe, folder.resolve(), made_by(recipe))
         with connected(min(workers, len(missing)) if here else workers, _SIMULATOR) as place:
             if here:
                 from gen.generation.compilation import compile_kernels  # loaded while the processes start
@@ -222,25 +219,17 @@ def _all_parts(
     return [outcomes[part] for part in parts]
 
 
-def _code(recipe: Recipe) -> str:
-    """Sources and plug-ins of this process that make records of a recipe."""
-    plugins = (f"{name} {number}" for name, number in plugin_versions("mechanisms", plugins_of(recipe)).items())
-    return ", ".join((sources_sha256()[:12], *plugins))
-
-
-def _write(recipe: Recipe, folder: Path, code: str, part: int) -> Outcome:
+def _write(recipe: Recipe, folder: Path, asked: Mapping[str, Any], part: int) -> Outcome:
     """Make and write one part; dask may repeat the task, which then writes the same bytes.
 
     Raises
     ------
     ClusterError
-        If this process has other sources than the one that asks for the part.
+        If this process has other sources or libraries than the one that asks for the part.
     """
-    own = _code(recipe)
-    if own != code:
+    if other := other_code(asked, made_by(recipe)):
         raise ClusterError(
-            f"worker {platform.node()}: has other sources of raceway ({own}) than this process ({code}); install the same version on "
-            "every worker."
+            f"worker {platform.node()}: has {other[1]}, and this process {other[0]}; install the same versions on every worker."
         )
     from gen.generation.make_part import make_part  # the simulator, which takes a second and a half to load
 

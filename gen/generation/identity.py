@@ -3,18 +3,34 @@
 It loads nothing of the simulator, so that ``generate`` refuses within a second, and starts its processes while it loads the rest.
 """
 
+import functools
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
 import xarray as xr
 
 from gen.corpus import facts_as_attributes, part_name
-from gen.generation.record_sources import sources_sha256
 from gen.mechanisms.mechanism import plugins_of
 from gen.recipe import Recipe, class_of, recipe_hash
 from gen.support.plugins import plugin_versions, plugins
+from gen.support.sources import hash_sources
+
+_MAKES_RECORDS = (
+    "gen/drawing",
+    "gen/physics",
+    "gen/mechanisms",
+    "gen/recipe",
+    "gen/scenarios",
+    "gen/simulation",
+    "gen/measurement",
+    "gen/generation/step_checks.py",
+    "gen/generation/undetected.py",
+    "gen/generation/labels.py",
+    "gen/support/units.py",
+)
+"""Folders and files by which a recipe becomes records."""
 
 
 def failures_of(part: xr.Dataset) -> tuple[str, ...]:
@@ -47,11 +63,28 @@ def made_by(recipe: Recipe) -> dict[str, Any]:
     }
 
 
+def sources_sha256() -> str:
+    """SHA-256 over the sources of kernel, random draws, simulation, measurement and labels, in hexadecimal."""
+    return hash_sources(*_MAKES_RECORDS)
+
+
+def other_code(asked: Mapping[str, Any], own: Mapping[str, Any]) -> tuple[str, str] | None:
+    """Sources and libraries in which two facts of :func:`made_by` differ, as each has them; None if they have the same."""
+    both = [facts["versions"] | {"sources": (facts["sources_sha256"] or "unknown")[:12]} for facts in (asked, own)]
+    names = [name for name in both[1] | both[0] if both[0].get(name) != both[1].get(name)]
+    was, installed = (", ".join(f"{name} {versions.get(name, 'none')}" for name in names) for versions in both)
+    return (was, installed) if names else None
+
+
 def library_versions(*recipes: Recipe) -> dict[str, str]:
     """Versions of the libraries, and of the plug-ins with mechanisms and classes of some recipes, that determine the bytes of a part."""
-    libraries = {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
     added = [name for recipe in recipes for name in added_classes(recipe)]
-    return libraries | plugin_versions("classes", added) | plugin_versions("mechanisms", plugins_of(*recipes))
+    return _libraries() | plugin_versions("classes", added) | plugin_versions("mechanisms", plugins_of(*recipes))
+
+
+@functools.cache
+def _libraries() -> dict[str, str]:
+    return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
 
 
 def added_classes(recipe: Recipe) -> list[str]:

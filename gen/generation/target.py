@@ -23,7 +23,7 @@ from gen.corpus import (
     write_manifest,
     writing,
 )
-from gen.generation.identity import part_file
+from gen.generation.identity import other_code, part_file
 from gen.recipe import Recipe, read_recipe
 from gen.support.errors import CorpusError, RecipeError
 from gen.support.yaml_files import parse_yaml
@@ -89,13 +89,10 @@ def check_same(place: Path, manifest: Manifest, facts: dict[str, Any], recipe: R
             f"{place}: holds a corpus of {before} records and not {asked}; a folder grows, and no corpus shrinks: choose another name."
         )
     # other libraries can round otherwise
-    began = manifest.versions | {"sources": (manifest.sources_sha256 or "unknown")[:12]}
-    now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
-    other = [name for name in now | began if began.get(name) != now.get(name)]
-    if other:
-        was, installed = (", ".join(f"{name} {of.get(name, 'none')}" for name in other) for of in (began, now))
+    began = {"versions": manifest.versions, "sources_sha256": manifest.sources_sha256}
+    if other := other_code(began, facts):
         raise CorpusError(
-            f"{place}: was begun with {was}; {installed} is installed and can give other samples: install the former to "
+            f"{place}: was begun with {other[0]}; {other[1]} is installed and can give other samples: install the former to "
             "complete it, or choose another name."
         )
 

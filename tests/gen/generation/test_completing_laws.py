@@ -7,9 +7,9 @@ import shutil
 import pytest
 
 from gen.corpus import open_corpus, part_name, read_manifest, write_manifest
-from gen.generation import record_sources as sources_of_records
+from gen.generation import identity
 from gen.generation.corpus import generate
-from gen.generation.record_sources import sources_sha256
+from gen.generation.identity import made_by, sources_sha256
 from gen.recipe import read_recipe
 from gen.support import sources
 from gen.support.errors import ClusterError, CorpusError
@@ -27,9 +27,9 @@ def hashes(folder):
 def set_facts(path, **facts):
     """Change facts of an unfinished corpus or of a part."""
     if path.suffix == ".nc":
-        with edited(path) as found:
+        with edited(path) as file:
             for name, value in facts.items():
-                found.attrs[name] = value
+                file.attrs[name] = value
         return
     edit_manifest(path, **facts)
 
@@ -133,28 +133,28 @@ def test_every_part_that_is_not_the_right_one_is_made_again_to_the_byte(write_re
 
 
 def test_edited_sources_neither_complete_a_corpus_nor_keep_its_parts(recipe_file, begun, single, monkeypatch):
-    for module in ("gen.generation.corpus", "gen.generation.identity"):
-        monkeypatch.setattr(f"{module}.sources_sha256", lambda: "b" * 64)
+    monkeypatch.setattr(identity, "sources_sha256", lambda: "b" * 64)
     for corpus in (begun, single.path):
         with pytest.raises(CorpusError, match=r"was begun with sources [0-9a-f]{12}; sources bbbbbbbbbbbb is"):
             generate(recipe_file, corpus)
 
 
 def test_a_worker_with_other_sources_is_refused_by_name_and_writes_nothing(recipe_file, tmp_path):
-    given = read_recipe(recipe_file), tmp_path, "c" * 64, 0
+    recipe = read_recipe(recipe_file)
+    other = made_by(recipe) | {"sources_sha256": "c" * 64}
     with pytest.raises(
-        ClusterError, match=r"^worker .*: has other sources of raceway \([0-9a-f]{12}\) than this process"
+        ClusterError, match=r"^worker .*: has sources [0-9a-f]{12}, and this process sources c{12}; install"
     ):
-        GENERATE._write(*given)
+        GENERATE._write(recipe, tmp_path, other, 0)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_the_hash_of_the_sources_changes_with_every_file_that_makes_records(tmp_path, monkeypatch):
     package = shutil.copytree(ROOT / "gen", tmp_path / "gen", ignore=shutil.ignore_patterns("__pycache__"))
-    found = {sources_sha256()}
+    hashes_seen = {sources_sha256()}
     monkeypatch.setattr(sources, "files", lambda _: package)
-    monkeypatch.setattr(sources_of_records, "hash_sources", sources.hash_sources.__wrapped__)
-    assert found == {sources_sha256()}
+    monkeypatch.setattr(identity, "hash_sources", sources.hash_sources.__wrapped__)
+    assert hashes_seen == {sources_sha256()}
     for name in (
         "physics/bearing.py",
         "physics/kernel/compiling.py",
@@ -163,10 +163,10 @@ def test_the_hash_of_the_sources_changes_with_every_file_that_makes_records(tmp_
         "generation/labels.py",
     ):
         (package / name).write_text((package / name).read_text() + "\n# changed\n")
-        found.add(sources_sha256())
-    assert len(found) == 6
+        hashes_seen.add(sources_sha256())
+    assert len(hashes_seen) == 6
     (package / "corpus" / "validation.py").write_text("")
-    assert sources_sha256() in found
+    assert sources_sha256() in hashes_seen
 
 
 def test_a_second_call_keeps_every_part_whatever_comments_its_recipe_has(recipe_file, whole, single, copied, tmp_path):
