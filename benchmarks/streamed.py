@@ -23,7 +23,7 @@ from features import Model, envelope_orders, feature_table, open_waveforms
 from features.baselines import DEFAULT_GROUPS
 from features.baselines.calibration import UNCALIBRATED
 from features.baselines.predictions import predictions
-from features.baselines.records import all_records
+from features.baselines.records import labelled_records
 from features.baselines.scores import Scores, score
 from features.table.table_files import read_table, write_table
 from raceway.importing import import_set
@@ -76,7 +76,7 @@ def network_scores(cnn: ModuleType, taught: Known, seed: int, tests: dict[str, K
     for table, levels in tests.values():
         with cnn.torch.no_grad():
             parts = [network(part).softmax(1).numpy() for part in cnn.torch.from_numpy(levels).split(256)]
-        rows = all_records(table, ())
+        rows = labelled_records(table, ())
         values += figures(score(rows, predictions(np.concatenate(parts), CLASSES, rows.recording, UNCALIBRATED)))
     return values
 

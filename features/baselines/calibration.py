@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from scipy.special import log_softmax, softmax
 
-from features.signal.rows import FloatArray, IntArray
+from features.signal.rows import FloatArray, IntArray, group_means
 
 COVERAGE = 0.9  # share of records outside the training that a model answers
 IMPULSIVENESS = "cepstral_impulsiveness"  # feature
@@ -71,10 +71,7 @@ def combine(probabilities: FloatArray, group: IntArray) -> FloatArray:
     """
     if np.array_equal(group, np.arange(len(probabilities))):
         return probabilities
-    count = np.bincount(group)
-    total = np.zeros((len(count), probabilities.shape[1]))
-    np.add.at(total, group, np.log(np.maximum(probabilities, np.finfo(float).tiny)))
-    return softmax(total / count[:, None], axis=1)
+    return softmax(group_means(np.log(np.maximum(probabilities, np.finfo(float).tiny)), group), axis=1)
 
 
 def fit_calibration(probabilities: FloatArray, truth: IntArray, by: Groups = "record") -> Calibration:

@@ -16,10 +16,8 @@ from features.baselines.estimators import Estimator
 from features.baselines.fitting import fits
 from features.baselines.names import UNTRAINED
 from features.baselines.own import Maker
-from features.baselines.records import Records
+from features.baselines.records import HEALTHY_CODE, Records
 from features.baselines.tracks import Split, grouped_splits
-from gen.corpus import FAULTS
-from gen.corpus.fault_classes import HEALTHY
 from gen.support.executor import Workers
 
 FOLDS = 3  # at most; each costs a training on two thirds of the records
@@ -59,7 +57,7 @@ def _impulsive(records: Records) -> float | None:
     """Limit of the impulsiveness of healthy records, None without the feature or such records."""
     if IMPULSIVENESS not in getattr(records.features, "columns", ()):
         return None
-    values = records.features[IMPULSIVENESS].to_numpy()[records.fault == FAULTS.index(HEALTHY)]
+    values = records.features[IMPULSIVENESS].to_numpy()[records.fault == HEALTHY_CODE]
     finite = values[np.isfinite(values)]
     return float(np.quantile(finite, HEALTHY_SHARE)) if finite.size else None
 

@@ -16,12 +16,14 @@ from features.signal.rows import FloatArray, IntArray
 from features.table.recording_speeds import recording_numbers
 from features.table.waveforms import Waveforms
 from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
+from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 DEFAULT_GROUPS = ("lines", "shape")  # independent of gain and spectral colour
+HEALTHY_CODE = FAULTS.index(HEALTHY)
 
 
 class Records(NamedTuple):
@@ -49,36 +51,20 @@ class Records(NamedTuple):
 
 
 def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
-    """Rows of a feature table whose class is known; see :func:`all_records`.
+    """Rows of a feature table whose class is known, with some of its features in the order given; the width is NaN if the table lacks it.
 
     Raises
     ------
     CorpusError
-        As :func:`all_records`, or if all records are of class ``unknown``.
+        If the table has no records, lacks a feature, the fault, or the number of rig, specimen or recording, or if all records are of
+        class ``unknown``.
     """
-    unknown = count_unknown(table)
+    title, unknown = title_of(table), count_unknown(table)
     if unknown and unknown == table.sizes["record"]:
-        message = f"{title_of(table)}: all records are of class {UNKNOWN}; label some of them, or give another corpus."
+        message = f"{title}: all records are of class {UNKNOWN}; label some of them, or give another corpus."
         raise CorpusError(message)
-    return all_records(table.isel(record=table["fault"].values != UNKNOWN_CODE) if unknown else table, features)
-
-
-def count_unknown(table: xr.Dataset) -> int:
-    """Number of records of a feature table whose class is not known."""
-    return int((table["fault"].values == UNKNOWN_CODE).sum()) if "fault" in table else 0
-
-
-def all_records(table: xr.Dataset, features: Sequence[str]) -> Records:
-    """Rows of a feature table with some of its features, in the order given; the width is NaN if the table lacks it.
-
-    ``fault`` of a record whose class is not known is ``gen.corpus.UNKNOWN_CODE``.
-
-    Raises
-    ------
-    CorpusError
-        If the table has no records, or lacks a feature, the fault, or the number of rig, specimen or recording.
-    """
-    title = title_of(table)
+    if unknown:
+        table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
     rows = feature_rows(table, features)
     fault = np.asarray(table["fault"].values, dtype=np.intp)
     if not np.isin(fault, [*FAULT_NAMES]).all():
@@ -98,6 +84,11 @@ def all_records(table: xr.Dataset, features: Sequence[str]) -> Records:
         shaft_rate=_column(table, "shaft_rate"),
         bearing=_bearing_type(table, specimen),
     )
+
+
+def count_unknown(table: xr.Dataset) -> int:
+    """Number of records of a feature table whose class is not known."""
+    return int((table["fault"].values == UNKNOWN_CODE).sum()) if "fault" in table else 0
 
 
 def records_of(data: xr.Dataset | Waveforms, groups: Sequence[str]) -> Records:

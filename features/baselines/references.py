@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from features.baselines.colour_distance import COUNTED, ENERGIES, Colour, scatter_of
 from features.baselines.records import (
+    HEALTHY_CODE,
     FloatArray,
     IntArray,
     feature_rows,
@@ -25,11 +26,9 @@ from features.signal.rows import group_means, mean_row
 from features.table.band import band_of
 from features.table.channels import channels_of
 from features.table.recording_speeds import recording_numbers
-from gen.corpus import FAULTS, UNKNOWN_CODE
-from gen.corpus.fault_classes import HEALTHY
+from gen.corpus import UNKNOWN_CODE
 from gen.support.errors import CorpusError
 
-HEALTHY_CODE = FAULTS.index(HEALTHY)
 RELATIVE = "relative"  # group of the features of a relative table
 SAME_SPEED = 0.02  # relative: speeds within it are one speed, as in the search for lines
 NEAREST = 3  # recordings, nearest in speed, that a virtual reference is chosen from

@@ -14,7 +14,7 @@ from typing import Any, Literal
 import xarray as xr
 
 from features.baselines.inspection import permutation_losses
-from features.baselines.models import Model, record_digests, seen_records
+from features.baselines.models import Model
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS, UNTRAINED, Track
 from features.baselines.own import Maker
 from features.baselines.records import (
@@ -23,7 +23,9 @@ from features.baselines.records import (
     count_unknown,
     features_of,
     labelled_records,
+    record_digests,
     records_of,
+    seen_records,
 )
 from features.baselines.scores import Scores, interval_text
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits

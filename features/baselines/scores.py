@@ -18,12 +18,11 @@ from sklearn.metrics import confusion_matrix, f1_score, recall_score, roc_auc_sc
 from features.baselines.calibration import SMALLEST
 from features.baselines.detection import INTERVAL, Roc, WidthBin, detection, roc
 from features.baselines.predictions import Predictions
-from features.baselines.records import FloatArray, IntArray, Records
+from features.baselines.records import HEALTHY_CODE, FloatArray, IntArray, Records
 from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY
 from gen.support.display import Shown
 
-HEALTHY_CODE = FAULTS.index(HEALTHY)
 BINS = 10  # of the reliability diagram
 RESAMPLES = 1000
 Interval = tuple[float, float]
