@@ -13,19 +13,13 @@ from features.baselines.estimators import EnvelopeRule
 from features.table.class_features import COMBS, EVIDENCE, class_features
 from features.table.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
+from gen.corpus.fault_classes import BUILT_IN
 
 FS, TURNS, RECORDS = 12_000.0, 30, 20
-FTF, BPFO, BPFI, BSF = 0.3983, 3.5848, 5.4152, 2.3567
-TRAINS = {
-    "healthy": (),
-    "inner": (BPFI,),
-    "outer": (BPFO,),
-    "ball": (2 * BSF,),
-    "cage": (FTF,),
-    "compound": (BPFI, BPFO),
-}
+ORDERS = Orders(*map(np.array, ([0.3983], [3.5848], [5.4152], [2.3567])))
+TRAINS = {row.name: [line.order(ORDERS)[0] for line in row.lines[: row.n_spalls or 1]] for row in BUILT_IN}
 COLUMNS = [feature for fault in TRAINS for feature in class_features(fault)]
-FOUR, SIX = np.arange(4), np.array([FAULTS.index(fault) for fault in TRAINS])
+FOUR, SIX = np.arange(4), np.arange(len(BUILT_IN))
 levels = st.one_of(st.floats(-1, 4), st.just(np.nan))
 rows = st.lists(st.tuples(*[levels] * len(COLUMNS)), min_size=1, max_size=5)
 
@@ -51,12 +45,11 @@ def impulse_trains(lines, shaft_rate, rng):
 def lines_of(fault):
     """Features of records with the trains of a class, at 25 to 50 Hz shaft rate and with at most 1 % label error."""
     rng = np.random.default_rng(FAULTS.index(fault))
-    orders = Orders(*(np.array([order]) for order in (FTF, BPFO, BPFI, BSF)))
     values = []
     for shaft_rate in rng.uniform(25, 50, RECORDS):
         label = np.array([shaft_rate * rng.uniform(0.99, 1.01)])
         values.append(
-            indicators(impulse_trains(TRAINS[fault], shaft_rate, rng)[None], FS, label, orders, ("lines",))[0]
+            indicators(impulse_trains(TRAINS[fault], shaft_rate, rng)[None], FS, label, ORDERS, ("lines",))[0]
         )
     return pd.DataFrame(np.concatenate(values), columns=list(feature_names(("lines",))))
 

@@ -10,6 +10,11 @@ from features.baselines import Model, benchmark, predict
 from features.table.definitions import feature_coordinates
 
 
+@pytest.fixture(scope="module", autouse=True)
+def few_resamples():
+    """Worker processes take as many as usual."""
+
+
 @pytest.fixture(scope="module")
 def table():
     """Six rigs with four specimens of three records, two of them healthy; the fault shifts all features."""
