@@ -6,7 +6,6 @@ from importlib.metadata import version
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from benchmarks.reference_table import both_lengths, identities
 from features import feature_table
@@ -16,7 +15,6 @@ from features.baselines.references import with_energies
 from gen import generate
 from gen.recipe import read_recipe
 from raceway import kept_models
-from raceway.cli import cli
 from raceway.commands.model_commands import warn_of_durations
 from tests.model_files import make_table
 
@@ -30,10 +28,6 @@ def trainings(tiny_table, tmp_path, monkeypatch):
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(kept_models, "shipped_tables", lambda: made.append(1) or [tiny_table])
     return made
-
-
-def call(*arguments):
-    return CliRunner().invoke(cli, [str(argument) for argument in arguments], prog_name="raceway")
 
 
 def test_other_sources_or_another_library_make_another_model(monkeypatch):
@@ -79,49 +73,49 @@ def test_two_that_need_it_at_once_train_it_once(trainings):
     Model.load(kept_models.reference_path())
 
 
-def test_evaluate_takes_the_reference_model_by_name_and_by_default(tiny_corpus, trainings, tmp_path, monkeypatch):
+def test_evaluate_takes_the_reference_model_by_name_and_by_default(run, tiny_corpus, trainings, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "reference").write_text("no model", encoding="utf-8")
-    assert call("evaluate", "nowhere").exit_code == 2
+    assert run("evaluate", "nowhere").exit_code == 2
     assert trainings == []  # a wrong path is told first
-    default, named = (call("evaluate", tiny_corpus, "--json", *more) for more in ((), ("--model", "reference")))
+    default, named = (run("evaluate", tiny_corpus, "--json", *more) for more in ((), ("--model", "reference")))
     assert (default.exit_code, named.exit_code, len(trainings)) == (0, 0, 1)
     path = kept_models.reference_path()
     assert json.loads(default.stdout) == json.loads(named.stdout)
     assert json.loads(named.stdout)["model"] == str(path)
-    file = call("evaluate", tiny_corpus, "--model", "./reference")
+    file = run("evaluate", tiny_corpus, "--model", "./reference")
     assert (file.exit_code, "reference: not a readable model" in file.stderr) == (2, True)
 
 
-def test_benchmark_scores_trained_models_as_evaluate_does(tiny_corpus, tiny_table, trainings, tmp_path):
+def test_benchmark_scores_trained_models_as_evaluate_does(run, tiny_corpus, tiny_table, trainings, tmp_path):
     path = tmp_path / "own.skops"
     kept_models.train_and_score([tiny_table], "logistic_regression")[0].save(path)
     models = ("--model", "reference", "--model", path)
     line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--estimator", "majority")
-    done = call(*line, *models, "--json")
+    done = run(*line, *models, "--json")
     assert done.exit_code == 0, done.output
     assert len(trainings) == 1
     found = json.loads(done.stdout)["models"]
     assert found.keys() == {"reference", str(path)}
     for name, (scores,) in found.items():
-        alone = json.loads(call("evaluate", tiny_corpus, "--model", name, "--json").stdout)
+        alone = json.loads(run("evaluate", tiny_corpus, "--model", name, "--json").stdout)
         assert scores == {key: alone[key] for key in scores}
         assert f"warning: {name} was trained on 36 of these 48 records; this is no fair test." in done.stderr
     page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
     assert '<tr><th scope="row">reference</th><td>' in page
     assert "reference was trained on 36 of 48 records" in page
-    text = call(*line, *models).stdout  # with the rows of the earlier call
+    text = run(*line, *models).stdout  # with the rows of the earlier call
     assert f"\nreference  {' ' * (len(str(path)) - len('reference'))}" in text
-    assert json.loads(call(*line, "--json").stdout)["models"] == {}
-    lost = call(*line, "--model", "nowhere.skops")
+    assert json.loads(run(*line, "--json").stdout)["models"] == {}
+    lost = run(*line, "--model", "nowhere.skops")
     assert (lost.exit_code, "nowhere.skops: no such file" in lost.stderr) == (2, True)
 
 
 @pytest.mark.usefixtures("trainings")
-def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(tiny_corpus, tmp_path, monkeypatch):
+def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(run, tiny_corpus, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("", encoding="utf-8")
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "file" / "cache"))
-    result = call("evaluate", tiny_corpus)
+    result = run("evaluate", tiny_corpus)
     assert result.exit_code == 2
     assert "RACEWAY_CACHE" in result.stderr
 

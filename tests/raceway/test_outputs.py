@@ -22,6 +22,7 @@ from tests.command_tree import COMMANDS
 from tests.conftest import small_with
 from tests.pulses import write_pulses
 from tests.recipes import LIVES
+from tests.same_corpora import files
 
 # every command with -o by the line that comes before it, and the name of its result; a folder has no suffix
 RESULTS = {
@@ -68,10 +69,6 @@ def places(originals, tmp_path):
     return {"corpus": tmp_path / "corpus", **{name: tmp_path / file for name, file in names.items()}}
 
 
-def contents(folder: Path) -> dict[Path, bytes]:
-    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
-
-
 def of_the_user(corpus: Path, folder: Path) -> list[Path]:
     """Files of the formats of results that raceway did not make as results: HDF5, a zip with a model, Parquet, HTML and SVG."""
     folder.mkdir()
@@ -96,7 +93,7 @@ def test_every_command_with_an_output_is_tried():
 
 @pytest.mark.parametrize("line", RESULTS)
 def test_nothing_is_written_into_a_corpus(run, places, line, tmp_path):
-    corpus, name, before = places["corpus"], Path(RESULTS[line]), contents(tmp_path)
+    corpus, name, before = places["corpus"], Path(RESULTS[line]), files(tmp_path)
     (tmp_path / "link").symlink_to(corpus / "parts")
     link = tmp_path / f"into{name.suffix}"
     link.symlink_to(corpus / f"new{name.suffix}")
@@ -104,12 +101,12 @@ def test_nothing_is_written_into_a_corpus(run, places, line, tmp_path):
         result = run(*line.format(**places).split(), "-o", place)
         assert result.exit_code == 2, result.output
         assert f"is in the corpus {corpus.resolve()}; choose a place outside it." in result.stderr
-    assert contents(tmp_path) == before
+    assert files(tmp_path) == before
 
 
 @pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if name != "new"])
 def test_a_place_that_cannot_hold_the_result_is_refused(run, places, line, tmp_path):
-    name, before = Path(RESULTS[line]), contents(tmp_path)
+    name, before = Path(RESULTS[line]), files(tmp_path)
     if not name.suffix:
         refused = {places["recipe"]: "is a file; give a folder"}
     else:
@@ -124,15 +121,15 @@ def test_a_place_that_cannot_hold_the_result_is_refused(run, places, line, tmp_p
         result = run(*line.format(**places).split(), "-o", place)
         assert (result.exit_code, result.stderr.count("\n")) == (2, 1), result.output
         assert sentence in result.stderr
-    assert contents(tmp_path) == before
+    assert files(tmp_path) == before
 
 
 @pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if "." not in name])
 def test_a_corpus_is_no_folder_for_other_results(run, places, line, tmp_path):
-    before = contents(tmp_path)
+    before = files(tmp_path)
     result = run(*line.format(**places).split(), "-o", places["corpus"], *(["--seed", 9] if "generate" in line else []))
     assert result.exit_code == 2, result.output
-    assert contents(tmp_path) == before
+    assert files(tmp_path) == before
 
 
 @pytest.mark.parametrize("name", ["results.json", "report.html", "index.html", "figure1.png"])
@@ -159,17 +156,17 @@ def test_a_file_of_another_kind_is_not_replaced(run, places, line, tmp_path):
     ]
     for number, file in enumerate([*files, *of_the_user(corpus, tmp_path / "own")]):
         shutil.copy(file, tmp_path / f"{number}{suffix}")
-    before = contents(tmp_path)
+    before = files(tmp_path)
     for number in range(len(files) + 5):
         result = run(*line.format(**places).split(), "-o", tmp_path / f"{number}{suffix}")
         assert result.exit_code == 2, result.output
         assert "; give another name, or remove it first." in result.stderr
-    assert contents(tmp_path) == before
+    assert files(tmp_path) == before
 
 
 @pytest.mark.parametrize("place", ["corpus/parts/x.nc", "corpus/x", "index.nc"])
 def test_no_corpus_has_a_place_in_another_nor_the_name_of_an_index(places, tmp_path, place):
-    before = contents(tmp_path)
+    before = files(tmp_path)
     for write in (
         lambda: copy(places["corpus"], tmp_path / place),
         lambda: generate(places["recipe"], tmp_path / place),
@@ -177,7 +174,7 @@ def test_no_corpus_has_a_place_in_another_nor_the_name_of_an_index(places, tmp_p
     ):
         with pytest.raises(CorpusError, match=r"choose a place outside it|is the name of the index in a corpus"):
             write()
-    assert contents(tmp_path) == before
+    assert files(tmp_path) == before
 
 
 FILES = [line for line, name in RESULTS.items() if "." in name and "replay" not in line]

@@ -124,15 +124,14 @@ def read_alone(items, place, folder):
     return signal, fault, before, open_parts(folder)
 
 
-@pytest.mark.parametrize("method", ["fork", "spawn"])
-def test_a_worker_opens_its_own_files_and_reads_the_same(corpus, method):
+def test_a_worker_opens_its_own_files_and_reads_the_same(corpus):
     """A forked process inherits the open files of its parent; it closes them at once."""
     items = pickle.loads(pickle.dumps(gen.torch_dataset(corpus[0])))  # noqa: S301 - of this process
     expected = [items[place] for place in range(len(items))]
     if not Path("/proc/self/fd").exists():
         pytest.skip("this system does not list the open files of a process")
     assert len(open_parts(corpus[0])) == len(SIZES)
-    with multiprocessing.get_context(method).Pool(1) as pool:
+    with multiprocessing.get_context("fork").Pool(1) as pool:
         signal, fault, before, after = pool.apply(read_alone, (items, 8, corpus[0]))
     assert before == []
     assert after == [part_name(2)]

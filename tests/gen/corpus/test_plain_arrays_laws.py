@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from sklearn.model_selection import GroupKFold
 
 import gen
@@ -47,7 +48,26 @@ def test_a_bearing_is_numbered_in_its_rig(tmp_path):
     assert set(found.y) == {"ball"}
 
 
+def with_sample(value):
+    x = SIGNALS.astype(float)
+    x[1, 0, 3] = value
+    return x
+
+
+SHAPES = "give numbers of shape (record, channel, time)"
 WRONG = {
+    "a sample that is lost": ({"records": with_sample(np.nan)}, {}, "1 of 6 have samples that are not finite"),
+    "an infinite sample": ({"records": with_sample(np.inf)}, {}, "1 of 6 have samples that are not finite"),
+    "a sample beyond single precision": (
+        {"records": with_sample(1e300)},
+        {},
+        "1 of 6 have samples that are not finite",
+    ),
+    "one signal": ({"records": SIGNALS[0, 0]}, {}, SHAPES),
+    "no signal": ({"records": SIGNALS[:0]}, {}, SHAPES),
+    "texts": ({"records": SIGNALS.astype(str)}, {}, SHAPES),
+    "four axes": ({"records": SIGNALS[None]}, {}, SHAPES),
+    "a Dataset, which has labels of its own": ({"records": xr.Dataset()}, {}, "leave fs and labels out"),
     "no sample rate": ({"fs": None}, {}, "an array needs fs, its sample rate in Hz"),
     "no table": ({"labels": None}, {}, "an array needs fs, its sample rate in Hz, and labels"),
     "a sample rate of zero": ({"fs": 0.0}, {}, "an array needs fs, its sample rate in Hz"),
@@ -68,10 +88,9 @@ WRONG = {
 @pytest.mark.parametrize("wrong", WRONG)
 def test_what_no_record_can_have_is_one_sentence_and_writes_nothing(tmp_path, wrong):
     arguments, labels, sentence = WRONG[wrong]
+    usual = {"records": SIGNALS, "fs": FS, "labels": LABELS | {"shaft_rpm": [1500] * 6} | labels}
     with pytest.raises(CorpusError) as refused:
-        gen.write_corpus(
-            SIGNALS, tmp_path / "c", **{"fs": FS, "labels": LABELS | {"shaft_rpm": [1500] * 6} | labels} | arguments
-        )
+        gen.write_corpus(target=tmp_path / "c", **usual | arguments)
     assert sentence in str(refused.value)
     assert "\n" not in str(refused.value)
     assert not any(tmp_path.iterdir())
@@ -79,30 +98,5 @@ def test_what_no_record_can_have_is_one_sentence_and_writes_nothing(tmp_path, wr
 
 def test_names_of_bearings_are_any_numbers_and_texts(tmp_path):
     labels = LABELS | {"specimen": [10**12, 5, 10**12, 7, 7, 5]}
-    assert gen.to_arrays(gen.write_corpus(SIGNALS, tmp_path / "c", fs=FS, labels=labels)).groups.tolist() == [
-        0,
-        1,
-        0,
-        2,
-        2,
-        1,
-    ]
-
-
-@pytest.mark.parametrize("wrong", [np.nan, np.inf, 1e300])
-def test_samples_that_no_file_can_hold_are_refused(tmp_path, wrong):
-    x = SIGNALS.astype(float)
-    x[1, 0, 3] = wrong
-    with pytest.raises(CorpusError, match="1 of 6 have samples that are not finite"):
-        gen.write_corpus(x, tmp_path / "c", fs=FS, labels=LABELS)
-
-
-def test_a_dataset_has_labels_of_its_own(tmp_path):
-    with pytest.raises(CorpusError, match="leave fs and labels out"):
-        gen.write_corpus(gen.record(duration_s=0.1), tmp_path / "c", fs=FS)
-
-
-@pytest.mark.parametrize("x", [SIGNALS[0, 0], SIGNALS[:0], SIGNALS.astype(str), SIGNALS[None]])
-def test_other_shapes_are_refused(tmp_path, x):
-    with pytest.raises(CorpusError, match=r"give numbers of shape \(record, channel, time\)"):
-        gen.write_corpus(x, tmp_path / "c", fs=FS, labels=LABELS)
+    found = gen.to_arrays(gen.write_corpus(SIGNALS, tmp_path / "c", fs=FS, labels=labels))
+    assert found.groups.tolist() == [0, 1, 0, 2, 2, 1]

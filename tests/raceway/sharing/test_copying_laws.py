@@ -12,7 +12,7 @@ from gen.support.errors import CorpusError
 from raceway import copy, publish
 from raceway.console.ending import BAD_INPUT
 from raceway.sharing.publication import Publication
-from tests import corpora, tone_corpora
+from tests import corpora
 from tests.same_corpora import files
 
 NAMES = ("copy", "copy.nc")
@@ -122,10 +122,7 @@ def test_far_apart_records_are_read_and_written_like_near_ones(tmp_path, monkeyp
 @pytest.mark.parametrize(
     ("choice", "sentence"),
     [
-        ({"where": "rig > 100"}, "none of 9 records is chosen; choose others."),
         ({"where": "shaft_rate > 1e6"}, r"choose others \(shaft_rate is [0-9,.]+ to [0-9,.]+ rpm \(.* Hz\)\)"),
-        ({"where": "falt == 1"}, "there is no column falt; the nearest are fault"),
-        ({"split": "tets"}, "there is no split 'tets'"),
         ({"channels": ["c"]}, "source: channels: there is no channel 'c'"),
         ({"rename": {"c": "d"}}, "rename: there is no channel 'c'; allowed are a, b."),
         ({"rename": {"a": "b"}}, "rename: two channels would be named b; give each its own name."),
@@ -149,16 +146,6 @@ def test_nothing_is_overwritten(source, tmp_path, target):
     with pytest.raises(CorpusError, match=r"exists( and is not an empty folder)?; give a new name, or remove it first"):
         copy(source, tmp_path / target)
     assert (tmp_path / "there.nc").read_text() == (tmp_path / "there/note").read_text() == "mine"
-
-
-@pytest.fixture(scope="module")
-def tones(tmp_path_factory):
-    """Folders of two corpora of 12 records."""
-    place = tmp_path_factory.mktemp("tones")
-    folders = [place / "one", place / "other"]
-    for seed, folder in enumerate(folders):
-        tone_corpora.write_corpus(folder, specimens=4, parts=1, seed=seed)
-    return folders
 
 
 def test_a_choice_is_copied_and_described(run, tones, tmp_path):

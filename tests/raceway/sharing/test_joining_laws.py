@@ -14,16 +14,7 @@ from gen.corpus.numbering import NUMBERS, new_numbers
 from gen.support.errors import CorpusError
 from raceway import copy, publish
 from raceway.sharing.publication import Publication
-from tests import corpora, tone_corpora
-
-
-@pytest.fixture(scope="module")
-def tones(tmp_path_factory):
-    """Folders of three corpora of tones, each of 12 records, 4 specimens and one machine."""
-    folders = [tmp_path_factory.mktemp("tones") / f"tones-{seed}" for seed in range(3)]
-    for seed, folder in enumerate(folders):
-        tone_corpora.write_corpus(folder, specimens=4, parts=1, seed=seed)
-    return folders
+from tests import corpora
 
 
 @pytest.fixture(scope="module")
