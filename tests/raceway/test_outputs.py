@@ -147,17 +147,17 @@ def test_a_folder_with_pages_of_the_user_is_refused(run, places, line, name, tmp
 def test_a_file_of_another_kind_is_not_replaced(run, places, line, tmp_path):
     corpus, suffix = places["corpus"], Path(RESULTS[line]).suffix
     copy([corpus], tmp_path / "single.nc")
-    files = [
+    foreign = [
         corpus / "index.nc",
         *corpus_files(corpus)[:1],
         tmp_path / "single.nc",
         places["recipe"],
         places["recording"],
     ]
-    for number, file in enumerate([*files, *of_the_user(corpus, tmp_path / "own")]):
+    for number, file in enumerate([*foreign, *of_the_user(corpus, tmp_path / "own")]):
         shutil.copy(file, tmp_path / f"{number}{suffix}")
     before = files(tmp_path)
-    for number in range(len(files) + 5):
+    for number in range(len(foreign) + 5):
         result = run(*line.format(**places).split(), "-o", tmp_path / f"{number}{suffix}")
         assert result.exit_code == 2, result.output
         assert "; give another name, or remove it first." in result.stderr

@@ -14,6 +14,7 @@ from raceway.console.ending import BAD_INPUT
 from raceway.sharing.publication import Publication
 from tests import corpora
 from tests.same_corpora import files
+from tests.tampering import edit_manifest
 
 NAMES = ("copy", "copy.nc")
 
@@ -65,6 +66,14 @@ def test_copying_there_and_back_gives_the_same_bytes(source, tmp_path):
     assert files(tmp_path / "two.nc") == files(tmp_path / "one.nc")
     assert (tmp_path / "two" / "recipe.yaml").read_text() == "name: small\n"
     assert read_manifest(tmp_path / "two.nc").publication["license"] == "CC-BY-4.0"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_wrong_facts_of_publication_go_into_no_copy(source, tmp_path, name):
+    edit_manifest(source, publication={"license": "my own"})
+    with pytest.raises(CorpusError, match="publication of the corpus: license: 'my own' is not an SPDX identifier"):
+        copy(source, tmp_path / name)
+    assert [path.name for path in tmp_path.iterdir()] == ["source"]
 
 
 @pytest.mark.parametrize("name", NAMES)
