@@ -5,6 +5,7 @@ module         responsibility
 ============== ========================================================
 survival       pure: survival curves of censored lives, after their age
 prognosis      estimates of remaining life, tested on other bearings
+early_warning  alarms of detectors, and their delay
 life_pictures  pictures of a life
 lives_commands the commands life and prognose
 ============== ========================================================

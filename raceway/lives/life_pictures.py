@@ -27,7 +27,7 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
     corpus
         A corpus of lives.
     bearing
-        Name of the bearing, by default the one that failed with most damaged snapshots.
+        Name of the bearing, or number of its specimen; by default the one that failed with most damaged snapshots.
     like
         Another corpus of lives.
 
@@ -96,18 +96,24 @@ def _life(records: xr.Dataset, corpus: Path, bearing: str | None) -> xr.Dataset:
         if not lives:
             raise CorpusError(f"{corpus}: no bearing failed; name one.")
         return lives[-1]
-    places = np.flatnonzero(records["bearing"].values == bearing)
+    names, specimens = records["bearing"].values, records["specimen"].values
+    places = np.flatnonzero(specimens.astype(str) == bearing if bearing.isdecimal() else names == bearing)
     if not len(places):
-        names = ", ".join(dict.fromkeys(records["bearing"].values.tolist()))
-        raise CorpusError(f"{corpus}: has no bearing {bearing}; it has {names[:200]}.")
+        named = ", ".join(dict.fromkeys(names.tolist()))
+        raise CorpusError(f"{corpus}: has no bearing {bearing}; it has {named[:200]}.")
+    if len(alike := np.unique(specimens[places])) > 1:
+        numbers = ", ".join(map(str, alike.tolist()))
+        raise CorpusError(
+            f"{corpus}: several bearings are called {bearing}; name one by its specimen: {numbers[:200]}."
+        )
     return records.isel(record=places)
 
 
 def _failed(records: xr.Dataset) -> Iterator[xr.Dataset]:
     """Records of each bearing that failed."""
-    names = records["bearing"].values
-    for name in dict.fromkeys(names[records["event"].values == 1].tolist()):
-        yield records.isel(record=np.flatnonzero(names == name))
+    specimens = records["specimen"].values
+    for specimen in dict.fromkeys(specimens[records["event"].values == 1].tolist()):
+        yield records.isel(record=np.flatnonzero(specimens == specimen))
 
 
 def _signal(life: xr.Dataset) -> FloatArray:

@@ -20,7 +20,9 @@ from raceway.console.options import (
 @corpus_argument
 @picture_option
 @click.option(
-    "--bearing", metavar="NAME", help="Bearing, such as '6206 #3'; by default the one with most damaged snapshots."
+    "--bearing",
+    metavar="NAME",
+    help="Bearing, such as '6206 #3', or its specimen, such as 3; by default the one with most damaged snapshots.",
 )
 @click.option("--like", type=A_CORPUS, metavar="OTHER", help="Also draw all lives beside those of another corpus.")
 def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> None:
@@ -45,13 +47,21 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
 @click.option(
     "--folds", type=click.IntRange(2), default=5, show_default=True, help="Splits by bearing, without --test."
 )
+@click.option(
+    "--false-alarms",
+    type=click.FloatRange(0),
+    default=1.0,
+    show_default=True,
+    help="Snapshots above the threshold of a detector in 1,000 h before spalls begin.",
+)
 @worker_options
 @json_option
-def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json: bool) -> None:
-    """Score estimates of remaining life on the bearings of DIR.
+def prognose(corpus: Path, tested: Path | None, folds: int, false_alarms: float, team: Team, as_json: bool) -> None:
+    """Score estimates of remaining life, and early warning, on the bearings of DIR.
 
     No split parts the snapshots of a bearing. Each estimate stands beside those by age alone; without_signal is the boosting without
-    features, its control.
+    features, its control. Where the corpus knows when a spall can first be seen, a second table has the delay of alarms beyond it, at a
+    fixed rate of false alarms.
 
       raceway prognose corpus
       raceway prognose corpus --test pronostia
@@ -59,6 +69,7 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
     """
     from gen.corpus import open_corpus
     from gen.support.units import from_si
+    from raceway.lives.early_warning import knows_what_is_seen, warn_early
     from raceway.lives.prognosis import SHARES, check_lives, score_lives
 
     # refused before the features are computed, which takes minutes
@@ -67,8 +78,12 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
             check_lives(opened, str(lives))
     table, other = table_of(corpus, team=team), tested and table_of(tested, team=team)
     scores = score_lives(table, other, folds=folds)
+    warned = None
+    if all(knows_what_is_seen(of) for of in (table, other) if of is not None):
+        warned = warn_early(table, other, alarms_per_1000_h=false_alarms, folds=folds)
     if as_json:
-        show.as_json({"lives": scores.to_dict("index")})
+        warnings = {} if warned is None else {"early_warning": warned.to_dict("index")}
+        show.as_json({"lives": scores.to_dict("index")} | warnings)
         return
     errors = {f"mae_{100 * share:.0f}": f"error at {100 * share:.0f} % [h]" for share in SHARES}
     ratios = {"phm_2012": "PHM 2012", "alpha_lambda": "within 20 %", "concordance": "concordance"}
@@ -79,3 +94,18 @@ def prognose(corpus: Path, tested: Path | None, folds: int, team: Team, as_json:
     )
     show.table(("estimate", *columns.values()), rows)
     show.text("before: error while the bearing has no spall, where nothing may be better than without_signal.")
+    if warned is not None:
+        rows = (
+            [
+                name,
+                f"{row.alarms_per_1000_h:.2f}",
+                f"{row.missed:.2f}",
+                f"{from_si(row.delay, 'h'):,.1f}",
+                f"{row.time_left:.2f}",
+            ]
+            for name, row in warned.iterrows()
+        )
+        show.table(("early warning", "false alarms in 1,000 h", "missed", "delay [h]", "time left"), rows)
+        show.text(
+            "delay: from the first snapshot in which the spall can be seen at all; time left: share of the time to the last one."
+        )

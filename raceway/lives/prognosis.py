@@ -36,7 +36,7 @@ SHARES = (0.5, 0.75, 0.9)
 WITHIN = 0.2
 _DRAWS = 20
 _NONE_FAILED = "no bearing of the feature table failed; make longer tests, or more bearings."
-_NEEDED = ("age", "rul", "event", "bearing", "stage")
+_NEEDED = ("age", "rul", "event", "specimen", "stage")
 
 
 class Lives(NamedTuple):
@@ -80,6 +80,17 @@ def check_lives(records: xr.Dataset, name: str) -> None:
         raise CorpusError(f"{name}: has no lives; make one of a recipe with life, such as run_to_failure.")
 
 
+def in_order(table: xr.Dataset, name: str) -> xr.Dataset:
+    """Snapshots of lives by bearing and then by age; CorpusError with a ``name`` if they are none."""
+    check_lives(table, name)
+    return table.isel(record=np.lexsort((table["age"].values, table["specimen"].values)))
+
+
+def specimens_of(lives: xr.Dataset) -> NDArray[np.int_]:
+    """Number of the bearing of each snapshot from 0, shape (snapshot,); bearings of joined corpora can have the same name."""
+    return np.unique(lives["specimen"].values, return_inverse=True)[1]
+
+
 def lives_of(table: xr.Dataset) -> Lives:
     """Lives of a feature table of a corpus of lives.
 
@@ -88,10 +99,8 @@ def lives_of(table: xr.Dataset) -> Lives:
     CorpusError
         If a variable of lives is missing, or no remaining life is known.
     """
-    check_lives(table, "the feature table")
-    order = np.lexsort((table["age"].values, table["bearing"].values.astype(str)))
-    of = table.isel(record=order)
-    _, bearing = np.unique(of["bearing"].values.astype(str), return_inverse=True)
+    of = in_order(table, "the feature table")
+    bearing = specimens_of(of)
     features = of["features"].transpose("record", "feature").values.astype(np.float64)
     failed, damaged = of["event"].values == 1, of["stage"].values > 0
     if not np.isfinite(of["rul"].values).any():
@@ -153,7 +162,10 @@ def age_and_features(lives: Lives) -> FloatArray:
     change = np.empty_like(lives.features)
     for bearing in np.unique(lives.bearing):
         own = lives.bearing == bearing
-        change[own] = lives.features[own] - np.median(lives.features[own][:FIRST], axis=0)
+        first = lives.features[own][:FIRST]
+        # the first snapshots know only those before them
+        medians = np.array([np.median(first[: count + 1], axis=0) for count in range(len(first))])
+        change[own] = lives.features[own] - medians[np.minimum(np.arange(own.sum()), len(first) - 1)]
     return np.column_stack([lives.age, lives.features, change])
 
 

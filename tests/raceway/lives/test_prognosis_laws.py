@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from gen.support.errors import CorpusError
-from raceway.lives.prognosis import lives_of, score_lives, scores_of
+from raceway.lives.prognosis import age_and_features, lives_of, score_lives, scores_of
 from raceway.lives.survival import kaplan_meier, weibull
 
 CADENCE = 10.0
@@ -26,7 +26,7 @@ def table(seed, bearings=30, told=True, corpus="a"):
     features, age, rul, failed, number, damaged = map(np.array, zip(*rows, strict=True))
     order = rng.permutation(len(age))
     columns = {
-        "age": age, "rul": rul, "event": failed.astype(int), "bearing": np.array([f"6205 #{one}" for one in number]),
+        "age": age, "rul": rul, "event": failed.astype(int), "specimen": number, "bearing": np.full(len(number), "6205"),
         "stage": damaged.astype(int), "identity": np.array([f"{corpus}{seed}/{one}/{a}" for one, a in zip(number, age, strict=True)]),
     }  # fmt: skip
     variables = {name: ("record", values) for name, values in columns.items()}
@@ -88,8 +88,8 @@ def test_a_table_without_lives_is_refused(wrong, sentence):
 
 def test_a_training_without_a_failure_is_refused():
     few = table(6, bearings=6)
-    failed = few["bearing"].values[few["event"].values == 1][0]
-    few["event"] = few["event"].where(few["bearing"] == failed, 0)
+    failed = few["specimen"].values[few["event"].values == 1][0]
+    few["event"] = few["event"].where(few["specimen"] == failed, 0)
     with pytest.raises(CorpusError, match=r"no bearing of the training failed in one of the folds; use more folds"):
         score_lives(few, folds=3)
 
@@ -135,3 +135,17 @@ def test_the_weibull_fit_finds_the_distribution_of_censored_lives(late):
     slope, scale = weibull(*drawn(np.random.default_rng(2), 20_000, late))
     assert slope == pytest.approx(SLOPE, rel=0.03)
     assert scale == pytest.approx(SCALE, rel=0.03)
+
+
+def test_bearings_of_one_name_are_told_apart():
+    """Joined corpora of two seeds have bearings of the same name and other specimens."""
+    one, other = table(7), table(8)
+    joined = xr.concat([one, other.assign(specimen=other["specimen"] + 30)], "record")
+    assert len(np.unique(lives_of(joined).bearing)) == 60
+
+
+def test_a_snapshot_is_compared_with_those_before_it_alone():
+    lives = lives_of(table(9))
+    later = lives._replace(features=lives.features + 100 * (lives.age[:, None] >= 3 * CADENCE))
+    early = lives.age < 3 * CADENCE
+    np.testing.assert_array_equal(age_and_features(later)[early], age_and_features(lives)[early])
