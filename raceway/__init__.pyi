@@ -1,6 +1,7 @@
 from .console.progress_bar import show_progress as show_progress
 from .diagnosis import diagnose as diagnose
 from .kept_models import reference_model as reference_model
+from .lives.early_warning import warn_early as warn_early
 from .lives.prognosis import score_lives as score_lives
 from .reports.maps import plot as plot
 from .sharing import copy as copy, describe as describe, publish as publish

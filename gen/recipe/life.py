@@ -59,13 +59,21 @@ class LifeSection(Section):
     growth_noise: Distribution = within(0, 3, default=0.3)
     """Standard deviation of the logarithm of the growth, which varies slowly."""
     history_h: Distribution = within(0, 1e6, open_low=True, default=100.0)
-    """Correlation time of load, speed, temperature and growth."""
+    """Correlation time of load, speed, temperature, growth, noise and knocks."""
     load_history_percent: Distribution = within(0, 50, default=0.0)
     """Slow variation of the load over the life: standard deviation of its logarithm."""
     speed_history_percent: Distribution = within(0, 20, default=0.0)
     """Slow variation of the speed over the life: standard deviation of its logarithm."""
     temperature_history_k: Distribution = within(0, 50, default=0.0)
     """Slow variation of the temperature of the oil over the life: standard deviation."""
+    background_history_db: Distribution = within(0, 20, default=0.0)
+    """Slow variation of the noise of the machine over the life: standard deviation of its level."""
+    louder_when_new_db: Distribution = within(0, 20, default=0.0)
+    """How much louder the noise is at the age 0 than later; it falls with `running_in_h`."""
+    running_in_h: Distribution = within(0, 1e6, open_low=True, default=24.0)
+    """Time in which a new machine loses two thirds of `louder_when_new_db`."""
+    knocks_share: Distribution = within(0, 1, default=1.0)
+    """Share of the life in which `knocks` and `impulses` of the background are there; they come and go with `history_h`."""
     clearance_um_per_mrev: Distribution = within(0, 1, default=0.0)
     """Wear of the races in a million turns at a load of the dynamic rating, as clearance; it is proportional to load and way."""
     waviness_nm_per_mrev: Distribution = within(0, 100, default=0.0)

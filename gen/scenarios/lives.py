@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from statistics import NormalDist
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,15 +17,26 @@ from gen.physics.bearing import Bearing
 from gen.recipe import Recipe, Snapshot
 from gen.scenarios.scenario import Scenario, sound
 from gen.support.errors import RecipeError
-from gen.support.units import UNITS, split_unit, to_si
+from gen.support.units import UNITS, decibel_to_ratio, split_unit, to_si
 
 FloatArray = NDArray[np.floating]
 _TRIES = 1000
-_HISTORIES = ("first_length", "load", "speed", "temperature", "growth")
+_HISTORIES = ("first_length", "load", "speed", "temperature", "growth", "background", "knocks")
 
 
-Aged = tuple[dict[str, Any], Snapshot, float, float, float]
-"""Sections of a specimen at a snapshot of its life, the snapshot, and the factors of load and speed and rise of temperature [K] there."""
+class Aged(NamedTuple):
+    """A specimen at a snapshot of its life."""
+
+    sections: dict[str, Any]
+    snapshot: Snapshot
+    load: float
+    """Factor of the load."""
+    speed: float
+    """Factor of the speed."""
+    warmer: float
+    """Rise of the temperature [K]."""
+    louder: float
+    """Rise of the noise of the machine [dB]."""
 
 
 def draw_life(recipe: Recipe, specimen: Any, bearing: Bearing, conditions: Mapping[str, Any]) -> list[Aged]:
@@ -49,7 +61,7 @@ def draw_life(recipe: Recipe, specimen: Any, bearing: Bearing, conditions: Mappi
     # histories are long enough for all snapshots that the recipe asks for
     step = drawn["history"] / STEPS
     count = 2 + int((drawn["entry"] + slots * to_si(section.cadence_h, "h")) / step)
-    load, speed, warmer, noise = (history(rng, count) for rng in rngs)
+    load, speed, warmer, noise, louder, knocking = (history(rng, count) for rng in rngs)
     load, speed = log_normal(load, drawn["load_history"]), log_normal(speed, drawn["speed_history"])
     # fatigue and growth as functions of the age
     law = Growth(*(drawn[name] for name in ("growth", "growth_exponent", "critical", "acceleration")))
@@ -80,11 +92,16 @@ def draw_life(recipe: Recipe, specimen: Any, bearing: Bearing, conditions: Mappi
     end = min(ages[-1], max(drawn["withdrawal"], drawn["entry"]))
     ages = ages[:-1][ages[:-1] <= min(failure, end)]
     # conditions at each snapshot, from the slow histories
-    load, speed, warmer = (
-        np.interp(ages, sums.age, each) for each in (load, speed, drawn["temperature_history"] * warmer)
+    warmer, louder = drawn["temperature_history"] * warmer, drawn["background_history"] * louder
+    load, speed, warmer, louder, knocking = (
+        np.interp(ages, sums.age, each) for each in (load, speed, warmer, louder, knocking)
     )
+    louder += drawn["louder_when_new"] * np.exp(-ages / drawn["running_in"])
+    quiet = _quiet(specimen.background) if drawn["knocks_share"] < 1 else {}
+    knocks_below = NormalDist().inv_cdf(min(max(drawn["knocks_share"], 1e-9), 1 - 1e-9))
     snapshots, all_turns = list[Aged](), float(sums.at("turns", failure))
-    for age, of_load, of_speed, rise in zip(*(each.tolist() for each in (ages, load, speed, warmer)), strict=True):
+    courses = (each.tolist() for each in (ages, load, speed, warmer, louder, knocking))
+    for age, of_load, of_speed, rise, of_noise, knock in zip(*courses, strict=True):
         # the damage at this age, frozen for the length of the record
         turns, length = float(sums.at("turns", age)), float(life.length_at(age))
         grown = _grown(fault, length, drawn["full_depth"])
@@ -104,7 +121,8 @@ def draw_life(recipe: Recipe, specimen: Any, bearing: Bearing, conditions: Mappi
         # wear opens the clearance and roughens the races with the turns under load
         worn = _plus(specimen.specimen, diametral_clearance_um=clearance, waviness_nm=waviness)
         sections = {"faults": (grown if length else sound(),), "specimen": worn}
-        snapshots.append((sections, snapshot, of_load, of_speed, rise))
+        sections |= quiet if knock > knocks_below else {}
+        snapshots.append(Aged(sections, snapshot, of_load, of_speed, rise, of_noise))
     return snapshots
 
 
@@ -120,12 +138,21 @@ def _snapshot_ages(section: Any, entry: float, count: int, damaged: float) -> Fl
 
 def at_snapshot(scenario: Scenario, aged: Aged) -> Scenario:
     """A record as a snapshot of the life of its specimen."""
-    sections, snapshot, load, speed, rise = aged
     operation: Any = scenario.recipe.operation
-    changes = {"load_n": operation.load_n * load, "shaft_rpm": operation.shaft_rpm * speed}
-    operation = _plus(operation.model_copy(update=changes), temperature_celsius=rise)
-    origin = scenario.origin.model_copy(update={"life": snapshot})
-    return scenario.edited(origin=origin, operation=operation, **sections)
+    level: Any = scenario.recipe.level
+    changes = {"load_n": operation.load_n * aged.load, "shaft_rpm": operation.shaft_rpm * aged.speed}
+    operation = _plus(operation.model_copy(update=changes), temperature_celsius=aged.warmer)
+    if aged.louder:
+        noise = level.background_m_s2 * float(decibel_to_ratio(aged.louder))
+        level = level.model_copy(update={"background_m_s2": noise})
+    origin = scenario.origin.model_copy(update={"life": aged.snapshot})
+    return scenario.edited(origin=origin, operation=operation, level=level, **aged.sections)
+
+
+def _quiet(background: Any) -> dict[str, Any]:
+    """Background of a machine while it does not knock, if it ever does."""
+    there = {name: None for name in ("knocks", "impulses") if getattr(background, name) is not None}
+    return {"background": background.model_copy(update=there)} if there else {}
 
 
 def _grown(fault: Any, length: float, full_depth: float) -> Any:

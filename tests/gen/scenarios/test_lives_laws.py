@@ -117,3 +117,39 @@ def test_bearings_live_as_the_standard_says(recipe_with):
     turns = rating_life(4000 / of[0].drawing.dynamic_rating, "ball") / 25
     expected = turns * np.array([life_share(share, "ball") for share in (0.25, 0.5, 0.75)])
     np.testing.assert_allclose(np.quantile(begun, (0.25, 0.5, 0.75)), expected, rtol=0.2)
+
+
+def levels(scenarios):
+    """Levels of the noise of the machine [dB re 1 m s-2]."""
+    return 20 * np.log10([scenario.recipe.level.background_m_s2 for scenario in scenarios])
+
+
+def test_a_new_machine_is_louder_and_runs_in(recipe_with):
+    life = LIVES["life"] | {"louder_when_new_db": 6, "running_in_h": 200}
+    for of in lives_of(recipe_with(LIVES | {"life": life})).values():
+        expected = 20 * np.log10(2) + 6 * np.exp(-states(of, "age") / (200 * 3600))
+        np.testing.assert_allclose(levels(of), expected)
+
+
+def test_the_noise_of_a_machine_varies_slowly_whatever_its_bearing_does(recipe_with, lives):
+    life = LIVES["life"] | {"background_history_db": 3}
+    varied = lives_of(recipe_with(LIVES | {"life": life}))
+    away = [levels(of) - 20 * np.log10(2) for of in varied.values()]
+    assert np.concatenate(away).std() == pytest.approx(3, rel=0.35)
+    assert np.concatenate([np.diff(of) for of in away]).std() < 3
+    for number, of in varied.items():
+        assert states(of, "age").tolist() == states(lives[number], "age").tolist()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
+def test_knocks_come_and_go_for_their_share_of_the_life(recipe_with, share):
+    knocks = {"probability": 1, "orders": 1, "level_db": 0}
+    changes = {"life": LIVES["life"] | {"knocks_share": share}, "background.knocks": knocks, "corpus.rigs": 10}
+    there = [
+        [scenario.recipe.background.knocks is not None for scenario in of]
+        for of in lives_of(recipe_with(LIVES | changes)).values()
+    ]
+    every = np.concatenate(there)
+    assert every.mean() == pytest.approx(share, abs=0.15 * (0 < share < 1))
+    # five snapshots in the correlation time: the next one is mostly as the last
+    assert np.mean(np.concatenate([np.diff(of) for of in there])) < 0.3
