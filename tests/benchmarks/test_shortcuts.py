@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.shortcuts import STORED, Shortcuts, in_signal, permuted, scores
+from benchmarks.shortcuts import KURTOSIS, STORED, Shortcuts, in_signal, permuted, scores
 from features import open_waveforms
 from gen import open_corpus, torch_dataset
 
@@ -15,14 +15,20 @@ def records():
     """Half the bearings of every rig are faulty; one value tells them by an offset, the other does not."""
     rng = np.random.default_rng(0)
     specimen = np.repeat(np.arange(RIGS * SPECIMENS), EACH)
-    faulty, noise = specimen % 2 == 1, rng.standard_normal((len(specimen), 2))
-    shortcuts = {"offset": noise[:, :1] + 3 * faulty[:, None], "noise": noise[:, 1:]}
-    return Shortcuts(shortcuts, faulty, specimen // SPECIMENS, specimen)
+    faulty, ball, noise = specimen % 2 == 1, specimen % 6 == 3, rng.standard_normal((len(specimen), 3))
+    shortcuts = {
+        "offset": noise[:, :1] + 3 * faulty[:, None],
+        "noise": noise[:, 1:2],
+        # races alone would hide what tells the balls
+        KURTOSIS: noise[:, 2:] + 4 * ball[:, None],
+    }
+    return Shortcuts(shortcuts, faulty, specimen // SPECIMENS, specimen, ball)
 
 
 def test_an_offset_of_faulty_records_is_a_shortcut_and_noise_is_none(records):
     found = {name: (auc, np.mean(null)) for name, auc, null in scores(records, 0, 3)}
     assert found["offset"][0] > 0.95
+    assert found[KURTOSIS][0] > 0.95
     assert abs(found["noise"][0] - 0.5) < 0.1  # 3 standard errors of 180 + 180 records
     assert all(abs(null - 0.5) < 0.1 for _, null in found.values())
 
