@@ -63,7 +63,7 @@ def synthetic(condition: str, rpm: float, folder: Path) -> Iterator[Recording]:
     recipe |= {
         "machine_conditions": only,
         "faults": [{"kind": "healthy"}],
-        "level": {"kind": "physical", "background_m_s2": 1.0, "gain": 0.1},
+        "level": {"kind": "physical", "background_m_s2": 20.0},
         "corpus": {"rigs": RECORDS, "specimens_per_rig": 1, "records_per_specimen": 1},
     }
     with open_corpus(generate(recipe, folder / f"{condition}-{rpm:g}", workers=2).path) as corpus:
