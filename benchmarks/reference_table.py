@@ -57,4 +57,6 @@ def make_table(recipe: Recipe) -> xr.Dataset:
 
 
 if __name__ == "__main__":
-    write_table(reference_table(), SHIPPED_TABLE)
+    renewed = reference_table()
+    SHIPPED_TABLE.unlink(missing_ok=True)
+    write_table(renewed, SHIPPED_TABLE)
