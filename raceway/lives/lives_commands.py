@@ -57,7 +57,7 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
 @worker_options
 @json_option
 def prognose(corpus: Path, tested: Path | None, folds: int, false_alarms: float, team: Team, as_json: bool) -> None:
-    """Score estimates of remaining life, and early warning, on the bearings of DIR.
+    """Score remaining life and early warning on lives in DIR.
 
     No split parts the snapshots of a bearing. Each estimate stands beside those by age alone; without_signal is the boosting without
     features, its control. Where the corpus knows when a spall can first be seen, a second table has the delay of alarms beyond it, at a

@@ -113,7 +113,7 @@ TABLE = [
     (RPM, "'uniform(1500, 1800, per=machine)'", "operation.shaft_rpm: per of uniform(low, high): 'machine' is not"),
     (RPM, "'uniform(1500, 1800, scatter_percent=2)'", "operation.shaft_rpm: scatter_percent needs a value to"),
     (RPM, "'uniform(1, 1800, per=rig, scatter_percent=2)'", "operation.shaft_rpm: 0.98 is not in [1, 100000]."),
-    ("shaft_mass_kg: 5", "shaft_mass_kg: 'constant(5, per=rig)'", "machine.shaft_mass_kg: the level of a draw can"),
+    ("shaft_mass_kg: 5", "shaft_mass_kg: 'constant(5, per=rig)'", "machine.shaft_mass_kg: per can be chosen for"),
     ("0.5}", "0.5, operation: {load_n: 1e6}}", "faults[1].operation.load_n: gives an equivalent static load of at"),
     ("0.5}", "0.5, level: {faulty_db: 3}}", "faults[1].level: works with level.kind: snr alone, because a physical"),
     # rungs

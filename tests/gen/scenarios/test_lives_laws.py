@@ -144,7 +144,8 @@ def test_the_noise_of_a_machine_varies_slowly_whatever_its_bearing_does(recipe_w
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
 def test_knocks_come_and_go_for_their_share_of_the_life(recipe_with, share):
     knocks = {"probability": 1, "orders": 1, "level_db": 0}
-    changes = {"life": LIVES["life"] | {"knocks_share": share}, "background.knocks": knocks, "corpus.rigs": 10}
+    changes = {"life": LIVES["life"] | {"knocks_share": share}, "background.knocks": knocks}
+    changes["corpus"] = LIVES["corpus"] | {"rigs": 10}
     there = [
         [scenario.recipe.background.knocks is not None for scenario in of]
         for of in lives_of(recipe_with(LIVES | changes)).values()
