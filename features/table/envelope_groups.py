@@ -20,7 +20,7 @@ from features.signal.lines import FAMILIES, FITTED_TOLERANCE, Orders, families, 
 from features.signal.rows import ComplexArray, FloatArray
 from features.signal.shape import moments, peaks
 from features.table.feature_group import Feature, FeatureGroup
-from features.table.record_batch import Batch, Envelopes
+from features.table.record_batch import Envelopes, RecordBatch
 
 VIEWS: Mapping[str, str] = {
     "cepstral": "in the band whitened by its cepstrum",
@@ -183,7 +183,7 @@ def _raw_shape(coefficients: ComplexArray) -> FloatArray:
 def _group(features: tuple[Feature, ...], compute: Callable[[Envelopes], FloatArray]) -> FeatureGroup:
     """Group whose values are NaN in records that cannot show lines."""
 
-    def compute_or_nan(batch: Batch) -> FloatArray:
+    def compute_or_nan(batch: RecordBatch) -> FloatArray:
         values = np.full((len(batch.x), len(features)), np.nan)
         if batch.with_lines.size:
             values[batch.with_lines] = compute(batch.envelopes)

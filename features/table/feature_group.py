@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from features.table.band import Band
-from features.table.record_batch import Batch
+from features.table.record_batch import RecordBatch
 
 
 class Feature(NamedTuple):
@@ -39,7 +39,7 @@ class FeatureGroup(NamedTuple):
 
     features: tuple[Feature, ...] | Callable[[Band], tuple[Feature, ...]]
     """In the order of the values; a function of the band if their number depends on it."""
-    compute: Callable[[Batch], np.ndarray]
+    compute: Callable[[RecordBatch], np.ndarray]
     """Values of the records of a batch, shape (record, feature)."""
 
     def features_in(self, band: Band) -> tuple[Feature, ...]:

@@ -9,7 +9,7 @@ from features.signal.lines import Orders
 from features.signal.rows import FloatArray, centre
 from features.table.band import DEFAULT_BAND, Band
 from features.table.definitions import BUILT_IN, GROUPS, define_features, find_group
-from features.table.record_batch import BATCH, Batch, usable_records
+from features.table.record_batch import BATCH, RecordBatch, usable_records
 from gen.support.plugins import unusable
 
 __all__ = ["Orders", "feature_names", "indicators"]
@@ -71,12 +71,12 @@ def indicators(
     for start in range(0, len(usable), BATCH):
         rows = usable[start : start + BATCH]
         nominal = Orders(*(order[rows] for order in each))
-        batch = Batch(centre(x[rows]), fs, rates[rows], nominal, band)
+        batch = RecordBatch(centre(x[rows]), fs, rates[rows], nominal, band)
         values[rows] = np.concatenate([_values(group, batch) for group in groups], axis=-1)
     return values, names
 
 
-def _values(name: str, batch: Batch) -> FloatArray:
+def _values(name: str, batch: RecordBatch) -> FloatArray:
     """Values of a group, shape (record, feature); those of a plug-in are checked."""
     group = find_group(name)
     values, shape = group.compute(batch), (len(batch.x), len(group.features_in(batch.band)))

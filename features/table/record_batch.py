@@ -45,7 +45,7 @@ class Envelopes(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Batch:
+class RecordBatch:
     """Some records whose features are computed together, none of which may depend on the others.
 
     Attributes

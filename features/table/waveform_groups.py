@@ -15,7 +15,7 @@ from features.signal.shape import time_statistics
 from features.signal.spectra import band_energies, power_density
 from features.table.band import Band
 from features.table.feature_group import Feature, FeatureGroup
-from features.table.record_batch import Batch
+from features.table.record_batch import RecordBatch
 
 ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
 FAINTEST_ENERGY = 1e-12  # of the total energy, 120 dB below it
@@ -50,7 +50,7 @@ def _energies(band: Band) -> Iterator[Feature]:
             )
 
 
-def _log_energies(batch: Batch) -> FloatArray:
+def _log_energies(batch: RecordBatch) -> FloatArray:
     """Natural logarithm of energies [unit of x squared] in bands of frequency, then in bands of order."""
     frequencies, density = power_density(batch.x, batch.fs)
     density[:, frequencies > batch.band.high] = 0.0

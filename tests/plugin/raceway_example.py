@@ -7,7 +7,7 @@ import click
 import numpy as np
 
 from features.table.feature_group import Feature, FeatureGroup
-from features.table.record_batch import Batch
+from features.table.record_batch import RecordBatch
 from gen.corpus.fault_classes import BPFO, FaultClass
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
@@ -72,7 +72,7 @@ class StuckBits(SensorFault):
 
 
 # a group of features
-def crossings(batch: Batch) -> np.ndarray:
+def crossings(batch: RecordBatch) -> np.ndarray:
     """Values, shape (record, feature), of signals of shape (record, time)."""
     changes = np.diff(np.signbit(batch.x), axis=-1).mean(axis=-1)
     return np.stack([changes, changes * batch.fs / batch.shaft_rate], axis=-1)
