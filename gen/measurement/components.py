@@ -16,8 +16,6 @@ from scipy.fft import irfft, rfft
 from gen.measurement.mixing import Lines, Parts, mix
 from gen.measurement.rig import RigFilters
 from gen.mechanisms.background.background import machine_sources_of
-from gen.physics.elementary import power
-from gen.physics.profile import share_at
 from gen.scenarios import Scenario
 from gen.simulation.shaft import angles_of
 from gen.simulation.simulate import Run, acceleration_of
@@ -35,7 +33,9 @@ def parts_of(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[Parts]:
     # everything random of the background comes from one stream of the record
     for run, rig, turned in zip(runs, rigs, angles, strict=True):
         scenario, rng = run.scenario, run.scenario.stream("noise")
-        lines.append(_lines(scenario, rig, rng))
+        # tones are not locked to the shaft: their phases are those of the record
+        phases = 2 * np.pi * rng.random(len(rig.steps))
+        lines.append(Lines(rig.modulations, rig.tones, rig.steps, phases, rig.tone_modulations))
         noises.append(_noise(scenario, rig, rng))
         others.append(_others(scenario, rig, turned, rng))
     # transforms run side by side
@@ -71,17 +71,6 @@ def _behind_paths(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[NDArr
         for place, signal in zip(resonant, np.split(irfft(spectra, n), ends), strict=True):
             signals[place] = signal
     return [signal if rig.direct is None else signal * rig.direct for signal, rig in zip(signals, rigs, strict=True)]
-
-
-def _lines(scenario: Scenario, rig: RigFilters, rng: np.random.Generator) -> Lines:
-    """Lines and modulations of a record: only tones, which are not locked to the shaft, have phases of their own in each record."""
-    profile, harmonics, growth = scenario.speed_profile, scenario.recipe.background.harmonics, np.empty(0)
-    rates = scenario.conditions["shaft_rate"] * np.arange(1, len(rig.amplitudes) - len(rig.steps) + 1)
-    phases = 2 * np.pi * rng.random(len(rig.steps))
-    amplitudes = rig.in_channels(np.concatenate([rates, rig.steps * rig.fs / (2 * np.pi)]))
-    if profile is not None and harmonics is not None and (exponent := harmonics.si()["growth"]) > 0:
-        growth = power(share_at(profile, timeline(scenario.recipe).response_times()), exponent)
-    return Lines(rig.modulations, amplitudes, growth, rig.steps, phases, rig.tone_modulations)
 
 
 def _noise(scenario: Scenario, rig: RigFilters, rng: np.random.Generator) -> ComplexArray:

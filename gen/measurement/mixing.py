@@ -1,4 +1,4 @@
-"""Bearing and background of a record: modulation by the shaft, spectral lines of the machine, and their mean products.
+"""Bearing and background of a record: modulation by the shaft, tones of the machine, and their mean products.
 
 The inputs are filtered already. What is left is fast sample by sample and slow array by array. Only explicit multiply-adds are fused and
 no sum depends on the width of the vectors, so the bits are the same on every machine.
@@ -22,14 +22,12 @@ BLOCK = 256  # samples; all work arrays of a block fit the first-level cache
 
 
 class Lines(NamedTuple):
-    """Modulations and spectral lines of one record. A line of the complex amplitude ``c`` is ``Re(c exp(i angle))``."""
+    """Modulations and tones of one record. A line of the complex amplitude ``c`` is ``Re(c exp(i angle))``."""
 
     modulations: ComplexArray
     """Modulation of the noise and of each path once and twice per turn of the shaft, shape (1 + channel, 2) [1]."""
     amplitudes: ComplexArray
-    """Of the harmonics of the shaft from the first on, then of the tones, shape (channel, line)."""
-    growth: FloatArray
-    """Factor of the harmonics at each sample, shape (time,); empty if it is 1 throughout."""
+    """Of the tones, shape (channel, tone)."""
     steps: FloatArray
     """Angle per sample of each tone, shape (tone,) [rad]."""
     phases: FloatArray
@@ -77,9 +75,8 @@ def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: 
     kept : slice
         Samples of the record, behind the lead.
     """
-    turn, wave = np.zeros((2, BLOCK), np.complex64)
+    turn = np.zeros(BLOCK, np.complex64)
     machine, sums = np.empty(BLOCK, np.float32), np.zeros((6, BLOCK), np.float32)
-    n_orders = lines.amplitudes.shape[1] - len(lines.steps)
     tables = np.empty((len(lines.steps), BLOCK), np.complex64)
     # each tone has a table of its turn over a block, so that no sample needs a sine
     for tone, step in enumerate(lines.steps):
@@ -89,12 +86,8 @@ def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: 
         stop = min(start + BLOCK, kept.stop)
         _turn_block(angles[start:stop], turn)
         for channel in range(signals.shape[1]):
-            amplitudes = lines.amplitudes[channel]
-            _sum_harmonics(amplitudes[:n_orders], turn, wave)
-            for j in range(stop - start):
-                growth = np.float32(lines.growth[start + j]) if len(lines.growth) > 0 else np.float32(1)
-                machine[j] = wave[j].real * growth
-            _add_tones(lines, amplitudes[n_orders:], start, turn, tables, machine)
+            machine[:] = 0.0
+            _add_tones(lines, lines.amplitudes[channel], start, turn, tables, machine)
             for part in range(len(signals)):
                 _modulate(lines.modulations[1 + channel if part > 0 else 0], turn, signals[part, channel, start:stop])
             for j in range(stop - start):
@@ -121,16 +114,6 @@ def _turn_block(angles: FloatArray, turn: Complex64Array) -> None:
     for j in range(len(angles)):
         half = 0.5 * (angles[j] - 2 * math.pi * math.floor(angles[j] * (0.5 / math.pi) + 0.5))
         turn[j] = complex(cosine(half), sine(half)) ** 2
-
-
-@njit(**INLINE)
-def _sum_harmonics(amplitudes: ComplexArray, turn: Complex64Array, wave: Complex64Array) -> None:
-    """Sum of the harmonics of the shaft, ``sum_k c_k exp(i k angle)`` for ``k`` from 1 on, into ``wave``, by Horner's rule."""
-    wave[:] = 0.0
-    for order in range(len(amplitudes) - 1, -1, -1):
-        amplitude = np.complex64(amplitudes[order])
-        for j in range(BLOCK):
-            wave[j] = (wave[j] + amplitude) * turn[j]
 
 
 @njit(**INLINE)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from gen.mechanisms.background.noise import noise_factors
-from gen.mechanisms.background.spectral_lines import lines_of_machine
+from gen.mechanisms.background.tones import tones_of_machine
 from gen.mechanisms.path import modulation_by_shaft, transmissibility
 from gen.physics.kernel.decimate import pass_band
 from gen.recipe import Recipe
@@ -46,10 +46,8 @@ class RigFilters:
     """Factors that turn complex numbers of unit variance into the spectrum of noise of unit rms, shape (frequency,)."""
     modulations: ComplexArray
     """Modulation once and twice per turn, of the noise and of the path of each channel, shape (1 + channel, 2)."""
-    motion: ComplexArray
-    """Motion of the machine along each channel, at the harmonics of the shaft and then at the tones, shape (channel, line)."""
-    amplitudes: FloatArray
-    """Of the same lines, shape (line,)."""
+    tones: ComplexArray
+    """Complex amplitude of each tone in each channel, shape (channel, tone)."""
     steps: FloatArray
     """Angle per sample of each tone, shape (tone,) [rad]."""
     tone_modulations: ComplexArray
@@ -65,28 +63,14 @@ class RigFilters:
         A complex source is a motion, of which each channel measures the part along its direction. Its rms over all channels behind the
         paths is the same as ahead of them, where it is the mean over all directions.
         """
-        if np.iscomplexobj(source):
-            parts = rfft(np.stack([source.real, source.imag]).astype(np.float32), self.n)
-            along = np.stack([np.cos(self.directions), np.sin(self.directions)], axis=1).astype(np.float32) @ parts
-        else:
-            parts = along = rfft(source.astype(np.float32), self.n)[None]
-        behind = along * self.paths
-        power = float(np.mean(np.abs(behind) ** 2))
-        behind *= self.chain * (math.sqrt(float(np.mean(np.abs(parts) ** 2)) / power) if power > 0 else 0.0)
+        motion = np.iscomplexobj(source)
+        along = (source * np.exp(-1j * self.directions)[:, None]).real if motion else source[None]
+        behind = rfft(along.astype(np.float32), self.n) * self.paths
+        # both are means over the samples of the source; a direction has half the power of a motion
+        power = 2 * float(np.sum(np.mean(np.abs(behind) ** 2, axis=0))) / (self.n * len(source))
+        ahead = float(np.mean(np.abs(source) ** 2)) / (1 + motion)
+        behind *= self.chain * (math.sqrt(ahead / power) if power > 0 else 0.0)
         return behind
-
-    def in_channels(self, frequencies: FloatArray) -> ComplexArray:
-        """Complex amplitudes of the lines behind the paths at ``frequencies`` [Hz], shape (channel, line).
-
-        The motion and the paths divide each line among the channels; its rms over them is its amplitude.
-        """
-        at = np.clip(frequencies, 0.0, self.fs / 2) * (self.n / self.fs)
-        below = np.minimum(at.astype(int), self.paths.shape[1] - 2)
-        share = at - below
-        behind_paths = self.motion * (self.paths[:, below] * (1 - share) + self.paths[:, below + 1] * share)
-        chain = self.chain[below] * (1 - share) + self.chain[below + 1] * share
-        rms = np.sqrt(np.mean(np.abs(behind_paths) ** 2, axis=0))
-        return behind_paths * (chain * self.amplitudes / np.maximum(rms, _SMALLEST_GAIN))
 
 
 def rig_filters(scenario: Scenario) -> RigFilters:
@@ -111,7 +95,12 @@ def rig_filters(scenario: Scenario) -> RigFilters:
         impulses = background.impulses.si()
         of_impulses = math.sqrt(3 * impulses["rate"] * axis.returned / fs) * decibel_to_ratio(impulses["level"]) ** 2
     directions = np.array([channel.si()["angle"] for channel in channels])
-    amplitudes, motion, frequencies, tone_modulations = lines_of_machine(background, directions, phases)
+    amplitudes, motion, frequencies, tone_modulations = tones_of_machine(background, directions, phases)
+    # motion and paths divide each tone among the channels; its rms over them is its amplitude
+    at = np.clip(frequencies, 0.0, fs / 2)
+    behind = motion * np.array([np.interp(at, frequency, path) for path in paths])
+    rms = np.sqrt(np.mean(np.abs(behind) ** 2, axis=0))
+    tones = behind * (np.interp(at, frequency, chain) * amplitudes / np.maximum(rms, _SMALLEST_GAIN))
     direct = None if corner > 0 or any(path.modes for path in own) else [[path.si()["direct"]] for path in own]
     return RigFilters(
         n=n,
@@ -123,8 +112,7 @@ def rig_filters(scenario: Scenario) -> RigFilters:
         chain=chain,
         noise=noise_factors(background, frequency, np.abs(chain), n),
         modulations=_modulations(recipe, phases("phases of modulation")),
-        motion=motion,
-        amplitudes=amplitudes,
+        tones=tones,
         steps=2 * math.pi / fs * frequencies,
         tone_modulations=tone_modulations,
         impulse_paths=impulse_paths.astype(np.complex64),

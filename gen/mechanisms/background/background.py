@@ -8,14 +8,17 @@ from gen.mechanisms.background.impulses import Impulses, Knocks
 from gen.mechanisms.background.machine_condition import MachineCondition
 from gen.mechanisms.background.machine_conditions import CONDITIONS
 from gen.mechanisms.background.noise import Noise
+from gen.mechanisms.background.shaft_lines import Harmonics
 from gen.mechanisms.background.source import BackgroundSource, MachineSource
-from gen.mechanisms.background.spectral_lines import Harmonics, Tones
+from gen.mechanisms.background.tones import Tones
 from gen.mechanisms.mechanism import mechanisms_of, section_with, with_plugins
 
-SOURCES: tuple[type[BackgroundSource], ...] = (Harmonics, Tones, Impulses, Knocks)
+SOURCES: tuple[type[BackgroundSource], ...] = (Tones, Impulses, Knocks)
 """Sources that the measurement adds."""
 _OF_MACHINE = [
-    source for source in with_plugins(MachineSource, (GearMesh, Bursts)) if not issubclass(source, MachineCondition)
+    source
+    for source in with_plugins(MachineSource, (Harmonics, GearMesh, Bursts))
+    if not issubclass(source, MachineCondition)
 ]
 MACHINE_SOURCES: tuple[type[MachineSource], ...] = (*_OF_MACHINE, *CONDITIONS)
 """Sources whose vibration is computed ahead of the paths, in the order in which they are added."""

@@ -1,4 +1,4 @@
-"""Conditions that show in lines at multiples of an order of the shaft: unbalance, a bent shaft, misalignment and a belt.
+"""Lines at multiples of an order of the shaft: those of every machine, and of an unbalance, a bent shaft, misalignment and a belt.
 
 The machine moves on an ellipse at each line [1]_. The lines fall with their order, and those of an unbalance grow with the square of the
 speed [2]_.
@@ -15,22 +15,24 @@ from numpy.typing import NDArray
 
 from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.background.machine_condition import MachineCondition
-from gen.mechanisms.background.source import FloatArray, Streams, Vibration
-from gen.mechanisms.background.spectral_lines import FLATTEST
+from gen.mechanisms.background.source import FloatArray, MachineSource, Streams, Vibration
 from gen.physics.elementary import power
 from gen.support.units import decibel_to_ratio
 
+_FLATTEST = 0.8  # the machine never moves along a straight line
 _PERIOD = 2**15  # samples of a table of one period: the 400th line is in it to 1e-3 of its amplitude
 
 
-class ShaftLines(MachineCondition):
+class ShaftLines(MachineSource):
     """Lines at multiples of an order of the shaft."""
 
     strongest: ClassVar[int] = 1
     """Number of the line from which on the others fall."""
+    of_unbalance: ClassVar[bool] = False
+    """Whether the first line is in phase with the unbalance of the model, which points along the mark of the shaft."""
 
     probability: Probability
-    """Share of the rigs whose machine has this condition."""
+    """Share of the rigs that have these lines."""
     order: Distribution = within(0.05, 50, default=1.0)
     """Order of the shaft whose multiples it shows: 1 for the shaft, that of the belt for a belt."""
     count: Distribution = within(1, 400, default=1.0)
@@ -65,8 +67,10 @@ class ShaftLines(MachineCondition):
         numbers = np.arange(1, len(drawn["level"]) + 1)
         fall = drawn["slope_db_per_octave"] * np.abs(np.log2(numbers / self.strongest))
         flatness, *phases = of_rig.random((3, len(numbers)))
-        flatness *= FLATTEST
+        flatness *= _FLATTEST
         forward, backward = np.exp(2j * math.pi * np.array(phases))
+        if self.of_unbalance:
+            forward[0] = 1.0
         # mean over all directions, of which each has the forward and the backward part
         lengths = math.sqrt(2) * decibel_to_ratio(drawn["level"] + fall) / np.sqrt(1 + flatness**2)
         fastest = float(np.abs(np.diff(angles)).max()) * drawn["order"]
@@ -79,28 +83,34 @@ class ShaftLines(MachineCondition):
         return np.interp(drawn["order"] * angles % (2 * math.pi), turn, np.append(period, period[0]))
 
 
-class Unbalance(ShaftLines):
+class Harmonics(ShaftLines):
+    """Lines at multiples of the shaft rate, which sound machines have too."""
+
+    place, of_unbalance = "harmonics", True
+
+
+class Unbalance(ShaftLines, MachineCondition):
     """A rotor that is out of balance: a line at the shaft rate, and few more."""
 
-    place = "unbalance"
+    place, of_unbalance = "unbalance", True
 
     growth: Distribution = within(0, 4, default=2.0)
     """Power of the speed with which the lines grow; 2 is that of an unbalance."""
 
 
-class BentShaft(ShaftLines):
+class BentShaft(ShaftLines, MachineCondition):
     """A shaft that is not straight: lines at multiples of the shaft rate."""
 
     place = "bent_shaft"
 
 
-class Misalignment(ShaftLines):
+class Misalignment(ShaftLines, MachineCondition):
     """Shafts that are out of line: lines at multiples of the shaft rate, with the second as the strongest."""
 
     place, strongest = "misalignment", 2
 
 
-class Belt(ShaftLines):
+class Belt(ShaftLines, MachineCondition):
     """A belt, which turns slower than the shaft: lines at multiples of its rate."""
 
     place = "belt"

@@ -15,7 +15,7 @@ from gen.mechanisms.background.shaft_lines import BentShaft, Misalignment, Unbal
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
 from gen.scenarios.variables import LABELS
-from tests.measuring import FLOAT, background_of, drawn, lines, quiet
+from tests.measuring import FLOAT, background_of, direct, drawn, lines, quiet
 
 TURNS, N, FS = 40, 24_000, 12_000.0
 STEADY = 2 * np.pi * TURNS / N * np.arange(N)
@@ -69,7 +69,9 @@ def test_an_unbalance_grows_with_the_square_of_the_speed():
 def test_channels_at_right_angles_see_the_motion_a_quarter_of_a_turn_apart(recipe_with):
     channels = [{"name": name, "angle_deg": angle} for name, angle in (("x", 0), ("y", 90))]
     unbalance = {"probability": 1, "count": 1, "level_db": 40, "growth": 0}
-    recipe = recipe_with(FLOAT | {"recording.channels": channels, "machine_conditions.unbalance": unbalance} | quiet())
+    whole_turns = {"recording.duration_s": 1.0, "operation.shaft_rpm": 1800, "operation.speed_wander_percent": 0}
+    machine = {"recording.channels": channels, "machine_conditions.unbalance": unbalance}
+    recipe = recipe_with(FLOAT | direct() | whole_turns | machine | quiet())
     ((x, y),), _ = background_of(recipe)
     phase = np.angle(np.vdot(np.fft.rfft(x), np.fft.rfft(y)))
     assert abs(math.sin(phase)) > 0.2
