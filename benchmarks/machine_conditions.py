@@ -95,7 +95,7 @@ def measures(recording: Recording) -> dict[str, float]:
     first = round(bins) - 2 + int(np.argmax(spectrum[:, round(bins) - 2 : round(bins) + 3].sum(axis=0)))
     across = turned[1, first] / turned[0, first]
     lines = np.stack([at(spectrum, order * bins) for order in range(1, 101)]) / recording.x.std(axis=1)
-    found = {
+    values = {
         "second over first channel at 1x [dB]": 20 * np.log10(abs(across)),
         "phase between the channels at 1x [deg]": abs(np.degrees(np.angle(across))),
         "share of power in whole orders": np.mean(np.sum(lines**2, axis=0)),
@@ -106,8 +106,8 @@ def measures(recording: Recording) -> dict[str, float]:
     comb = np.abs(amplitudes(envelope - envelope.mean(axis=1, keepdims=True)))
     rest = np.median(comb[:, round(0.3 * bins) : round(10 * bins)], axis=1)
     for order in (1, 2, 3, 5, 8, 12):
-        found[f"envelope at order {order} [dB]"] = float(np.mean(20 * np.log10(at(comb, order * bins) / rest)))
-    return {name: float(value) for name, value in found.items()} | {
+        values[f"envelope at order {order} [dB]"] = float(np.mean(20 * np.log10(at(comb, order * bins) / rest)))
+    return {name: float(value) for name, value in values.items()} | {
         "kurtosis": float(kurtosis(recording.x, axis=1, fisher=False).mean())
     }
 
@@ -115,10 +115,10 @@ def measures(recording: Recording) -> dict[str, float]:
 def summary(recordings: list[Recording]) -> dict[str, float]:
     """Medians of recordings of one condition, and the power of the speed with which the line at 1x grows."""
     each = [measures(recording) for recording in recordings if recording.rpm == SPEEDS[-1]]
-    found = {name: float(np.median([one[name] for one in each])) for name in each[0]}
-    middles = [np.median([first_line(one) for one in recordings if one.rpm == rpm]) for rpm in SPEEDS]
+    medians = {name: float(np.median([values[name] for values in each])) for name in each[0]}
+    middles = [np.median([first_line(recording) for recording in recordings if recording.rpm == rpm]) for rpm in SPEEDS]
     growth = np.polyfit(np.log(SPEEDS), np.log(middles), 1)[0]
-    return {"growth of 1x with speed, exponent": float(growth)} | found
+    return {"growth of 1x with speed, exponent": float(growth)} | medians
 
 
 def main() -> None:
@@ -130,12 +130,12 @@ def main() -> None:
     for recording in [] if options.real is None else recorded(options.real):
         columns.setdefault(f"recorded: {recording.condition}", []).append(recording)
     with tempfile.TemporaryDirectory() as folder:
-        for condition in ("sound", *(one.place for one in CONDITIONS)):
-            columns[condition] = [one for rpm in SPEEDS for one in synthetic(condition, rpm, Path(folder))]
-    found = {name: summary(recordings) for name, recordings in columns.items()}
-    print(f"| | {' | '.join(found)} |\n|---|{'---:|' * len(found)}")
-    for name in next(iter(found.values())):
-        print(f"| {name} | {' | '.join(f'{values[name]:.2f}' for values in found.values())} |")
+        for condition in ("sound", *(kind.place for kind in CONDITIONS)):
+            columns[condition] = [record for rpm in SPEEDS for record in synthetic(condition, rpm, Path(folder))]
+    summaries = {name: summary(recordings) for name, recordings in columns.items()}
+    print(f"| | {' | '.join(summaries)} |\n|---|{'---:|' * len(summaries)}")
+    for name in next(iter(summaries.values())):
+        print(f"| {name} | {' | '.join(f'{values[name]:.2f}' for values in summaries.values())} |")
 
 
 if __name__ == "__main__":

@@ -93,9 +93,9 @@ def compile_measuring(scenario: Scenario) -> None:
 
 def _filters(runs: Sequence[Run]) -> dict[Run, RigFilters]:
     """Filters of the rig of each record; rigs of one number differ where scenarios were changed by hand."""
-    known, filters = defaultdict[int, list[tuple[Any, RigFilters]]](list), dict[Run, RigFilters]()
+    by_number, filters = defaultdict[int, list[tuple[Any, RigFilters]]](list), dict[Run, RigFilters]()
     for run in runs:
-        recipe, of_number = run.scenario.recipe, known[run.scenario.origin.rig]
+        recipe, of_number = run.scenario.recipe, by_number[run.scenario.origin.rig]
         sections = recipe.recording, recipe.path, recipe.background
         of_rig = next((rig for others, rig in of_number if others == sections), None)
         if of_rig is None:

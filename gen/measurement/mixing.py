@@ -94,9 +94,9 @@ def mix(signals: Float32Array, others: Float32Array, angles: FloatArray, lines: 
                 signals[0, channel, start + j] += machine[j] + others[channel, start + j]
             # mean products of the parts: from them every gain gives its power
             row = 0
-            for one in range(len(signals)):
-                for other in range(one + 1):
-                    _add_product(signals[one, channel, start:stop], signals[other, channel, start:stop], sums[row])
+            for part in range(len(signals)):
+                for other in range(part + 1):
+                    _add_product(signals[part, channel, start:stop], signals[other, channel, start:stop], sums[row])
                     row += 1
     means = np.zeros(6)
     for row in range(6):
@@ -152,6 +152,6 @@ def _modulate(depths: ComplexArray, turn: Complex64Array, signal: Float32Array) 
 
 
 @njit(**INLINE)
-def _add_product(one: Float32Array, other: Float32Array, sums: Float32Array) -> None:
-    for j in range(len(one)):
-        sums[j] += one[j] * other[j]
+def _add_product(signal: Float32Array, other: Float32Array, sums: Float32Array) -> None:
+    for j in range(len(signal)):
+        sums[j] += signal[j] * other[j]

@@ -61,14 +61,17 @@ def plugins_of(*recipes: Section) -> list[str]:
     """Names of the plug-ins whose mechanisms some recipes have."""
     added = {name: plugin("mechanisms", name, type) for name in plugins("mechanisms")}
     sections = [section for recipe in recipes if added for _, section in sections_with_places(recipe)]
-    return [name for name, mechanism in added.items() if any(isinstance(one, mechanism) for one in sections)]
+    return [name for name, mechanism in added.items() if any(isinstance(section, mechanism) for section in sections)]
 
 
 def section_with(name: str, module: str, base: type[Section], mechanisms: Iterable[type[Mechanism]]) -> Any:
     """Section of a recipe with the keys of ``base``, and one for each mechanism."""
     keys: dict[str, Any] = {
-        one.place: (one | None, Field(default=None, description=f"{str(one.__doc__).rstrip('.')}; none if left out."))
-        for one in mechanisms
+        kind.place: (
+            kind | None,
+            Field(default=None, description=f"{str(kind.__doc__).rstrip('.')}; none if left out."),
+        )
+        for kind in mechanisms
     }
     return composed(name, module, (base,), base.__doc__, **keys)
 

@@ -20,8 +20,8 @@ for _name in plugins("mechanisms"):
 def labels_with(added: Container[str] = ()) -> tuple[Variable, ...]:
     """Of faults, of the background, then of the measuring chain: all that are built in, and those ``added`` by some plug-ins."""
     absent = [plugin("mechanisms", name, type) for name in plugins("mechanisms") if name not in added]
-    mechanisms = (one for one in (*KINDS, *MACHINE_SOURCES, *CHAIN) if one not in absent)
-    return tuple({label.name: label for one in mechanisms for label in one.labels}.values())
+    mechanisms = (kind for kind in (*KINDS, *MACHINE_SOURCES, *CHAIN) if kind not in absent)
+    return tuple({label.name: label for kind in mechanisms for label in kind.labels}.values())
 
 
 def label_values(recipe: Any, chain: dict[str, float]) -> dict[str, float]:
@@ -30,4 +30,4 @@ def label_values(recipe: Any, chain: dict[str, float]) -> dict[str, float]:
     A later source may change a label of an earlier one.
     """
     there = *recipe.faults[0].components, *machine_sources_of(recipe)
-    return {label.name: label.column([one])[0] for one in there for label in one.labels} | chain
+    return {label.name: label.column([mechanism])[0] for mechanism in there for label in mechanism.labels} | chain

@@ -30,9 +30,9 @@ class GearMesh(MachineSource):
     place = "gear_mesh"
     labels = (
         Variable("gear_mesh", "i4", "1", "latent", "teeth of the gear on the shaft, the order of its mesh line; 0 without a gear",
-            lambda one: round(one.si()["teeth"])),
+            lambda gear: round(gear.si()["teeth"])),
         Variable("tooth_fault", "i1", "1", "label", "gear that has a damaged tooth, whatever the condition of the bearing",
-            lambda one: 0 if one.tooth_fault is None else 1 + round(one.tooth_fault.si()["on_mate"]),
+            lambda gear: 0 if gear.tooth_fault is None else 1 + round(gear.tooth_fault.si()["on_mate"]),
             {0: "none", 1: "gear", 2: "mate"}),
     )  # fmt: skip
 

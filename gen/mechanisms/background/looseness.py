@@ -27,7 +27,7 @@ class Looseness(MachineCondition):
     place = "looseness"
     labels = (
         Variable("looseness", "f8", "1", "latent", "force that lifts a loose machine over its weight, 0 on a firm support",
-            lambda one: one.si()["lift"]),
+            lambda machine: machine.si()["lift"]),
     )  # fmt: skip
 
     probability: Probability

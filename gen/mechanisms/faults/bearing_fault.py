@@ -70,4 +70,4 @@ class Healthy(BearingFault):
 
 
 def _times(share: float, value: Any) -> Any:
-    return tuple(share * one for one in value) if isinstance(value, tuple) else share * value
+    return tuple(share * item for item in value) if isinstance(value, tuple) else share * value

@@ -12,8 +12,8 @@ class CageFault(BearingFault):
 
     labels = (
         Variable("pitch_error", "f8", "rad", "label", "angle by which a ball is out of its place in a broken cage",
-            lambda one: one.si()["pitch_error"]),
-        Variable("knock", "f8", "N", "label", "typical knock of a broken cage on the housing", lambda one: one.si()["knock"]),
+            lambda fault: fault.si()["pitch_error"]),
+        Variable("knock", "f8", "N", "label", "typical knock of a broken cage on the housing", lambda fault: fault.si()["knock"]),
     )  # fmt: skip
 
     sizes, lines = ("pitch_error_deg", "knock_n"), {"cage": ("ftf", 1)}

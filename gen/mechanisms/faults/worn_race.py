@@ -14,7 +14,7 @@ class DistributedFault(BearingFault):
     """A race worn over its whole circumference; records are labelled with the race."""
 
     labels = (
-        Variable("wear", "f8", "m", "label", "rms waviness of a worn race, 0 if none is", lambda one: one.si()["waviness"]),
+        Variable("wear", "f8", "m", "label", "rms waviness of a worn race, 0 if none is", lambda fault: fault.si()["waviness"]),
     )  # fmt: skip
 
     sizes = ("waviness_um",)
