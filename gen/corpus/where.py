@@ -96,10 +96,29 @@ def _evaluated(line: str, variables: Variables) -> pd.Series:
     for node in ast.walk(tree):
         if isinstance(node, ast.Compare):
             _check_values(node, table, variables)
-    chosen = table.eval(line, engine="python", local_dict={}, global_dict={})  # what query does first
+    tree = _Parts(table).visit(tree)
+    chosen = table.eval(ast.unparse(tree), engine="python", local_dict={}, global_dict={})  # what query does first
     if not isinstance(chosen, pd.Series) or chosen.dtype.kind != "b":
         raise CorpusError(f"where: {line[:60]!r} compares no column; {_EXAMPLE}")
     return chosen
+
+
+class _Parts(ast.NodeTransformer):
+    """Gives `'rub' in machine_condition` the meaning that it has for each text, which pandas does not know, as columns of the table."""
+
+    def __init__(self, table: pd.DataFrame) -> None:
+        self.table = table
+
+    def visit_Compare(self, node: ast.Compare) -> ast.AST:
+        match node:
+            case ast.Compare(
+                left=ast.Constant(value=str(part)), ops=[ast.In() | ast.NotIn() as how], comparators=[ast.Name(id=name)]
+            ):
+                column = f"part_{len(self.table.columns)}_"
+                contains = self.table[name].astype(str).str.contains(part, regex=False)
+                self.table[column] = contains if isinstance(how, ast.In) else ~contains
+                return ast.Name(column, ast.Load())
+        return node
 
 
 def _is_allowed(node: ast.AST) -> bool:

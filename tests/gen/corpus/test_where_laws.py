@@ -197,3 +197,14 @@ def test_channels_are_chosen_by_name_in_the_order_of_the_corpus():
     for none in ([], "a"):
         with pytest.raises(CorpusError, match="is not a list of names; allowed are a, b"):
             chosen_channels(names, none)
+
+
+@given(st.sampled_from(["2", "205", "it", "6205", "", "x"]), st.booleans())
+def test_a_part_of_a_text_chooses_the_records_whose_text_holds_it(part, negated):
+    """As Python means it; pandas would look for the part among all texts of the column."""
+    expected = [(part in bearing) is not negated for bearing in VARIABLES["bearing"][0]]
+    assert holds(f"{part!r} {'not in' if negated else 'in'} bearing").tolist() == expected
+    assert (
+        holds(f"rig < 3 and {part!r} {'not in' if negated else 'in'} bearing").tolist()
+        == (np.array(expected) & (np.arange(5) < 3)).tolist()
+    )
