@@ -18,7 +18,7 @@ from gen.support.errors import CorpusError
 if TYPE_CHECKING:
     import xarray as xr
 
-FORMAT = 3
+FORMAT = 4
 SPLITS = ("train", "validation", "test")
 ROLES = ("operating", "label", "latent", "provenance")
 _CONTENT_OF_ROLES = {  # words of ISO 19115-1 in the attribute coverage_content_type of ACDD 1.3

@@ -18,6 +18,7 @@ from gen.corpus import (
     validate_corpus,
     write_manifest,
 )
+from gen.corpus.schema import FORMAT
 from gen.support.errors import CorpusError
 from tests.corpora import SIZES, dataset, write_corpus, write_parts
 from tests.disks import full_disk
@@ -82,7 +83,7 @@ REFUSED = {
     "a part stands for another": (lambda c: shutil.copyfile(part(c, 0), part(c, 2)), r"part-00002\.nc: its bytes do not have the hash"),
     "the manifest is gone": (lambda c: (c / "manifest.json").unlink(), r"has no manifest\.json, so it is not a corpus"),
     "the manifest lists no parts": (
-        lambda c: write_manifest(c, {"raceway_format": 3, "records": 0}), "is marked complete and lists no parts",
+        lambda c: write_manifest(c, {"raceway_format": FORMAT, "records": 0}), "is marked complete and lists no parts",
     ),
     "the title of the manifest is altered": (
         lambda c: (c / "manifest.json").write_text((c / "manifest.json").read_text().replace('"title": "', '"title": "My ')),
@@ -153,8 +154,8 @@ def set_fact(name, value):
 
 REFUSED_FILES = {
     "is empty": (lambda f: os.truncate(f, 0), "its bytes do not have the hash that Raceway stored"),
-    "has the format before": (set_fact("raceway_format", 2), "corpus format 2, this version of raceway reads format 3"),
-    "has no format": (set_fact("raceway_format", "x"), "corpus format x, this version of raceway reads format 3"),
+    "has the format before": (set_fact("raceway_format", 2), "corpus format 2, this version of raceway reads format 4"),
+    "has no format": (set_fact("raceway_format", "x"), "corpus format x, this version of raceway reads format 4"),
     "counts more useless records than it has": (
         set_fact("signals", '{"dead": 121306}'), "its counts are not those of its parts",
     ),

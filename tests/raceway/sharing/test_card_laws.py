@@ -8,6 +8,7 @@ import pytest
 
 from gen.corpus import FAULTS, open_corpus, read_manifest
 from gen.corpus.manifest import Manifest
+from gen.corpus.schema import FORMAT
 from gen.support.errors import CorpusError
 from raceway import publish
 from raceway.sharing.card.additions import CardAdditions, CardPicture, write_additions
@@ -93,7 +94,7 @@ def test_licence_and_creators_are_on_the_card_and_in_the_citation(corpus, tmp_pa
 
 
 def command(corpus, **facts):
-    return rebuilding(corpus, Manifest.model_validate({"raceway_format": 3, "records": 0, **facts}))
+    return rebuilding(corpus, Manifest.model_validate({"raceway_format": FORMAT, "records": 0, **facts}))
 
 
 def test_a_corpus_that_no_command_makes_has_its_history_instead(corpus):
