@@ -37,6 +37,7 @@ faults:
   - {kind: brinelled, width_mm: 0.8, n_spalls: 3}
 sensor_faults: {stuck_bits: {probability: 1, step_m_s2: 0.01}}
 background: {hiss: {probability: 1, level_db: 6}}
+machine_conditions: {worn_chain: {probability: 1, links: 7, level_db: 20}}
 """
 RUN = """
 import contextlib, io, json, sys
@@ -98,6 +99,7 @@ def made(installed, tmp_path_factory):
         "generate dented.yaml -o corpus",
         "validate corpus",
         "info corpus --json",
+        "info corpus --where 'worn_chain'in(machine_condition) --json",
         "replay corpus --record 5",
         "features corpus --group crossings -o features.nc",
         "train corpus --group crossings -o model.skops",
@@ -122,6 +124,7 @@ def test_a_fault_class_of_a_plugin_goes_all_the_way_to_scores_and_pages(made):
     facts = json.loads(said["info corpus --json"])
     assert facts["classes"] == {"healthy": 6, "inner": 6, "brinelled": 6}
     assert facts["versions"]["raceway-example"] == "0.1"
+    assert json.loads(said["info corpus --where 'worn_chain'in(machine_condition) --json"])["records"] == 18
     assert "crossings" in (folder / "report" / "results.json").read_text()
     assert "\nbrinelled               0      0          6" in said["evaluate corpus --model model.skops"]
     for page in ("report/report.html", "corpus/README.md", "page.html"):

@@ -21,6 +21,7 @@ from gen.simulation.shaft import angles_of
 from gen.simulation.simulate import Run, acceleration_of
 from gen.simulation.timeline import timeline
 from gen.simulation.truth import lines_of_faults
+from gen.support.errors import RacewayError
 
 FloatArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
@@ -30,14 +31,13 @@ def parts_of(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[Parts]:
     """Bearings behind their paths, modulated by the shaft, and the backgrounds of their machines."""
     axis, n, bearings = timeline(runs[0].scenario.recipe), rigs[0].n, _behind_paths(runs, rigs)
     angles, lines, noises, others = [angles_of(run.motion) for run in runs], [], [], []
-    # everything random of the background comes from one stream of the record
     for run, rig, turned in zip(runs, rigs, angles, strict=True):
         scenario, rng = run.scenario, run.scenario.stream("noise")
         # tones are not locked to the shaft: their phases are those of the record
         phases = 2 * np.pi * rng.random(len(rig.steps))
         lines.append(Lines(rig.modulations, rig.tones, rig.steps, phases, rig.tone_modulations))
         noises.append(_noise(scenario, rig, rng))
-        others.append(_others(scenario, rig, turned, rng))
+        others.append(_others(scenario, rig, turned))
     # transforms run side by side
     noises, others = irfft(np.stack(noises), n), np.stack(others)
     others = irfft(others, n) if others.any() else np.zeros_like(noises)
@@ -83,17 +83,19 @@ def _noise(scenario: Scenario, rig: RigFilters, rng: np.random.Generator) -> Com
     return drawn.view(np.complex64) * rig.noise
 
 
-def _others(scenario: Scenario, rig: RigFilters, angles: FloatArray, rng: np.random.Generator) -> ComplexArray:
-    """Spectrum behind the paths of impulses and of other sources in the machine, shape (channel, frequency) [1]."""
-    spectrum, background = np.zeros(rig.paths.shape, np.complex64), scenario.recipe.background
-    if background.impulses or background.knocks:
-        hits = np.zeros(len(angles), np.float32)  # strength at the samples where they start
-        if background.impulses is not None:
-            background.impulses.add_to(hits, rig.fs, rng)
-        if background.knocks is not None:
-            background.knocks.add_to(hits, angles, rng, scenario.stream("phase of knocks", "rig"))
-        spectrum += rfft(hits, rig.n) * rig.impulse_paths
+def _others(scenario: Scenario, rig: RigFilters, angles: FloatArray) -> ComplexArray:
+    """Spectrum behind the paths of the sources in the machine that are computed ahead of them, shape (channel, frequency) [1]."""
+    spectrum = np.zeros(rig.paths.shape, np.complex64)
+    hits = np.zeros(len(angles), np.float32)  # strengths of impulses at the samples where they start
     for source in machine_sources_of(scenario.recipe):
-        for vibration in source.vibrations(angles, rig.fs, partial(scenario.stream, source.place)):
+        stream = partial(scenario.stream, source.place)
+        for vibration in source.vibrations(angles, rig.fs, stream):
+            if np.shape(vibration) != angles.shape:
+                raise RacewayError(
+                    f"{source.place}: vibrations() gives shape {np.shape(vibration)} and not {angles.shape}."
+                )
             spectrum += rig.source_in_channels(vibration)
+        source.add_impulses(hits, angles, rig.fs, stream)
+    if hits.any():
+        spectrum += rfft(hits, rig.n) * rig.impulse_paths
     return spectrum

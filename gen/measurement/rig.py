@@ -53,7 +53,7 @@ class RigFilters:
     tone_modulations: ComplexArray
     """Modulation of each tone by the shaft, shape (tone,)."""
     impulse_paths: ComplexArray
-    """Path and chain, scaled so that an impulse has a peak of 1 behind each, shape (channel, frequency); unscaled without impulses."""
+    """Path and chain, scaled so that an impulse has a peak of 1 behind each, shape (channel, frequency)."""
     impulse_lines: Float32Array
     """Rms of the lines of impulses at random times in the squared envelope of a response, by frequency, shape (channel, frequency) [1]."""
 
@@ -86,10 +86,9 @@ def rig_filters(scenario: Scenario) -> RigFilters:
     chain = sensor * pass_band(frequency * (2 / fs))
     # each channel has a path, of its own or common to all
     paths = np.stack([path.si()["direct"] + transmissibility(path.modes, frequency) for path in own])
+    # an impulse keeps its height, whatever the resonances of the path
     impulse_paths, of_impulses = paths * chain, 0.0
-    if background.impulses or background.knocks:
-        # an impulse keeps its height, whatever the resonances of the path
-        impulse_paths /= np.abs(irfft(impulse_paths, n)).max(axis=1, keepdims=True)
+    impulse_paths /= np.maximum(np.abs(irfft(impulse_paths, n)).max(axis=1, keepdims=True), _SMALLEST_GAIN)
     if background.impulses is not None:
         # An impulse of strength ``a`` raises all lines by ``a^2`` times its energy; the mean of ``a^4`` is 3 for a normal distribution.
         impulses = background.impulses.si()

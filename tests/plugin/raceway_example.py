@@ -1,4 +1,4 @@
-"""A plug-in of Raceway with one of each: fault class, fault, source, sensor fault, feature group, importer and command."""
+"""A plug-in of Raceway with one of each: fault class, fault, source, machine condition, sensor fault, feature group, importer, command."""
 
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -11,7 +11,8 @@ from features.table.record_batch import RecordBatch
 from gen.corpus.fault_classes import BPFO, FaultClass
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.background.source import MachineSource
+from gen.mechanisms.background.impulses import add_strikes
+from gen.mechanisms.background.source import MachineCondition, MachineSource
 from gen.mechanisms.chain.sensor_fault import SensorFault
 from gen.mechanisms.faults.race_spalls import Spalls
 from gen.physics.bearing_text import bearing_from_text
@@ -51,6 +52,24 @@ class Hiss(MachineSource):
     def vibrations(self, angles: np.ndarray, fs: float, stream: Any) -> list[np.ndarray]:
         """Noise of the record."""
         return [10 ** (self.si()["level"] / 20) * stream().standard_normal(len(angles))]
+
+
+# a condition of the machine, whatever its bearings
+class WornChain(MachineCondition):
+    """A chain that jerks at each link."""
+
+    place = "worn_chain"
+
+    probability: Probability
+    """Share of the rigs with a worn chain."""
+    links: Distribution = within(1, 50)
+    """Links that pass in a turn of the shaft."""
+    level_db: Distribution = within(-80, 60)
+    """Mean of the peaks behind the path, relative to the rms of the background noise."""
+
+    def add_impulses(self, hits: np.ndarray, angles: np.ndarray, fs: float, stream: Any) -> None:
+        """A jerk at each link."""
+        add_strikes(hits, self.si()["links"] * angles, self.si()["level"], stream())
 
 
 # a fault of the measuring chain, with a label

@@ -3,14 +3,13 @@
 ================== =============================================================
 module             responsibility
 ================== =============================================================
-source             what a source is
+source             what a source is, and a condition of a machine
 noise              colour, resonances and coherence of the noise
 tones              lines at fixed frequencies
 impulses           impulses at random times and locked to the shaft
 gear_mesh          multiples of a tooth mesh with sidebands of both gears
 tooth_fault        a damaged tooth of one of the gears
 bursts             noise that comes and goes with the shaft
-machine_condition  what a condition of a machine is that is not well
 shaft_lines        lines of the shaft, unbalance, bent shafts, misalignment, belts
 rub                rotors that touch their casing
 looseness          machines whose support lifts off the ground

@@ -5,19 +5,18 @@ from typing import TYPE_CHECKING, Any
 from gen.mechanisms.background.bursts import Bursts
 from gen.mechanisms.background.gear_mesh import GearMesh
 from gen.mechanisms.background.impulses import Impulses, Knocks
-from gen.mechanisms.background.machine_condition import MachineCondition
 from gen.mechanisms.background.machine_conditions import CONDITIONS
 from gen.mechanisms.background.noise import Noise
 from gen.mechanisms.background.shaft_lines import Harmonics
-from gen.mechanisms.background.source import BackgroundSource, MachineSource
+from gen.mechanisms.background.source import BackgroundSource, MachineCondition, MachineSource
 from gen.mechanisms.background.tones import Tones
 from gen.mechanisms.mechanism import mechanisms_of, section_with, with_plugins
 
-SOURCES: tuple[type[BackgroundSource], ...] = (Tones, Impulses, Knocks)
+SOURCES: tuple[type[BackgroundSource], ...] = (Tones,)
 """Sources that the measurement adds."""
 _OF_MACHINE = [
     source
-    for source in with_plugins(MachineSource, (Harmonics, GearMesh, Bursts))
+    for source in with_plugins(MachineSource, (Harmonics, Impulses, Knocks, GearMesh, Bursts))
     if not issubclass(source, MachineCondition)
 ]
 MACHINE_SOURCES: tuple[type[MachineSource], ...] = (*_OF_MACHINE, *CONDITIONS)

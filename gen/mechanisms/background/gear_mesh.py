@@ -19,8 +19,9 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
+from gen.mechanisms.background.impulses import add_strikes
 from gen.mechanisms.background.source import FloatArray, MachineSource, Streams
-from gen.mechanisms.background.tooth_fault import ToothFault
+from gen.mechanisms.background.tooth_fault import ToothFault, contact_of_tooth
 from gen.support.units import decibel_to_ratio
 
 
@@ -32,7 +33,7 @@ class GearMesh(MachineSource):
         Variable("gear_mesh", "i4", "1", "latent", "teeth of the gear on the shaft, the order of its mesh line; 0 without a gear",
             lambda gear: round(gear.si()["teeth"])),
         Variable("tooth_fault", "i1", "1", "label", "gear that has a damaged tooth, whatever the condition of the bearing",
-            lambda gear: 0 if gear.tooth_fault is None else 1 + round(gear.tooth_fault.si()["on_mate"]),
+            lambda gear: 0 if gear.tooth_fault is None else 1 + gear.tooth_fault.is_on_mate,
             {0: "none", 1: "gear", 2: "mate"}),
     )  # fmt: skip
 
@@ -53,35 +54,41 @@ class GearMesh(MachineSource):
     """Depth of the amplitude modulation once per turn of the mating gear."""
     phase_deg: Distribution = within(0, 180, default=0.0)
     """Peak of the phase modulation once per turn of the shaft, in degrees of the mesh cycle; n times this at the nth multiple."""
-
     tooth_fault: ToothFault | None = None
     """Damaged tooth of one of the gears; all are whole if left out."""
 
     def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
-        """Vibration of the mesh, and the strikes of a damaged tooth.
+        """Vibration of the mesh, which a damaged tooth makes weaker and late.
 
-        The angle of the mate at the first sample is random: other teeth meet there in each record. A multiple of the mesh above half the
-        sample rate, which the anti-alias filter would remove, is left out.
+        A multiple of the mesh above half the sample rate, which the anti-alias filter would remove, is left out.
         """
-        drawn, of_record = self.si(), stream()
-        teeth, mate_teeth, levels = round(drawn["teeth"]), round(drawn["mate_teeth"]), decibel_to_ratio(drawn["level"])
-        mate = angles * (teeth / mate_teeth) + 2 * math.pi * of_record.random()
+        drawn, mate = self.si(), self._mate_angles(angles, stream)
+        teeth, levels = round(drawn["teeth"]), decibel_to_ratio(drawn["level"])
         high_point, lead_point, *phases = 2 * math.pi * stream(level="rig").random(2 + len(levels))
         modulation = (
             1 + drawn["shaft_modulation"] * np.cos(angles - high_point) + drawn["mate_modulation"] * np.cos(mate)
         )
-        mesh, strikes = teeth * angles + drawn["phase"] * np.cos(angles - lead_point), list[FloatArray]()
-        if (tooth := self.tooth_fault) is not None:
-            fault = tooth.si()
-            turned, of_gear = (mate, mate_teeth) if round(fault["on_mate"]) else (angles, teeth)
-            contact = tooth.contact(turned, of_gear)
-            modulation -= fault["drop"] * contact
+        mesh = teeth * angles + drawn["phase"] * np.cos(angles - lead_point)
+        if self.tooth_fault is not None:
+            fault, of_mate = self.tooth_fault.si(), self.tooth_fault.is_on_mate
+            contact = contact_of_tooth(mate if of_mate else angles, round(drawn["mate_teeth"]) if of_mate else teeth)
+            modulation *= 1 - fault["drop"] * contact
             mesh -= fault["phase"] * contact
-            strikes = [tooth.strikes(turned, of_record)]
         rate = np.abs(np.gradient(teeth * angles)) / math.pi  # of the mesh, over half the sample rate
         turn = np.exp(1j * mesh)
         total, power = np.zeros(len(angles)), np.ones(len(angles), complex)
         for multiple, (level, phase) in enumerate(zip(levels, phases, strict=True), start=1):
             power *= turn
             total += (math.sqrt(2) * level * np.exp(1j * phase) * power).real * (multiple * rate < 1)
-        return [total * modulation, *strikes]
+        return [total * modulation]
+
+    def add_impulses(self, hits: FloatArray, angles: FloatArray, fs: float, stream: Streams) -> None:
+        """Strikes of a damaged tooth, once per turn of its gear."""
+        if self.tooth_fault is not None:
+            turned = self._mate_angles(angles, stream) if self.tooth_fault.is_on_mate else angles
+            add_strikes(hits, turned, self.tooth_fault.si()["strikes"], stream())
+
+    def _mate_angles(self, angles: FloatArray, stream: Streams) -> FloatArray:
+        """Angle of the mating gear [rad]; that at the first sample is random, since other teeth meet there in each record."""
+        drawn = self.si()
+        return angles * (round(drawn["teeth"]) / round(drawn["mate_teeth"])) + 2 * math.pi * stream().random()

@@ -16,8 +16,7 @@ import numpy as np
 
 from gen.corpus.schema import Variable
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.background.machine_condition import MachineCondition
-from gen.mechanisms.background.source import FloatArray, Streams
+from gen.mechanisms.background.source import FloatArray, MachineCondition, Streams
 from gen.support.units import STANDARD_GRAVITY, decibel_to_ratio
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from gen.drawing import Section
 from gen.mechanisms.background.looseness import Looseness
-from gen.mechanisms.background.machine_condition import MachineCondition
+from gen.mechanisms.background.source import MachineCondition
 from gen.mechanisms.background.rub import Rub
 from gen.mechanisms.background.shaft_lines import Belt, BentShaft, Misalignment, Unbalance
 from gen.mechanisms.mechanism import mechanisms_of, section_with, with_plugins

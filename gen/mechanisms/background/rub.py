@@ -9,8 +9,7 @@ import numpy as np
 
 from gen.drawing import Distribution, Probability, within
 from gen.mechanisms.background.bursts import bursts_of
-from gen.mechanisms.background.machine_condition import MachineCondition
-from gen.mechanisms.background.source import FloatArray, Streams
+from gen.mechanisms.background.source import FloatArray, MachineCondition, Streams
 from gen.support.units import decibel_to_ratio
 
 

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.drawing import Distribution, Probability, within
-from gen.mechanisms.background.machine_condition import MachineCondition
-from gen.mechanisms.background.source import FloatArray, MachineSource, Streams, Vibration
+from gen.mechanisms.background.source import FloatArray, MachineCondition, MachineSource, Streams, Vibration
 from gen.physics.elementary import power
 from gen.support.units import decibel_to_ratio
 
@@ -38,11 +37,11 @@ class ShaftLines(MachineSource):
     count: Distribution = within(1, 400, default=1.0)
     """Number of lines, at 1, 2, ... times `order`, rounded to a whole number; those beyond half the sample rate are left out."""
     level_db: Distribution = within(-80, 40, each=True)
-    """Rms of a line relative to that of the background noise, ahead of its slope, drawn for each; the mean over all directions and
-    channels."""
+    """Rms of a line relative to that of the background noise, ahead of its slope and of the paths, whose resonances shift power among the
+    lines; drawn for each, the mean over all directions."""
     slope_db_per_octave: Distribution = within(-40, 0, default=0.0)
-    """How lines fall for each doubling of their order from the strongest line on: the second line of a misaligned shaft, else the
-    first."""
+    """How lines fall for each doubling or halving of their order away from the strongest line: the second of a misaligned shaft, else
+    the first."""
     growth: Distribution = within(0, 4, default=0.0)
     """Power of the speed with which the lines grow; 2 is that of an unbalance."""
     at_rpm: Distribution = within(0.1, 1_000_000, default=1800.0)
@@ -61,7 +60,7 @@ class ShaftLines(MachineSource):
 
         A line that passes half the sample rate anywhere in the record, where the anti-alias filter would remove it, is left out.
         """
-        from scipy.fft import ifft  # loads for half a second, and few recipes need it
+        from scipy.fft import ifft  # loads for half a second: a recipe is read without it
 
         drawn = self.si()
         numbers = np.arange(1, len(drawn["level"]) + 1)

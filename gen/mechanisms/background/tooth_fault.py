@@ -13,7 +13,6 @@ import numpy as np
 
 from gen.drawing import Distribution, Probability, Section, within
 from gen.mechanisms.background.source import FloatArray
-from gen.support.units import decibel_to_ratio
 
 
 class ToothFault(Section):
@@ -27,17 +26,15 @@ class ToothFault(Section):
     """Share of the amplitude of the mesh that is missing while the tooth is in contact."""
     phase_deg: Distribution = within(0, 180, default=0.0)
     """How far the mesh lags then, in degrees of the mesh cycle; n times this at the nth multiple."""
-    strikes_db: Distribution = within(-80, 40)
-    """Rms of the strikes ahead of the paths, relative to that of the background noise."""
+    strikes_db: Distribution = within(-80, 60)
+    """Mean of the peaks of its strikes behind the path, relative to the rms of the background noise."""
 
-    def contact(self, angles: FloatArray, teeth: int) -> FloatArray:
-        """How much of the contact the tooth has, from 0 to 1, for ``angles`` of its gear [rad], which has some ``teeth``."""
-        return np.exp((np.cos(angles) - 1) / (math.pi / teeth) ** 2)
+    @property
+    def is_on_mate(self) -> bool:
+        """Whether the drawn tooth is one of the mating gear."""
+        return round(self.si()["on_mate"]) == 1
 
-    def strikes(self, angles: FloatArray, rng: np.random.Generator) -> FloatArray:
-        """A strike at the sample at which the tooth comes into contact in each turn, shape (time,) [1]; some are stronger than others."""
-        hits = np.zeros(len(angles))
-        times = np.flatnonzero(np.diff(np.floor(angles / (2 * math.pi)))) + 1
-        hits[times] = 1 + 0.2 * rng.standard_normal(len(times))
-        rms = float(np.sqrt(np.mean(hits**2)))
-        return hits * (decibel_to_ratio(self.si()["strikes"]) / rms) if rms > 0 else hits
+
+def contact_of_tooth(angles: FloatArray, teeth: int) -> FloatArray:
+    """How much of the contact one tooth has, from 0 to 1, for ``angles`` of its gear [rad], which has some ``teeth``."""
+    return np.exp((np.cos(angles) - 1) / (math.pi / teeth) ** 2)

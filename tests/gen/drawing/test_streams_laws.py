@@ -4,8 +4,7 @@ import pytest
 
 from gen.drawing import Distribution, Section, composed, within
 from gen.mechanisms.background.background import MACHINE_SOURCES, SOURCES
-from gen.mechanisms.background.machine_condition import MachineCondition
-from gen.mechanisms.background.source import BackgroundSource
+from gen.mechanisms.background.source import BackgroundSource, MachineCondition
 from gen.mechanisms.chain.measuring_chain import CHAIN
 from gen.mechanisms.chain.sensor_fault import SensorFault
 from gen.recipe import Recipe, read_recipe, shipped_recipes
