@@ -26,7 +26,8 @@ class Bursts(MachineSource):
     order: Distribution = within(0.05, 50, default=1.0)
     """Number of bursts in a turn of the shaft."""
     length_deg: Distribution = within(1, 180, default=30.0)
-    """Length of a burst, in degrees from burst to burst: 20 degrees put about three strong orders into the envelope, 8 degrees eight."""
+    """Standard deviation of a burst about its middle, in degrees from burst to burst: 20 degrees put about three strong orders into the
+    envelope, 8 degrees eight."""
 
     def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
         """Bursts, whose angle belongs to the rig."""
@@ -36,6 +37,9 @@ class Bursts(MachineSource):
 
 
 def bursts_of(phase: FloatArray, length: float, rng: np.random.Generator) -> FloatArray:
-    """Bursts of unit rms and a ``length`` [rad] about the multiples of a turn of their ``phase`` [rad], shape (time,) [1]."""
+    """Bursts of unit rms over a turn, ``length`` [rad] long, about the multiples of a turn of their ``phase`` [rad], shape (time,) [1]."""
+    from scipy.special import i0e  # loads SciPy: a recipe is read without it
+
     bells = np.exp((np.cos(phase) - 1) / length**2)
-    return bells / math.sqrt(np.mean(bells**2)) * rng.standard_normal(len(phase))
+    # mean of the squared bell over a turn; a record without a burst has its tail alone
+    return bells / math.sqrt(i0e(2 / length**2)) * rng.standard_normal(len(phase))

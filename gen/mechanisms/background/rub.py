@@ -32,10 +32,11 @@ class Rub(MachineCondition):
     def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
         """Wave without its top, and noise while it is in contact; the angle of the contact belongs to the rig."""
         drawn, start = self.si(), 2 * math.pi * stream(level="rig").random()
-        phase = drawn["order"] * angles + start
-        wave = np.minimum(np.cos(phase), math.cos(drawn["contact"] / 2))
-        wave -= wave.mean()
-        # there is no contact in a part of a turn
-        rms = float(np.sqrt(np.mean(wave**2)))
-        wave *= decibel_to_ratio(drawn["level"]) / rms if rms > 0 else 0.0
-        return [wave, decibel_to_ratio(drawn["noise"]) * bursts_of(phase, drawn["contact"] / 2, stream())]
+        phase, half = drawn["order"] * angles + start, drawn["contact"] / 2
+        top = math.cos(half)
+        # mean and mean square of the wave over a turn; a record may hold a part of one
+        mean = (half * top - math.sin(half)) / math.pi
+        square = (half * top**2 + (math.pi - half) / 2 - math.sin(2 * half) / 4) / math.pi
+        wave = (np.minimum(np.cos(phase), top) - mean) / math.sqrt(square - mean**2)
+        noise = bursts_of(phase, half, stream())
+        return [decibel_to_ratio(drawn["level"]) * wave, decibel_to_ratio(drawn["noise"]) * noise]

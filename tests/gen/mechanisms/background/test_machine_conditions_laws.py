@@ -12,6 +12,8 @@ from gen.mechanisms.background.bursts import Bursts
 from gen.mechanisms.background.machine_conditions import CONDITIONS
 from gen.mechanisms.background.rub import Rub
 from gen.mechanisms.background.shaft_lines import BentShaft, Misalignment, Unbalance
+from gen.physics.catalogue import CATALOGUE
+from gen.physics.rating import static_rating
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
 from gen.scenarios.variables import LABELS
@@ -19,6 +21,7 @@ from tests.measuring import FLOAT, background_of, direct, drawn, lines, quiet
 
 TURNS, N, FS = 40, 24_000, 12_000.0
 STEADY = 2 * np.pi * TURNS / N * np.arange(N)
+RATING = static_rating(CATALOGUE["6205"])
 NAMED = next(label for label in LABELS if label.name == "machine_condition")
 
 
@@ -66,7 +69,7 @@ def test_an_unbalance_grows_with_the_square_of_the_speed():
         assert np.sqrt(np.mean(np.abs(moved) ** 2) / 2) == pytest.approx(factor, rel=1e-3)
 
 
-def test_channels_at_right_angles_see_the_motion_a_quarter_of_a_turn_apart(recipe_with):
+def test_channels_at_right_angles_see_the_motion_out_of_phase(recipe_with):
     channels = [{"name": name, "angle_deg": angle} for name, angle in (("x", 0), ("y", 90))]
     unbalance = {"probability": 1, "count": 1, "level_db": 40, "growth": 0}
     whole_turns = {"recording.duration_s": 1.0, "operation.shaft_rpm": 1800, "operation.speed_wander_percent": 0}
@@ -81,10 +84,11 @@ def test_channels_at_right_angles_see_the_motion_a_quarter_of_a_turn_apart(recip
 def test_no_line_aliases_in_a_record_whose_speed_rises():
     """A line at half the sample rate or above would come back as one of no order of the shaft."""
     turns = np.cumsum(np.linspace(20.0, 60.0, N)) / FS
-    every, few = drawn(BentShaft, **lines([0] * 300)), drawn(BentShaft, **lines([0] * 99))
+    every, few = drawn(BentShaft, **lines([0] * 300)), drawn(BentShaft, **lines([0] * 99 + [-80] * 201))
     (moved,), (kept,) = (vibrations(condition, 2 * np.pi * turns) for condition in (every, few))
-    # 99 lines at 60 Hz lie below 6 kHz; the power of a line does not depend on its phase
-    assert np.mean(np.abs(moved) ** 2) == pytest.approx(np.mean(np.abs(kept) ** 2), rel=0.05)
+    # 99 lines of 60 Hz lie below 6 kHz
+    np.testing.assert_array_equal(moved, kept)
+    assert np.mean(np.abs(moved) ** 2) / 2 == pytest.approx(99, rel=0.05)
 
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
@@ -96,8 +100,8 @@ def test_bursts_come_at_their_order_with_their_rms(order):
 
     squares = np.mean([bursts.vibrations(STEADY, FS, stream)[0] ** 2 for _ in range(300)], axis=0)
     assert np.sqrt(squares.mean()) == pytest.approx(10 ** (-10 / 20), rel=0.02)
-    found = np.abs(np.fft.rfft(squares))[1:]
-    assert 1 + np.argmax(found) == order * TURNS
+    spectrum = np.abs(np.fft.rfft(squares))[1:]
+    assert 1 + np.argmax(spectrum) == order * TURNS
     folded = squares.reshape(-1, round(N / TURNS / min(order, 1.0))).mean(axis=0)
     loud = folded > folded.max() / 2
     bell = 2 * math.acos(1 - math.log(2) / 2 * math.radians(20) ** 2) / (2 * math.pi)
@@ -112,6 +116,9 @@ def test_a_rub_cuts_the_wave_off_while_it_touches_and_rubs_noise_out_of_it(order
     assert wave.std() == pytest.approx(10 ** (-6 / 20))
     assert np.mean(noise[flat] ** 2) > 2 * np.mean(noise**2)
     assert np.argmax(np.abs(np.fft.rfft(wave))) == order * TURNS
+    # a part of a turn is as loud as it is in a long record
+    part, _ = vibrations(drawn(Rub, order=order, contact_deg=90, level_db=-6, noise_db=0), STEADY[:200])
+    np.testing.assert_allclose(part, wave[:200], atol=1e-12)
 
 
 def test_conditions_belong_to_machines_and_not_to_classes_of_bearings(recipe_with):
@@ -130,16 +137,24 @@ def test_conditions_belong_to_machines_and_not_to_classes_of_bearings(recipe_wit
 @pytest.mark.parametrize(
     ("changes", "name"),
     [
-        ({"machine.bow_n": 20}, "sound"),
-        ({"machine.bow_n": 40}, "bent_shaft"),
-        ({"machine.misalignment_n": 40}, "misalignment"),
+        ({"machine.bow_n": 0.009}, "sound"),
+        ({"machine.bow_n": 0.011}, "bent_shaft"),
+        ({"machine.misalignment_n": 0.011}, "misalignment"),
         ({"machine.looseness_um": 1}, "looseness"),
-        ({"machine.balance_mm_s": 60}, "unbalance"),
     ],
 )
-def test_forces_of_the_machine_are_named_from_a_tenth_of_the_load_on(recipe_with, changes, name):
-    scenarios = draw_scenarios(recipe_with({"operation.load_n": 300, "operation.shaft_rpm": 1800} | changes), 0, 1)
-    assert named(scenarios) == [name]
+def test_forces_of_the_machine_are_named_from_a_hundredth_of_the_static_rating_on(recipe_with, changes, name):
+    rated = {key: value * RATING if key.endswith("_n") else value for key, value in changes.items()}
+    assert named(draw_scenarios(recipe_with(rated), 0, 1)) == [name]
+
+
+@pytest.mark.parametrize(("share", "name"), [(0.009, "sound"), (0.011, "unbalance")])
+def test_the_force_of_an_unbalance_is_that_at_its_highest_speed(recipe_with, share, name):
+    """Mass times eccentricity times the square of the speed, so all records of a machine have one label, whatever their speeds."""
+    speed, grade = 2 * math.pi * 100, 0.1  # of 6000 rpm [rad/s]; [m/s]
+    changes = {"machine.balance_mm_s": 1e3 * grade, "machine.shaft_mass_kg": share * RATING / (grade * speed)}
+    scenarios = draw_scenarios(recipe_with({"operation.shaft_rpm": "uniform(600, 6000)"} | changes))
+    assert set(named(scenarios)) == {name}
 
 
 def test_domain_randomised_has_machines_of_every_condition():
