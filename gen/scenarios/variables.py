@@ -6,6 +6,7 @@ from gen.corpus import FAULTS, SPLITS, Variable, identity
 from gen.corpus.simulated import with_values
 from gen.mechanisms.background.machine_conditions import conditions_named
 from gen.physics.bearing import FaultOrders, orders
+from gen.physics.rating import static_rating
 from gen.scenarios.scenario import Scenario
 
 
@@ -51,7 +52,7 @@ LABELS = (
     Variable("parts", "str", "1", "label", "parts that are damaged, joined by +, empty if healthy",
         lambda of: "+".join(of.damaged_parts)),
     Variable("machine_condition", "str", "1", "label", "conditions of the machine, whatever that of its bearing, joined by +, or sound",
-        lambda of: conditions_named(of.recipe, of.conditions["load"], of.conditions["shaft_rate"])),
+        lambda of: conditions_named(of.recipe, static_rating(of.drawing))),
     Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance as built, negative if preloaded",
         lambda of: of.properties["diametral_clearance"]),
     Variable("rung", "i4", "1", "provenance", "place of the severity in corpus.rungs of the recipe, -1 outside a group",
