@@ -94,10 +94,10 @@ def _pulse_numbers(pulses: FloatArray, pulses_per_turn: int, record: int) -> Int
             f"tacho: record {record} misses {missed} of {numbers[-1]} pulses, or its marks are not at equal angles; give a tacho with "
             "marks at equal angles that misses fewer."
         )
-    # a gap in each turn belongs to the wheel
+    # a gap in each turn of most of the record belongs to the wheel
     apart = np.diff(numbers[:-1][steps > 1])
     teeth = int(np.median(apart)) if len(apart) > 1 else pulses_per_turn
-    if teeth % pulses_per_turn and np.count_nonzero(apart == teeth) > len(apart) / 2:
+    if teeth % pulses_per_turn and np.count_nonzero(apart == teeth) * teeth > numbers[-1] / 2:
         raise ValueError(
             f"tacho: record {record} has a gap every {teeth} pulses, as a wheel with missing teeth; give pulses_per_turn={teeth}."
         )

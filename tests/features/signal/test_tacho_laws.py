@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from features.signal import angles_from_tacho
@@ -34,6 +34,7 @@ def tacho(turns, per_turn, missing=(), extra=()):
     st.sampled_from([(), (10,), (10, 25), (10, 11), (10, 12), (10, 11, 12), (1,), (2,), (2, 4), (20, 22, 24, 39)]),
     st.booleans(),
 )
+@example((20.0, 20.0), 7, (20, 22, 24, 39), False)  # three gaps of one distance are no wheel
 def test_missed_pulses_of_a_steady_shaft_and_of_a_run_up_change_no_angle(speeds, per_turn, missing, from_the_end):
     turns = course(*speeds)
     last = int(turns[-1] * per_turn)
