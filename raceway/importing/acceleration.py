@@ -57,7 +57,8 @@ class Sensor(NamedTuple):
 
     ``variable`` is the name in a MATLAB file, by default that of the only signal in it, or the sheet of a spreadsheet, by default the
     active one; ``column`` the name in the header of a table, or a number from 0; ``delimiter`` and ``decimal`` are the mark between the
-    columns of a text and its decimal mark; ``rate`` is the sample rate [Hz].
+    columns of a text and its decimal mark; ``rate`` is the sample rate [Hz], and ``long_rate`` that of files of more than
+    ``long_samples`` samples.
     ``speed_column`` holds the speed of the shaft in a ``speed_unit``, which for a tacho is the number of its pulses in a
     turn; in a MATLAB file its name is that of a variable.
     """
@@ -71,6 +72,8 @@ class Sensor(NamedTuple):
     rate: float | None = None
     speed_column: int | str | None = None
     speed_unit: str | None = None
+    long_rate: float | None = None
+    long_samples: int = 0
 
 
 class Signal(NamedTuple):
@@ -172,7 +175,10 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
             place = place_of(beside, speed, "speed_column")
             table = table.without(place) if beside is table else table
         content = signal_of(table, sensor.column)
-        fs, of_rate = content.rate(sensor.rate)
+        size = content.values.size
+        fs, of_rate = content.rate(sensor.long_rate if sensor.long_rate and size > sensor.long_samples else sensor.rate)
+        if sensor.long_rate and fs:
+            of_rate = [*of_rate, f"its {size} samples are taken as recorded at {fs:g} Hz"]
         unit, of_unit = content.stated_unit(sensor.scale.unit, assumed)
         scale = sensor.scale._replace(unit=unit)
         problem = unit_problem(*scale)

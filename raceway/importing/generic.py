@@ -225,12 +225,9 @@ def _join(parts: Sequence[tuple[Path, Labels]]) -> tuple[list[FloatArray], float
         read_parts.append([signal.values for signal in signals])
         notes |= {labels.note: None} if labels.note else {}
         for sensor, signal in zip(labels.sensors, signals, strict=True):
-            rate = signal.fs or labels.rate(signal.values.size)
-            if rate is None:
+            if signal.fs is None:
                 raise UnusableError("states no sample rate; give it", "sample_rate_hz")
-            if labels.long_rate_hz:
-                notes[f"its {signal.values.size} samples are taken as recorded at {rate:g} Hz"] = None
-            rates.add(rate)
+            rates.add(signal.fs)
             speeds.append(signal.rpm)
             notes |= dict.fromkeys(
                 f"channel {sensor.name}: {note}" if labels.channels else note for note in signal.warnings

@@ -128,10 +128,6 @@ class Labels(SensorKeys):
         """Names of the channels."""
         return tuple(sensor.name for sensor in self.sensors)
 
-    def rate(self, samples: int) -> float | None:
-        """Sample rate [Hz] of a file of so many samples; None if only the file states it."""
-        return self.long_rate_hz if self.long_rate_hz and samples > self.long_samples else self.sample_rate_hz
-
     def speed(self, stated: float | None) -> tuple[float, list[str]]:
         """Speed [rpm] of a file that states one or none, and a sentence without its end if the nominal one is used."""
         if self.speed_column is not None:
@@ -148,10 +144,10 @@ class Labels(SensorKeys):
         keys = own if own.sensitivity_mv_per_g or own.sensitivity_mv_per_m_s2 or unit not in VOLTAGES else self
         sensitivity = volts_per_acceleration(keys.sensitivity_mv_per_g, keys.sensitivity_mv_per_m_s2)
         column = self.column if own.column is None else own.column
-        rate = None if self.long_rate_hz else self.sample_rate_hz
         variable = own.variable or self.variable
         place = name, variable, column, self.delimiter, self.decimal
-        return Sensor(*place, Scale(unit, sensitivity), rate, self.speed_column, self.speed_unit)
+        course, long = (self.speed_column, self.speed_unit), (self.long_rate_hz, self.long_samples)
+        return Sensor(*place, Scale(unit, sensitivity), self.sample_rate_hz, *course, *long)
 
     @model_validator(mode="after")
     def _belong_together(self) -> Self:

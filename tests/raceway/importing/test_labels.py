@@ -257,3 +257,19 @@ def test_labels_and_recipes_spell_a_quantity_alike():
     assert quantities - in_recipes == {
         "sensitivity_mv_per_m_s2", "resample_hz", "nominal_rpm", "age_s", "rul_s", "long_rate_hz"
     }  # fmt: skip
+
+
+def test_the_rate_of_long_files_is_used_and_checked_like_that_of_all(tmp_path):
+    wavfile.write(tmp_path / "a.wav", 44_100, SIGNAL)
+    np.savetxt(tmp_path / "a.csv", SIGNAL, header="fs = 12 kHz\nx [m/s2]")
+    scipy.io.savemat(tmp_path / "a.mat", {"x": SIGNAL, "speed": np.full(SIGNAL.size, 1500.0)})
+    long = STATED | {"long_rate_hz": 48_000, "long_samples": SIGNAL.size - 1}
+    done = import_labelled(tmp_path, [{"path": "a.wav"}, {"path": "a.csv"}], window=0.02, **long)
+    with open_corpus(done.path) as corpus:
+        assert set(corpus.sample_rate.values) == {48_000}
+    assert f"a.wav: its {SIGNAL.size} samples are taken as recorded at 48000 Hz." in done.warnings
+    assert "a.csv: is at 12000 Hz by its header, and 48000 Hz are given; correct what is given" in done.skipped[0]
+    course = {"path": "a.mat", "variable": "x", "speed_column": "speed", "speed_unit": "rpm", "shaft_rpm": None}
+    table = write_labels(tmp_path, [course], **COMMON | long | {"shaft_rpm": None, "long_samples": SIGNAL.size})
+    with open_corpus(import_generic(table, tmp_path / "b.nc").path) as corpus:
+        assert set(corpus.sample_rate.values) == {FS}
