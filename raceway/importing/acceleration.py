@@ -18,7 +18,7 @@ from raceway.importing.conversion import (
     unit_problem,
     volts_per_acceleration,
 )
-from raceway.importing.header import key_of, known_unit
+from raceway.importing.header import known_unit
 from raceway.importing.matlab import read_variable
 from raceway.importing.refused_files import FloatArray, UnusableError, told_of
 from raceway.importing.sheets import read_sheet
@@ -194,8 +194,8 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
         if speed is not None:
             if fs is None:
                 raise UnusableError("states no sample rate; give it", "sample_rate_hz")
-            unit_of_speed = sensor.speed_unit or key_of(beside.header.unit_of(place))
-            signal, rpm, of_course = at_equal_angles(signal, fs, beside.columns[place], unit_of_speed)
+            stated = beside.header.unit_of(place)
+            signal, rpm, of_course = at_equal_angles(signal, fs, beside.columns[place], sensor.speed_unit, stated)
             told = *told, of_course
         if not np.isfinite(signal).all():
             raise UnusableError("has values beyond the range of numbers; check its unit")

@@ -9,36 +9,38 @@ as the speed varies.
 import numpy as np
 
 from gen.support.units import from_si, rpm_to_hertz
+from raceway.importing.header import key_of
 from raceway.importing.refused_files import FloatArray, UnusableError
 
+SLOWEST, FASTEST = 0.001, 1e7  # rpm
 _SMEARED = 2 ** (1 / 3)  # highest over lowest speed: a third of an octave, as narrow as bands of features are
 _HERTZ = {"hz": 1.0, "1/s": 1.0} | dict.fromkeys(("rpm", "1/min", "min-1", "r/min", "u/min"), rpm_to_hertz(1.0))
+_MOST_DIGITS = 6  # of the pulses in a turn
 
 
-def at_equal_angles(signal: FloatArray, fs: float, course: FloatArray, unit: str) -> tuple[FloatArray, float, str]:
+def at_equal_angles(
+    signal: FloatArray, fs: float, course: FloatArray, wanted: str | None, stated: str = ""
+) -> tuple[FloatArray, float, str]:
     """Signal at equal angles, shape (time,), its mean speed [rpm], and a sentence without its end.
 
-    ``course`` is the speed at each sample, shape (time,), in a ``unit`` of speed, or a tacho whose unit is the number of its pulses in a
-    turn. The sample rate is kept, and what the filter lacks at both ends is cut.
+    ``course`` is the speed at each sample, shape (time,), in a ``wanted`` unit, which is by default the ``stated`` one of the header, or a
+    tacho whose wanted unit is the number of its pulses in a turn. The sample rate is kept, and what the filter lacks at both ends is cut.
 
     Raises
     ------
     UnusableError
-        If the course is none of a shaft that turns all the time.
+        If the unit is not known or another one is stated, or the course is none of a shaft that turns all the time.
     """
     from features.signal.orders import CROSSINGS, angles_from_speed, resample_to_angle
     from features.signal.tacho import angles_from_tacho
 
-    factor, pulses = _HERTZ.get(unit.casefold()), int(unit) if unit.isdecimal() else 0
-    if factor is None and pulses < 1:
-        raise UnusableError(
-            "has a speed in no known unit; give rpm, Hz, or the pulses in a turn of a tacho", "speed_unit"
-        )
+    factor, pulses = _unit(wanted, stated)
     if course.size != signal.size:
         raise UnusableError(f"has {course.size} speeds and {signal.size} samples; export one for each sample")
     slow = np.flatnonzero(~(course > 0))
     if factor and slow.size:
-        message = f"has a speed of {course[slow[0]]:g} {unit} at sample {slow[0] + 1}; cut the recording where its shaft does not turn"
+        where = f"{wanted or stated} at sample {slow[0] + 1}"
+        message = f"has a speed of {course[slow[0]]:g} {where}; cut the recording where its shaft does not turn"
         raise UnusableError(message)
     try:
         angle = angles_from_speed(course * factor, fs) if factor else angles_from_tacho(course, pulses)
@@ -58,3 +60,17 @@ def at_equal_angles(signal: FloatArray, fs: float, course: FloatArray, unit: str
         told += "; so wide a range smears resonances over bands of frequencies: trust its orders alone, or cut it into shorter ones"
     end = int(np.ceil(CROSSINGS * high / mean))
     return np.asarray(even[end:-end], dtype=np.float64), float(from_si(mean, "rpm")), told
+
+
+def _unit(wanted: str | None, stated: str) -> tuple[float, int]:
+    """Unit of a speed [Hz], or 0 and the pulses in a turn of a tacho."""
+    said = wanted or stated
+    factor, of_header = (_HERTZ.get(key_of(text).casefold(), 0.0) for text in (said, stated))
+    pulses = int(wanted) if wanted and wanted.isdecimal() and len(wanted) <= _MOST_DIGITS else 0
+    if not factor and not pulses:
+        what = f"has a speed in {said!r:.40}, which is no unit that is read" if said else "states no unit of its speed"
+        raise UnusableError(f"{what}; give rpm, Hz, or the pulses in a turn of a tacho", "speed_unit")
+    if of_header not in (0, factor):
+        message = f"states a speed in {stated} in its header, and {said} is given; correct what is given"
+        raise UnusableError(message, "speed_unit")
+    return factor, pulses

@@ -99,8 +99,11 @@ def test_an_import_has_the_mean_speed_as_its_label(run_up, tmp_path):
 TURNS = np.arange(N) / 40
 DOUBLE = np.where(np.abs(TURNS - 7.6) < 0.1, 1, pulses(TURNS))
 REFUSED = {  # header of the column, its values, unit, part of the sentence
-    "unit": ("speed", X + 20, None, "has a speed in no known unit; give rpm, Hz, or the pulses in a turn of a tacho with --speed-unit."),
-    "other unit": ("speed [m/s]", X + 20, None, "has a speed in no known unit"),
+    "unit": ("speed", X + 20, None, "in 'speed', which is no unit that is read; give rpm, Hz, or the pulses in a turn of a tacho with --speed-unit."),
+    "other unit": ("speed [m/s]", X + 20, None, "has a speed in 'm/s', which is no unit that is read; give rpm, Hz, or the pulses"),
+    "long unit": ("speed", X + 20, "9" * 5000, "9, which is no unit that is read; give rpm, Hz, or the pulses"),
+    "two units": ("speed [rpm]", X + 1500, "Hz", "states a speed in rpm in its header, and Hz is given; correct what is given with"),
+    "number in the name": ("speed (2)", X + 20, None, "has a speed in '2', which is no unit that is read"),
     "rest": ("speed [Hz]", np.r_[X[:99] + 20, 0, X[100:] + 20], None, "has a speed of 0 Hz at sample 100; cut the recording where"),
     "backwards": ("speed [Hz]", -20 - X, None, "at sample 1; cut the recording where its shaft does not turn."),
     "gap": ("speed [Hz]", [*np.round(X[:-1] + 20, 3).tolist(), ""], None, "has no row like the others in line 641"),
@@ -124,6 +127,11 @@ def test_a_course_that_is_none_is_refused_with_one_sentence(tmp_path, name):
         )
     assert sentence in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("unit", ["rpm", "RPM ", "min^-1", "1/min", "U/min"])
+def test_a_unit_of_a_speed_is_read_as_headers_write_it(unit):
+    assert at_equal_angles(X, FS, X + 1500, unit)[1] == pytest.approx(1500, rel=0.01)
 
 
 def test_a_course_that_is_shorter_than_its_signal_is_refused(tmp_path):
