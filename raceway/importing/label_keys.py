@@ -14,6 +14,7 @@ from gen.physics.bearing_text import bearing_of_label
 from gen.support.key_types import Keys, Millimetres, Name, Text, as_text, on_one_line
 from raceway.importing.acceleration import WITHOUT_UNITS, Sensor
 from raceway.importing.conversion import VOLTAGES, Scale, Unit, unit_problem, volts_per_acceleration
+from raceway.importing.speed_course import FASTEST, SLOWEST
 
 if TYPE_CHECKING:
     FaultClass = str
@@ -46,7 +47,7 @@ def _separates(mark: str) -> str:
 
 
 Column = Annotated[int | str, BeforeValidator(_column)]
-Rpm = Annotated[float, Field(ge=0.001, le=1e7)]
+Rpm = Annotated[float, Field(ge=SLOWEST, le=FASTEST)]
 Hertz = Annotated[float, Field(ge=1, le=1e8)]
 Seconds = Annotated[float, Field(ge=0, le=1e12)]
 Sensitivity = Annotated[float, Field(ge=1e-6, le=1e6)]

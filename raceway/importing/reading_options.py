@@ -10,7 +10,6 @@ from raceway.console.options import Decorator, gathered, names
 UNITS = ("g", "mg", "m/s2", "mm/s2", "V", "mV")
 MARKS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
 DECIMAL_MARKS = (".", ",")
-SLOWEST, FASTEST = 0.001, 1e7  # rpm
 
 
 class Reading(NamedTuple):
@@ -31,6 +30,8 @@ def _speeds(_context: click.Context, _option: click.Parameter, text: str | None)
     """Lowest and highest speed [rpm]; equal for one number."""
     if text is None:
         return None
+    from raceway.importing.speed_course import FASTEST, SLOWEST  # not at the top: help needs nothing of numpy
+
     low, dash, high = text.partition("-")
     try:
         first, last = float(low), float(high if dash else low)

@@ -37,29 +37,39 @@ def at_equal_angles(
     factor, pulses = _unit(wanted, stated)
     if course.size != signal.size:
         raise UnusableError(f"has {course.size} speeds and {signal.size} samples; export one for each sample")
-    slow = np.flatnonzero(~(course > 0))
-    if factor and slow.size:
-        where = f"{wanted or stated} at sample {slow[0] + 1}"
-        message = f"has a speed of {course[slow[0]]:g} {where}; cut the recording where its shaft does not turn"
-        raise UnusableError(message)
+    rpm = from_si(course * factor, "rpm")
+    wrong = np.flatnonzero(~((rpm >= SLOWEST) & (rpm <= FASTEST))) if factor else ()
+    if len(wrong):
+        where = f"at sample {wrong[0] + 1}, and shafts turn at {SLOWEST:g} to {FASTEST:,.0f} rpm"
+        raise UnusableError(
+            f"has a speed of {rpm[wrong[0]]:.6g} rpm {where}; cut the recording there, or correct its unit"
+        )
     try:
-        angle = angles_from_speed(course * factor, fs) if factor else angles_from_tacho(course, pulses)
-        turns = angle / (2 * np.pi)
+        turns = (angles_from_speed(course * factor, fs) if factor else angles_from_tacho(course, pulses)) / (2 * np.pi)
         mean = (turns[-1] - turns[0]) * fs / (course.size - 1)
         # two samples in each turn of a wheel that turns as much faster as the sample rate asks
-        even = resample_to_angle(signal, angle * (fs / (2 * mean)), 2)
+        even = resample_to_angle(signal, turns * (np.pi * fs / mean), 2)
     except ValueError as error:
-        raise UnusableError(f"has no course of a speed: {error}") from None
-    rates = np.gradient(turns) * fs
-    low, high = float(rates.min()), float(rates.max())
-    told = (
-        f"it is sampled again at equal angles of its shaft, which turns at {from_si(low, 'rpm'):.5g} to {from_si(high, 'rpm'):.5g} rpm, "
-        f"{from_si(mean, 'rpm'):.5g} rpm in the mean"
-    )
+        # the advice there is about the arguments of a function
+        reason = str(error).partition(";")[0].removeprefix("tacho: record 0 ")
+        message = (
+            f"has no course of a speed that can be used: it {reason}; cut that part out, or give the pulses in a turn"
+        )
+        raise UnusableError(message, "speed_unit") from None
+    if pulses:
+        # a pulse is off by a part of a sample, which counts less in a whole turn than between two pulses
+        whole = np.interp(np.arange(np.ceil(turns[0]), turns[-1]), turns, np.arange(turns.size))
+        rpm = from_si(np.append(fs / np.diff(whole), mean), "rpm")
+    low, high, mean_rpm = float(rpm.min()), float(rpm.max()), float(from_si(mean, "rpm"))
+    turning = f"turns at {low:.5g} to {high:.5g} rpm"
+    end = int(np.ceil(CROSSINGS * high / mean_rpm))
+    if even.size <= 2 * end:
+        message = f"{turning} and has {even.size} samples at equal angles of its shaft, of which {end} are lost at each end; record longer"
+        raise UnusableError(message)
+    told = f"it is sampled again at equal angles of its shaft, which {turning}, {mean_rpm:.5g} rpm in the mean"
     if high > _SMEARED * low:
         told += "; so wide a range smears resonances over bands of frequencies: trust its orders alone, or cut it into shorter ones"
-    end = int(np.ceil(CROSSINGS * high / mean))
-    return np.asarray(even[end:-end], dtype=np.float64), float(from_si(mean, "rpm")), told
+    return np.asarray(even[end:-end], dtype=np.float64), mean_rpm, told
 
 
 def _unit(wanted: str | None, stated: str) -> tuple[float, int]:

@@ -1,5 +1,7 @@
 """A recording of a varying speed, with its measured course beside it, has its fault lines at their orders."""
 
+import re
+
 import numpy as np
 import pytest
 import scipy.io
@@ -53,8 +55,19 @@ def test_a_run_up_shows_its_fault_line_with_its_course_and_not_without(run_up, c
     assert height_of_line(run_up, rpm / 60, BPFO) < 10
     if unit == "16":  # a missed pulse is counted
         values[np.abs(turns - 40) < 0.03] = 0
-        np.testing.assert_allclose(at_equal_angles(run_up, RATE, values, unit)[0], even, atol=0.5 * even.std())
-    assert "which turns at 1200 to 1800 rpm, 1500 rpm in the mean; so wide a range" in sentence or course == "tacho"
+        np.testing.assert_allclose(at_equal_angles(run_up, RATE, values, unit)[0], even, atol=1e-3 * even.std())
+    low, high = map(float, re.search("which turns at (.*) to (.*) rpm, 1500", sentence).groups())
+    assert (low, high) == pytest.approx((1200, 1800), rel=1e-2)  # one turn is a hundredth of all
+    assert "so wide a range" in sentence
+
+
+def test_a_tacho_of_many_pulses_tells_the_range_of_the_speed():
+    share = np.linspace(1400, 1600, 12_000)
+    tacho = pulses(np.cumsum(share) / 60 / RATE, 60)
+    sentence = at_equal_angles(np.sin(np.arange(12_000)), RATE, tacho, "60")[2]
+    low, high = map(float, re.search("which turns at (.*) to (.*) rpm, ", sentence).groups())
+    assert (low, high) == pytest.approx((1400, 1600), rel=1e-2)
+    assert "so wide a range" not in sentence
 
 
 def test_lines_of_the_shaft_keep_their_height_and_stand_at_their_order():
@@ -99,16 +112,18 @@ def test_an_import_has_the_mean_speed_as_its_label(run_up, tmp_path):
 TURNS = np.arange(N) / 40
 DOUBLE = np.where(np.abs(TURNS - 7.6) < 0.1, 1, pulses(TURNS))
 REFUSED = {  # header of the column, its values, unit, part of the sentence
-    "unit": ("speed", X + 20, None, "in 'speed', which is no unit that is read; give rpm, Hz, or the pulses in a turn of a tacho with --speed-unit."),
+    "unit": ("speed", X + 20, None, "is no unit that is read; give rpm, Hz, or the pulses in a turn of a tacho with --speed-unit."),
     "other unit": ("speed [m/s]", X + 20, None, "has a speed in 'm/s', which is no unit that is read; give rpm, Hz, or the pulses"),
     "long unit": ("speed", X + 20, "9" * 5000, "9, which is no unit that is read; give rpm, Hz, or the pulses"),
     "two units": ("speed [rpm]", X + 1500, "Hz", "states a speed in rpm in its header, and Hz is given; correct what is given with"),
     "number in the name": ("speed (2)", X + 20, None, "has a speed in '2', which is no unit that is read"),
-    "rest": ("speed [Hz]", np.r_[X[:99] + 20, 0, X[100:] + 20], None, "has a speed of 0 Hz at sample 100; cut the recording where"),
-    "backwards": ("speed [Hz]", -20 - X, None, "at sample 1; cut the recording where its shaft does not turn."),
+    "rest": ("speed [Hz]", np.r_[X[:99] + 20, 0, X[100:] + 20], None, "at sample 100, and shafts turn at 0.001 to 10,000,000 rpm; cut"),
+    "backwards": ("speed [Hz]", -20 - X, None, "rpm at sample 1, and shafts turn at"),
+    "overflow": ("speed [rpm]", np.r_[X[:99] + 1500, 1e300, X[100:] + 1500], None, "has a speed of 1e+300 rpm at sample 100, and"),
+    "glitch": ("speed [rpm]", np.r_[X[:99] + 1500, 1e6, X[100:] + 1500], None, "are lost at each end; record longer"),
     "gap": ("speed [Hz]", [*np.round(X[:-1] + 20, 3).tolist(), ""], None, "has no row like the others in line 641"),
-    "no pulses": ("tacho", X * 0 + 1, "1", "has no course of a speed: tacho: record 0 has 0 pulses"),
-    "double pulse": ("tacho", DOUBLE, "1", "has no course of a speed: tacho: record 0 has an interval of 0."),
+    "no pulses": ("tacho", X * 0 + 1, "1", "it has 0 pulses above 1; cut that part out, or give the pulses in a turn with --speed-unit."),
+    "double pulse": ("tacho", DOUBLE, "1", "that can be used: it has an interval of 0."),
     "no such column": ("n", X + 20, "Hz", "and no numbers in speed; choose one with --speed-column."),
 }  # fmt: skip
 
