@@ -48,7 +48,7 @@ def at_equal_angles(
         turns = (angles_from_speed(course * factor, fs) if factor else angles_from_tacho(course, pulses)) / (2 * np.pi)
         mean = (turns[-1] - turns[0]) * fs / (course.size - 1)
         # two samples in each turn of a wheel that turns as much faster as the sample rate asks
-        even = resample_to_angle(signal, turns * (np.pi * fs / mean), 2)
+        even = resample_to_angle(signal - signal[0], turns * (np.pi * fs / mean), 2)
     except ValueError as error:
         # the advice there is about the arguments of a function
         reason = str(error).partition(";")[0].removeprefix("tacho: record 0 ")
@@ -69,7 +69,8 @@ def at_equal_angles(
     told = f"it is sampled again at equal angles of its shaft, which {turning}, {mean_rpm:.5g} rpm in the mean"
     if high > _SMEARED * low:
         told += "; so wide a range smears resonances over bands of frequencies: trust its orders alone, or cut it into shorter ones"
-    return np.asarray(even[end:-end], dtype=np.float64), mean_rpm, told
+    # without its offset a constant signal stays one, and is told as such
+    return np.asarray(even[end:-end] + signal[0], dtype=np.float64), mean_rpm, told
 
 
 def _unit(wanted: str | None, stated: str) -> tuple[float, int]:

@@ -81,6 +81,10 @@ def test_lines_of_the_shaft_keep_their_height_and_stand_at_their_order():
     assert "so wide a range" not in sentence
 
 
+def test_the_signal_of_a_sensor_that_is_not_connected_stays_constant():
+    assert set(at_equal_angles(np.full(N, 3.3), FS, X + 1500, "rpm")[0]) == {3.3}
+
+
 def test_the_diagnosis_of_a_run_up_is_right_with_its_course(run_up, model, tmp_path):
     path = tmp_path / "run_up.csv"
     path.write_text(text(run_up, SHARE * RPM, mark=",", header="x [m/s2],speed [rpm]\n"))
