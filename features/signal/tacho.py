@@ -22,15 +22,16 @@ NEARBY = 9  # intervals whose median is the usual one
 STEADY = 1.5  # ratio of an interval to the one beside it, below which no pulse was missed
 NEAR_WHOLE = 1.15  # ratio to a whole multiple of it, below which pulses were missed
 MOST_MISSED = 0.25  # of all pulses
+MOST_BEYOND = 2  # intervals before the first and after the last pulse
 
 
 def angles_from_tacho(tacho: ArrayLike, pulses_per_turn: int = 1, threshold: float | None = None) -> FloatArray:
     """Angle of the shaft at each sample [rad], 0 at the first pulse, shape (record, time).
 
     A pulse is where the tacho rises through the threshold, interpolated linearly between two samples. A cubic spline
-    joins the angles of the pulses; before the first and after the last one the speed is constant. Pulses that were missed
-    are counted: an interval within 15 % of a whole multiple of the one beside it has them, one within a factor of 1.5 has
-    not. Missed pulses are up to a quarter of all.
+    joins the angles of the pulses; before the first and after the last one the speed is constant, for two intervals at
+    most. Pulses that were missed are counted: an interval within 15 % of a whole multiple of the one beside it has them,
+    one within a factor of 1.5 has not. Missed pulses are up to a quarter of all.
 
     Parameters
     ----------
@@ -45,7 +46,8 @@ def angles_from_tacho(tacho: ArrayLike, pulses_per_turn: int = 1, threshold: flo
     Raises
     ------
     ValueError
-        If a record has fewer than two pulses, or pulses that are neither at equal angles nor plainly missed ones.
+        If a record has fewer than two pulses, begins or ends with more than two intervals without one, or has pulses that
+        are neither at equal angles nor plainly missed ones.
     """
     check_whole(pulses_per_turn=pulses_per_turn)
     signals = as_records(tacho, "tacho").astype(float, copy=False)
@@ -66,6 +68,10 @@ def angles_from_tacho(tacho: ArrayLike, pulses_per_turn: int = 1, threshold: flo
         angle[row, first:last] = course(time[first:last])
         for beyond, end in ((slice(0, first), pulses[0]), (slice(last, None), pulses[-1])):
             angle[row, beyond] = course(end) + course(end, 1) * (time[beyond] - end)
+        if max(-angle[row, 0], angle[row, -1] - course(pulses[-1])) > MOST_BEYOND * 2 * np.pi / pulses_per_turn:
+            raise ValueError(
+                f"tacho: record {row} has no pulse before sample {pulses[0]:.0f} and after {pulses[-1]:.0f}; cut those parts off."
+            )
     return like(tacho, angle)
 
 

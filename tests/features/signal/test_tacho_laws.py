@@ -83,3 +83,11 @@ def test_a_wheel_with_missing_teeth_is_named_unless_its_whole_number_is_given():
 def test_a_tacho_that_misses_every_other_pulse_is_refused():
     with pytest.raises(ValueError, match=r"misses .* or its marks are not at equal angles"):
         angles_from_tacho(tacho(course(20, 20), 1, range(5, 35, 2)))
+
+
+@pytest.mark.parametrize("end", [slice(None, 2000), slice(5000, None)])
+def test_a_tacho_that_is_still_at_one_end_is_refused(end):
+    signal = tacho(course(10, 30), 1)
+    signal[end] = 0
+    with pytest.raises(ValueError, match=r"record 0 has no pulse before sample \d+ and after \d+; cut those parts off"):
+        angles_from_tacho(signal)
