@@ -8,7 +8,7 @@ import click
 from raceway.console import show
 from raceway.console.options import A_PATH, Analysis, band_option, picture_option
 from raceway.console.progress_bar import notice
-from raceway.importing.reading_options import Reading, reading_options, rpm_option
+from raceway.importing.reading_options import Reading, check_speed, reading_options, rpm_option
 
 if TYPE_CHECKING:
     from raceway.reports.pictures import DrawnRecord
@@ -60,6 +60,7 @@ def plot(
     Lines of the fault are shaded, their sidebands dotted, lines of other faults dashed. A recording has no known fault. At a speed that
     varies, --rpm is its range; the speed is then found in the signal, and the lines are drawn over orders of the shaft.
     """
+    check_speed(speeds, reading)
     # without any choice: a record of each class
     if _is_corpus(source) and (record, view, healthy, band) == (None,) * 4:
         _draw_classes(source, output)
@@ -132,6 +133,6 @@ def _shown(
         notice(f"warning: {note}")
     (signal,) = recorded.signals.values()
     # the mean of a measured course is exact
-    low, high = (recorded.rpm or 0.0,) * 2 if speeds is None or reading.speed_column is not None else speeds
+    low, high = (recorded.rpm or 0.0,) * 2 if speeds is None else speeds
     rates = rpm_to_hertz(low), rpm_to_hertz(high)
     return shown_recording(source.name, signal, recorded.fs, rates, bearing_orders(bearing), options["band"])

@@ -11,7 +11,7 @@ from raceway.console import show
 from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, model_option
 from raceway.console.progress_bar import notice, notice_compilation
 from raceway.diagnosis.tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
-from raceway.importing.reading_options import Reading, reading_options, rpm_option
+from raceway.importing.reading_options import Reading, check_speed, reading_options, rpm_option
 
 if TYPE_CHECKING:
     from gen.physics.bearing import Bearing
@@ -101,6 +101,7 @@ def diagnose(
     from gen.corpus import make_result_folder
     from raceway.importing.user_folder import read_as_stated, read_recording, readings_of, recordings_in, set_aside
 
+    check_speed(speeds, reading)
     candidates = _bearings(bearings, speeds)
     several = recording.is_dir()
     unusable: dict[Path, str] = {}

@@ -44,6 +44,14 @@ def _speeds(_context: click.Context, _option: click.Parameter, text: str | None)
     return first, last
 
 
+def check_speed(speeds: tuple[float, float] | None, reading: Reading) -> None:
+    """Refuse options that tell the speed twice, or the unit of none."""
+    if speeds is not None and reading.speed_column is not None:
+        raise click.UsageError("--rpm and --speed-column both tell the speed; leave one of the two out")
+    if reading.speed_unit is not None and reading.speed_column is None:
+        raise click.UsageError("--speed-unit is that of --speed-column, which is missing; give it, or leave both out")
+
+
 def _a_number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
     if value is not None and math.isnan(value):  # it passes every range
         raise click.BadParameter("nan is not a number")

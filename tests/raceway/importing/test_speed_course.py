@@ -157,3 +157,19 @@ def test_a_course_that_is_shorter_than_its_signal_is_refused(tmp_path):
     scipy.io.savemat(tmp_path / "a.mat", {"x": X, "speed": X[:-9] + 20})
     with pytest.raises(CorpusError, match="has 631 speeds and 640 samples; export one for each sample"):
         read_signal(tmp_path / "a.mat", variable="x", rate=FS, speed_column="speed", speed_unit="Hz")
+
+
+@pytest.mark.parametrize("command", ["diagnose", "plot"])
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--rpm", 1500, "--speed-column", "speed"), "--rpm and --speed-column both tell the speed; leave one"),
+        (("--rpm", 1500, "--speed-unit", "rpm"), "--speed-unit is that of --speed-column, which is missing; give"),
+    ],
+)
+def test_a_speed_is_told_once(run, tmp_path, command, words, sentence):
+    (tmp_path / "a.csv").write_text(text(X, X + 1500, header="x [g];speed [rpm]\n"))
+    output = ("-o", tmp_path / "a.png") if command == "plot" else ()
+    result = run(command, tmp_path / "a.csv", "--bearing", "6205", "--rate", FS, *words, *output)
+    assert result.exit_code == 2
+    assert sentence in result.stderr
