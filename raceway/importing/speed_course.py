@@ -37,6 +37,9 @@ def at_equal_angles(
     factor, pulses = _unit(wanted, stated)
     if course.size != signal.size:
         raise UnusableError(f"has {course.size} speeds and {signal.size} samples; export one for each sample")
+    if signal.size <= 2 * CROSSINGS:
+        message = f"has {signal.size} samples, of which {CROSSINGS} are lost at each end at equal angles of its shaft; record longer"
+        raise UnusableError(message)
     rpm = from_si(course * factor, "rpm")
     wrong = np.flatnonzero(~((rpm >= SLOWEST) & (rpm <= FASTEST))) if factor else ()
     if len(wrong):
@@ -51,10 +54,8 @@ def at_equal_angles(
         even = resample_to_angle(signal - signal[0], turns * (np.pi * fs / mean), 2)
     except ValueError as error:
         # the advice there is about the arguments of a function
-        reason = str(error).partition(";")[0].removeprefix("tacho: record 0 ")
-        message = (
-            f"has no course of a speed that can be used: it {reason}; cut that part out, or give the pulses in a turn"
-        )
+        reason = str(error).partition(";")[0].rpartition("record 0 ")[2]
+        message = f"has no tacho that can be used: it {reason}; cut out what has no even pulses, or correct the pulses in a turn"
         raise UnusableError(message, "speed_unit") from None
     if pulses:
         # a pulse is off by a part of a sample, which counts less in a whole turn than between two pulses

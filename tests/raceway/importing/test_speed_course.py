@@ -11,6 +11,7 @@ from features.signal.demodulation import amplitude_spectrum
 from gen.corpus import open_corpus
 from gen.support.errors import CorpusError
 from raceway.importing import read_signal
+from raceway.importing.refused_files import UnusableError
 from raceway.importing.speed_course import at_equal_angles
 from raceway.importing.user_folder import OPTIONS
 from tests.diagnoses import told
@@ -126,8 +127,8 @@ REFUSED = {  # header of the column, its values, unit, part of the sentence
     "overflow": ("speed [rpm]", np.r_[X[:99] + 1500, 1e300, X[100:] + 1500], None, "has a speed of 1e+300 rpm at sample 100, and"),
     "glitch": ("speed [rpm]", np.r_[X[:99] + 1500, 1e6, X[100:] + 1500], None, "are lost at each end; record longer"),
     "gap": ("speed [Hz]", [*np.round(X[:-1] + 20, 3).tolist(), ""], None, "has no row like the others in line 641"),
-    "no pulses": ("tacho", X * 0 + 1, "1", "it has 0 pulses above 1; cut that part out, or give the pulses in a turn with --speed-unit."),
-    "double pulse": ("tacho", DOUBLE, "1", "that can be used: it has an interval of 0."),
+    "no pulses": ("tacho", X * 0 + 1, "1", "has no even pulses, or correct the pulses in a turn with --speed-unit."),
+    "double pulse": ("tacho", DOUBLE, "1", "has no tacho that can be used: it has an interval of 0."),
     "no such column": ("n", X + 20, "Hz", "and no numbers in speed; choose one with --speed-column."),
 }  # fmt: skip
 
@@ -151,6 +152,12 @@ def test_a_course_that_is_none_is_refused_with_one_sentence(tmp_path, name):
 @pytest.mark.parametrize("unit", ["rpm", "RPM ", "min^-1", "1/min", "U/min"])
 def test_a_unit_of_a_speed_is_read_as_headers_write_it(unit):
     assert at_equal_angles(X, FS, X + 1500, unit)[1] == pytest.approx(1500, rel=0.01)
+
+
+@pytest.mark.parametrize(("size", "unit"), [(1, "rpm"), (8, "1"), (64, "rpm")])
+def test_a_recording_of_which_nothing_is_left_is_refused(size, unit):
+    with pytest.raises(UnusableError, match=f"has {size} samples, of which 32 are lost at each end .*; record longer"):
+        at_equal_angles(X[:size], FS, X[:size] + 1500, unit)
 
 
 def test_a_course_that_is_shorter_than_its_signal_is_refused(tmp_path):
