@@ -165,15 +165,31 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
             tables[which] = _table(path, *which)
         return tables[which]
 
+    def course_at(speed: int | str, table: NumberTable, sensor: Sensor) -> tuple[NumberTable, int]:
+        """Table that holds the speed, and its column there."""
+        if isinstance(speed, int) or path.suffix.lower() not in _OF_VARIABLES:
+            return table, place_of(table, speed, "speed_column")
+        try:
+            beside = table_at(speed, sensor)
+        except UnusableError as reason:
+            text, key = reason.args
+            raise UnusableError(text, key and "speed_column") from None
+        if len(beside.columns) > 1:
+            message = f"has {len(beside.columns)} columns in {speed}; choose a variable of one"
+            raise UnusableError(message, "speed_column")
+        return beside, place_of(beside, 0, "speed_column")
+
     @np.errstate(all="ignore")
     def read(sensor: Sensor) -> Signal:
         table, speed = table_at(sensor.variable, sensor), sensor.speed_column
         beside, place = table, 0
         if speed is not None:
-            if isinstance(speed, str) and path.suffix.lower() in _OF_VARIABLES:
-                beside, speed = table_at(speed, sensor), 0
-            place = place_of(beside, speed, "speed_column")
-            table = table.without(place) if beside is table else table
+            beside, place = course_at(speed, table, sensor)
+            if beside is table:
+                table = table.without(place)
+                if not table.columns or (sensor.column is not None and place in table.header.places(sensor.column)):
+                    message = f"has its speed and its signal in column {table.header.name(place)}; choose another"
+                    raise UnusableError(message, "speed_column")
         content = signal_of(table, sensor.column)
         size = content.values.size
         fs, of_rate = content.rate(sensor.long_rate if sensor.long_rate and size > sensor.long_samples else sensor.rate)
@@ -194,8 +210,10 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
         if speed is not None:
             if fs is None:
                 raise UnusableError("states no sample rate; give it", "sample_rate_hz")
-            stated = beside.header.unit_of(place)
-            signal, rpm, of_course = at_equal_angles(signal, fs, beside.columns[place], sensor.speed_unit, stated)
+            course, stated = beside.columns[place], beside.header.unit_of(place)
+            signal, rpm, of_course = at_equal_angles(
+                signal, fs, course, sensor.speed_unit, stated, absolute=beside.absolute
+            )
             told = *told, of_course
         if not np.isfinite(signal).all():
             raise UnusableError("has values beyond the range of numbers; check its unit")

@@ -69,7 +69,7 @@ def _table(variables: Mapping[str, Any], variable: str | None) -> NumberTable:
     }
     name = _only(sizes, variable) if variable is None or "*" in variable else variable
     if name not in variables:
-        raise UnusableError(f"holds {_listing(variables)}, not {name}")
+        raise UnusableError(f"holds {_listing(variables)}, not {name}; name one", "variable")
     if variables[name].dtype.kind not in _REAL + "U" or variables[name].shape is None:
         raise UnusableError(f"holds {name}, but neither real numbers nor text in it")
     # speeds and sample rates are beside the variable, or of the whole file

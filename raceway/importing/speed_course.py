@@ -19,12 +19,13 @@ _MOST_DIGITS = 6  # of the pulses in a turn
 
 
 def at_equal_angles(
-    signal: FloatArray, fs: float, course: FloatArray, wanted: str | None, stated: str = ""
+    signal: FloatArray, fs: float, course: FloatArray, wanted: str | None, stated: str = "", *, absolute: bool = True
 ) -> tuple[FloatArray, float, str]:
     """Signal at equal angles, shape (time,), its mean speed [rpm], and a sentence without its end.
 
     ``course`` is the speed at each sample, shape (time,), in a ``wanted`` unit, which is by default the ``stated`` one of the header, or a
-    tacho whose wanted unit is the number of its pulses in a turn. The sample rate is kept, and what the filter lacks at both ends is cut.
+    tacho whose wanted unit is the number of its pulses in a turn; values that are not ``absolute`` can only be a tacho. The sample rate is
+    kept, and what the filter lacks at both ends is cut.
 
     Raises
     ------
@@ -40,9 +41,12 @@ def at_equal_angles(
     if signal.size <= 2 * CROSSINGS:
         message = f"has {signal.size} samples, of which {CROSSINGS} are lost at each end at equal angles of its shaft; record longer"
         raise UnusableError(message)
+    if factor and not absolute:
+        message = "holds integers, whose full scale is not known, and so no speed; give the pulses in a turn of a tacho"
+        raise UnusableError(message, "speed_unit")
     rpm = from_si(course * factor, "rpm")
-    wrong = np.flatnonzero(~((rpm >= SLOWEST) & (rpm <= FASTEST))) if factor else ()
-    if len(wrong):
+    wrong = np.flatnonzero(~((rpm >= SLOWEST) & (rpm <= FASTEST)) & (pulses == 0))
+    if wrong.size:
         where = f"at sample {wrong[0] + 1}, and shafts turn at {SLOWEST:g} to {FASTEST:,.0f} rpm"
         raise UnusableError(
             f"has a speed of {rpm[wrong[0]]:.6g} rpm {where}; cut the recording there, or correct its unit"

@@ -237,8 +237,8 @@ def test_files_that_hold_no_such_recording_are_named_and_the_others_are_imported
     done, corpus = imported(source, output)
     assert (done.recordings, set(corpus.recording.values.tolist())) == (1, {105})
     assert [sentence.partition(", nor")[0] for sentence in done.skipped] == [
-        "106.mat:X106_DE_time: holds X222_DE_time, X222RPM, not X106_DE_time; skipped.",
-        "107.mat:X107_DE_time: holds bearing.gs, bearing.sr, not X107_DE_time; skipped.",
+        "106.mat:X106_DE_time: holds X222_DE_time, X222RPM, not X106_DE_time; name one with variable; skipped.",
+        "107.mat:X107_DE_time: holds bearing.gs, bearing.sr, not X107_DE_time; name one with variable; skipped.",
     ]
 
 

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 import scipy.io
+from scipy.io import wavfile
 
 import gen
 from features.signal.demodulation import amplitude_spectrum
@@ -164,6 +165,28 @@ def test_a_course_that_is_shorter_than_its_signal_is_refused(tmp_path):
     scipy.io.savemat(tmp_path / "a.mat", {"x": X, "speed": X[:-9] + 20})
     with pytest.raises(CorpusError, match="has 631 speeds and 640 samples; export one for each sample"):
         read_signal(tmp_path / "a.mat", variable="x", rate=FS, speed_column="speed", speed_unit="Hz")
+
+
+WITHOUT = {  # file, its keys, part of the sentence
+    "only column": ("x.npy", {"speed_column": 0}, "has its speed and its signal in column 0; choose another with speed_column."),
+    "same column": ("two.npy", {"column": 1, "speed_column": 1}, "has its speed and its signal in column 1; choose another"),
+    "no such variable": ("a.mat", {"variable": "x", "speed_column": "n"}, "holds speed, two, x, not n; name one with speed_column."),
+    "two columns": ("a.mat", {"variable": "x", "speed_column": "two"}, "has 2 columns in two; choose a variable of one with"),
+    "integers": ("two.wav", {"column": 0, "speed_column": 1}, "holds integers, whose full scale is not known, and so no speed;"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_a_file_without_a_column_of_the_speed_is_refused(tmp_path, name):
+    file, keys, sentence = WITHOUT[name]
+    two = np.stack([X, X + 1500], axis=1)
+    np.save(tmp_path / "x.npy", X)
+    np.save(tmp_path / "two.npy", two)
+    scipy.io.savemat(tmp_path / "a.mat", {"speed": X + 1500, "two": two, "x": X})
+    wavfile.write(tmp_path / "two.wav", int(FS), two.astype(np.int16))
+    with pytest.raises(CorpusError) as refused:
+        read_signal(tmp_path / file, rate=FS, speed_unit="rpm", **keys)
+    assert sentence in str(refused.value)
 
 
 @pytest.mark.parametrize("command", ["diagnose", "plot"])
