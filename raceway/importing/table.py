@@ -119,11 +119,13 @@ class _Text(NamedTuple):
         """Number of lines."""
         return self.content.count(b"\n")
 
-    def flaw(self, number: int) -> UnusableError:
-        """Reason why the line with a number from 1 cannot be used."""
+    def flaw(self, number: int, first: int) -> UnusableError:
+        """Reason why the line with a number from 1 cannot be used; the first row of numbers is in a line, too."""
         text = " ".join(next(split([self.content.split(b"\n", number)[number - 1].decode()], self.mark)).fields)
         where = f"line {number} ({text!r:.60}), where {self.height - number + 1} lines would be lost"
-        return UnusableError(f"has no row like the others in {where}; correct the file, or cut it there")
+        # nothing is left of a file that is cut before its second row
+        advice = "correct the file, or cut it there" if number > first else "correct that line"
+        return UnusableError(f"has no row like the others in {where}; {advice}")
 
     def without_notes(self) -> "tuple[_Text, tuple[str, ...]]":
         """Text without the notes and empty lines at its end, and a sentence on them."""
@@ -153,7 +155,7 @@ class _Text(NamedTuple):
             line = re.search(r"in line (\d+)", str(error))
             if line is None:
                 raise
-            raise self.flaw(start + int(line[1]) - 1) from None
+            raise self.flaw(start + int(line[1]) - 1, start) from None
 
 
 def read_table(content: bytes, mark: str, decimal: str | None) -> NumberTable:
@@ -186,9 +188,9 @@ def read_table(content: bytes, mark: str, decimal: str | None) -> NumberTable:
     # a row must not be taken for the end of the header, nor a line of the header for the first row
     last = above[-1].fields if above else []
     if last and (is_flawed_row(last) or all(n < len(last) and is_number(last[n]) for n in starts)):
-        raise text.flaw(above[-1].number)
+        raise text.flaw(above[-1].number, start)
     if any(not columns[n][0] and all(columns[n][1:]) for n in starts):
-        raise text.flaw(start)
+        raise text.flaw(start, start)
     if [*filter(None, rows[0])] == [str(height - 1)]:
         message = f"has {rows[0][0]} in line {start}, which is the number of the rows below; delete that line"
         raise UnusableError(message)
@@ -204,10 +206,10 @@ def read_table(content: bytes, mark: str, decimal: str | None) -> NumberTable:
     tested = frame if mark == BLANK else frame[[0]]
     row = min((_first_text(column, read.get(n), mark == BLANK) for n, column in tested.items()), default=height)  # type: ignore[arg-type]
     if row < height:
-        raise text.flaw(start + row)
+        raise text.flaw(start + row, start)
     # a column is used up to the first row in which it holds no number, and refused if it is asked for
     wrong = {n: int(np.argmin(np.isfinite(values))) for n, values in read.items() if not np.isfinite(values).all()}
-    flaws = {n: text.flaw(start + row) for n, row in wrong.items()}
+    flaws = {n: text.flaw(start + row, start) for n, row in wrong.items()}
     cut = {n: values[: wrong.get(n)] for n, values in read.items()}
     return NumberTable(cut, header, flaws, {} if decimal else marks, notes)
 

@@ -272,7 +272,7 @@ REFUSED = {  # file, content or writer, what is given, part of the sentence
     "pandas_series.csv": (text(range(N), X, mark=",", header=",0\n"), {"column": 1, **AT}, "has no row like the others in line 1 (' 0')"),
     "gap_between_blanks.txt": (changed(text(X, Y, T, mark=" "), 300, "0.5 0.7"), {"column": 1, **AT},
         "has no row like the others in line 300"),
-    "overload_first.csv": ("OVL\n" + lines(X), AT, "has no row like the others in line 1 ('OVL')"),
+    "overload_first.csv": ("OVL\n" + lines(X), AT, "in line 1 ('OVL'), where 641 lines would be lost; correct that line."),
     "marked_first.csv": (text(T, X, header="t [s];x [g]\n0*;0.5\n"), {}, "has no row like the others in line 2"),
     "marked_last.csv": (PLAIN + "0.06*,0.5\n", {}, "has no row like the others in line 642"),
     "number_in_header.csv": ("Sample rate [Hz]\n12800\nAcceleration [g]\n" + lines(X), {}, "has no row like the others in line 3"),
