@@ -18,6 +18,7 @@ _SOUND = 11_025.0  # Hz; sound cards and phones record at its multiples
 _JITTER = 0.05  # of a step
 _FEW, _MANY = 0.01, 0.1  # of the steps
 _MOST_NAMED = 12
+_MOST_DIGITS = 6
 
 
 class Values(NamedTuple):
@@ -119,8 +120,17 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
         rates += [(rate, f"times in column {name}")] if rate else []
     own = header.unit_of(signals[0])
     name = header.name(signals[0])
-    named = f"column {name if own in name else f'{name} in {own}'}" if own else header.unit
+    named = f"column {name if own in name else f'{name} in {own:.60}'}" if own else header.unit[:60]
     return Values(columns[signals[0]], tuple(rates), own or header.unit, named, table)
+
+
+def column_of(text: str) -> int | str:
+    """Number of a column, which has at most six digits, or its name.
+
+    >>> column_of("3"), column_of("x"), column_of("20261127")
+    (3, 'x', '20261127')
+    """
+    return int(text) if text.isdecimal() and len(text) <= _MOST_DIGITS else text
 
 
 def place_of(table: NumberTable, column: int | str, key: str) -> int:
@@ -136,7 +146,9 @@ def place_of(table: NumberTable, column: int | str, key: str) -> int:
         message = f"has several columns {column} ({_listed(table.header, places)}); choose one by its number"
         raise UnusableError(message, key)
     if not places or places[0] not in table.columns:
-        message = f"has the columns {_listed(table.header, [*table.columns])}, and no numbers in {column}; choose one"
+        message = (
+            f"has the columns {_listed(table.header, [*table.columns])}, and no numbers in {column!s:.60}; choose one"
+        )
         raise UnusableError(message, key)
     _check_numbers(table, places)
     return places[0]

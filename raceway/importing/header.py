@@ -102,7 +102,7 @@ def header_of(rows: Sequence[Sequence[str]], least: int, most: int) -> Header:
 def _of_labview(lines: Sequence[list[str]], names: tuple[str, ...], units: tuple[str, ...]) -> Header:
     """Header whose lines state unit, step and samples of each column, in the place of the column."""
     said = {fields[0]: fields for fields in lines}
-    samples = max((int(field) for field in said.get("Samples", ()) if field.isdecimal()), default=0)
+    samples = max((int(field) for field in said.get("Samples", ()) if re.fullmatch(r"\d{1,9}", field)), default=0)
     if "Time" not in said.get("X_Dimension", ()):
         return Header(names, units, samples=samples)
     labels = [*said.get("Y_Unit_Label", ()), *[""] * len(names)]
@@ -212,7 +212,7 @@ def rate_of_step(text: str) -> float | None:
     (1024.0, 12800.0, None)
     """
     step = number_in(text)
-    if not step:
+    if not step or math.isinf(step):
         return None
     exponent = Decimal(text.replace(",", ".")).as_tuple().exponent
     return rounded_rate(1 / step, max(0.5 * 10.0 ** int(exponent) / step, 1e-9))

@@ -1,6 +1,7 @@
 """Keys that describe recordings: columns of a table of labels, or common to all of its rows."""
 
 import math
+import re
 import unicodedata
 from pathlib import Path, PureWindowsPath
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
@@ -33,7 +34,7 @@ def _inside(text: str) -> str:
 
 
 def _column(column: Any) -> Any:
-    if isinstance(column, str):
+    if isinstance(column, str) and not re.fullmatch(r"\d{7,}", column):
         return on_one_line(column)
     if type(column) is int and 0 <= column < _MOST_COLUMNS:
         return column

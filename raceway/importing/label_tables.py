@@ -20,6 +20,7 @@ from gen.support.limits import check_limit, limit
 from gen.support.sentences import sentences
 from gen.support.units import unit_suffix
 from gen.support.yaml_files import parse_yaml, read_yaml
+from raceway.importing.columns import column_of
 from raceway.importing.label_keys import Labels
 from raceway.importing.numerals import decimal_marks, is_number, number_in
 from raceway.importing.refused_files import guarded, told_of
@@ -167,7 +168,7 @@ def value_of(where: str, key: str, text: Any, marks: str = "") -> Any:
     if key == "channels":
         return parse_yaml(text, where, CorpusError)
     if key not in _NUMBERS or not is_number(text):
-        return int(text) if key in ("column", "speed_column") and text.isdecimal() else text
+        return column_of(text) if key in ("column", "speed_column") else text
     number = number_in(text, marks if len(marks) == 1 else "")
     if number is None:
         raise CorpusError(

@@ -39,7 +39,7 @@ def _speeds(_context: click.Context, _option: click.Parameter, text: str | None)
         first, last = math.nan, math.nan
     if not SLOWEST <= first <= last <= FASTEST:
         raise click.BadParameter(
-            f"{text!r} is no speed and no range such as 1400-1900, of {SLOWEST:g} to {FASTEST:,.0f} rpm"
+            f"{text!r:.40} is no speed and no range such as 1400-1900, of {SLOWEST:g} to {FASTEST:,.0f} rpm"
         )
     return first, last
 

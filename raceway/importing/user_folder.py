@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from gen.support.errors import CorpusError
 from raceway.importing.acceleration import SUFFIXES, Sensor, Signal, is_known, reader
+from raceway.importing.columns import column_of
 from raceway.importing.conversion import Scale, volts_per_acceleration
 from raceway.importing.recorded import ACCELERATION, Recorded
 from raceway.importing.refused_files import UnusableError, told_of
@@ -123,14 +124,10 @@ def _read(path: Path, reading: "Reading", given_up: Sequence[str]) -> "tuple[Rec
 
 def _sensor(path: Path, reading: "Reading", channel: str | None) -> Sensor:
     """How a channel is read; a name is a variable of a MATLAB file, and else a column."""
-    number = _place(channel)
+    number = channel and column_of(channel)
     named = path.suffix.lower() == ".mat" and isinstance(number, str)
     variable, column = (channel, None) if named else (reading.variable, number)
     scale = Scale(reading.unit, volts_per_acceleration(reading.sensitivity, None))
     place = channel or "", variable, column, reading.delimiter, reading.decimal
-    return Sensor(*place, scale, reading.rate, _place(reading.speed_column), reading.speed_unit)
-
-
-def _place(column: str | None) -> int | str | None:
-    """Number of a column, or its name."""
-    return int(column) if column is not None and column.isdecimal() else column
+    speed = reading.speed_column and column_of(reading.speed_column)
+    return Sensor(*place, scale, reading.rate, speed, reading.speed_unit)

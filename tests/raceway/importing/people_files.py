@@ -144,6 +144,8 @@ RIGHT = {  # file, content or writer, what is given, what is found beside X: sam
     # programs
     "one.lvm.txt": (text(T, X, mark="\t", header=LVM.format(**ONE_LVM)), {}, FS, "g"),
     "comment.lvm.txt": (text(T, [f"{X[0]}\tstarted by hand", *X[1:]], mark="\t", header=LVM.format(**ONE_LVM)), {}, FS, "g"),
+    "no_step.lvm.txt": (text(T, X, mark="\t", header=LVM.format(**ONE_LVM | {"step": "1e400"})), {}, FS, "g"),
+    "samples_of_5000_digits.lvm.txt": (text(T, X, mark="\t", header=LVM.format(**ONE_LVM).replace("640", "9" * 5000)), {}, FS, "g"),
     "german.lvm.txt": (text(T, X, mark="\t", comma=True, header=LVM.format(**ONE_LVM | {"point": ",", "step": "7,8125E-5"})), {}, FS, "g"),
     "no_times.lvm.txt": (text([""] * N, X, mark="\t", header=LVM.format(**ONE_LVM | {"columns": "No"})), {}, FS, "g"),
     "two.lvm.txt": (text(T, Y, X, mark="\t",

@@ -122,7 +122,7 @@ REFUSED = {
     "column specimen: '\\x1b' is a control character": {"specimen": "\x1b[2J"},
     "column specimen: 'b\\nc' has a tab or a line break; write it on one line.": {"specimen": "b\nc"},
     "column title: 6000 characters are too many; give at most 5000.": {"title": "t" * 6000},
-    "column column: is not a column; give its number, 0 to 999999,": {"column": "9" * 20},
+    "column column: is not a column; give its number, 0 to 999999,": {"column": "9" * 5000},
     "column delimiter: 2 characters are too many; give at most 1.": {"delimiter": ";;"},
     "column delimiter: '5' cannot separate columns; give one character": {"delimiter": "5"},
     "row 2: the unit is V and the sensitivity of the sensor is missing; give it in mV per g": {"sensitivity_mv_per_g": ""},

@@ -169,6 +169,7 @@ def test_a_course_that_is_shorter_than_its_signal_is_refused(tmp_path):
 
 WITHOUT = {  # file, its keys, part of the sentence
     "only column": ("x.npy", {"speed_column": 0}, "has its speed and its signal in column 0; choose another with speed_column."),
+    "long number": ("two.npy", {"column": 0, "speed_column": "9" * 5000}, f"no numbers in {'9' * 60}; choose one with speed_column."),
     "same column": ("two.npy", {"column": 1, "speed_column": 1}, "has its speed and its signal in column 1; choose another"),
     "no such variable": ("a.mat", {"variable": "x", "speed_column": "n"}, "holds speed, two, x, not n; name one with speed_column."),
     "two columns": ("a.mat", {"variable": "x", "speed_column": "two"}, "has 2 columns in two; choose a variable of one with"),
