@@ -1,5 +1,6 @@
 """Tables in files of arrays: NumPy, WAV, Parquet, TDMS of LabVIEW and universal file format 58."""
 
+import logging
 import re
 import warnings
 from collections.abc import Iterable
@@ -74,10 +75,14 @@ def read_tdms(path: Path) -> NumberTable:
     Raises
     ------
     UnusableError
-        If npTDMS is missing, or the file is damaged.
+        If npTDMS is missing, or the file is truncated or damaged.
     """
     library = optional("nptdms")
+    # its warnings on parts of a file are sentences here
+    optional("nptdms.log").log_manager.set_level(logging.ERROR)
     with guarded(path, "TDMS"), path.open("rb") as stream, library.TdmsFile.open(stream) as file:
+        if file.file_status.incomplete_final_segment:
+            raise UnusableError("is truncated; copy it again, or close it in the program that records")
         every = [channel for group in file.groups() for channel in group.channels() if len(channel)]
         channels = [channel for channel in every if channel.dtype.kind in "iuf"]
         check_limit("file_bytes", sum(8 * len(channel) for channel in channels), "is unpacked", UnusableError)

@@ -92,6 +92,11 @@ def parquet(path):
     pd.DataFrame({"t [s]": T, "x [g]": X, "who": "me"}).to_parquet(path)
 
 
+def truncated(path):
+    tdms(path, ("DE", "g", X))
+    path.write_bytes(path.read_bytes()[:-1500])
+
+
 CLOCK = np.datetime64("2026-01-01") + np.arange(N).astype("timedelta64[s]")
 SHEET = ods_row("t [s]", "x [g]") + "".join(map(ods_row, T.tolist(), X.tolist()))
 TWO = LVM.format(**ONE_LVM | {"channels": "2\t", "unit": "Newtons\tm/s^2", "step": "1.000000\t7.8125E-5", "columns": "No",
@@ -137,6 +142,7 @@ REFUSED = {
     "several.tdms": (lambda path: tdms(path, ("p", "g", X), ("q", "g", Y)), "has 2 columns (0 p, 1 q) and none is chosen; choose one with"),
     "empty.tdms": (lambda path: tdms(path), "holds no column of numbers"),
     "damaged.tdms": (lambda path: path.write_bytes(b"TDSm" + bytes(40)), "is truncated, damaged or not a TDMS file"),
+    "truncated.tdms": (truncated, "is truncated; copy it again, or close it in the program that records."),
     "pressure.uff": (lambda path: uff(path, ("p", "", X, {"ordinate_spec_data_type": 15})),
                      "in kind 15 in its header, which is no unit that is read"),
     "spectrum.uff": (lambda path: uff(path, ("PSD", "g", X, {"func_type": 9})), "holds a function of kind 9 (PSD), and no signal"),
