@@ -24,9 +24,11 @@ _MOST_PATHS = 3  # shown of the files that a sentence holds for
 def assumptions(files: Sequence[Labels], fs: float) -> tuple[str, ...]:
     """One sentence for each fact and its source; for each unit and bearing, with its files if not all have it."""
     stored = {"sample_rate_hz": f", stored at {fs:g} Hz"}
-    told = [
-        f"{topic}: {_source(files, key, otherwise)}{stored.get(key, '')}" for key, (topic, otherwise) in _TOPICS.items()
-    ]
+    told = list[str]()
+    for key, (topic, otherwise) in _TOPICS.items():
+        # a measured speed is told of each file
+        of_key = [labels for labels in files if key != "shaft_rpm" or labels.speed_column is None]
+        told += [f"{topic}: {_source(of_key, key, otherwise)}{stored.get(key, '')}"] if of_key else []
     paths_of: dict[str, list[str]] = {}
     for labels in files:
         for sentence in _of_file(labels):
@@ -41,6 +43,8 @@ def assumptions(files: Sequence[Labels], fs: float) -> tuple[str, ...]:
 def _of_file(labels: Labels) -> Iterator[str]:
     for sensor in labels.sensors:
         yield f"Unit{f' of channel {sensor.name}' if labels.channels else ''}: {sensor.scale}"
+    if labels.speed_column is not None:
+        yield f"Shaft speed (rpm): mean of the course in {labels.speed_column}"
     bearing = labels.bearing
     source = "from the catalogue" if bearing in CATALOGUE.values() else "as given"
     bpfo, bpfi, bsf = (getattr(orders(bearing), name) for name in ("bpfo", "bpfi", "bsf"))

@@ -156,6 +156,21 @@ def test_the_card_says_where_labels_and_units_come_from(tmp_path):
         assert f"- {sentence}" in card
 
 
+def test_the_card_says_which_speeds_are_measured(tmp_path):
+    for name in "ab":
+        scipy.io.savemat(tmp_path / f"{name}.mat", {"x": noise(0), "n": np.full(noise(0).size, 1500.0)})
+    course = {"path": "a.mat", "variable": "x", "speed_column": "n", "speed_unit": "rpm", "shaft_rpm": None}
+    plain = {"path": "b.mat", "variable": "x", "shaft_rpm": 1480}
+    for rows, sentences in (
+        ((course,), {"mean of the course in n."}),
+        ((course, plain), {"given as 1480.", "mean of the course in n (a.mat)."}),
+    ):
+        table = write_labels(tmp_path, rows, **COMMON | {"shaft_rpm": None})
+        done = import_generic(table, tmp_path / f"{len(rows)}.nc", window=0.02)
+        told = re.findall(r"- Shaft speed \(rpm\): (.*)", data_card(done.path))
+        assert {*told} == sentences
+
+
 def test_files_of_one_recording_are_joined_in_the_order_of_their_rows(tmp_path):
     whole = noise(0, 3300)
     for name, part in (("b9", whole[:1100]), ("a1", whole[1100:2200]), ("a2", whole[2200:])):
