@@ -8,6 +8,7 @@ import numpy as np
 
 from gen.support.errors import RacewayError
 from raceway.importing import read_signal
+from tests.raceway.importing.file_writers import N, T, X, text
 from tests.raceway.importing.people_files import RIGHT
 from tests.raceway.importing.test_array_files import READ
 from tests.raceway.importing.test_people_files import write
@@ -26,8 +27,9 @@ FIELDS = (
 CHOICES = (
     {}, {"column": 0}, {"column": 1, "rate": 12800.0}, {"column": 0, "unit": "g", "rate": 12800.0, "decimal": "."},
     {"column": 0, "rate": 12800.0, "speed_column": 1, "speed_unit": "Hz"}, {"variable": "x"},
-    {"column": 0, "rate": 12800.0, "speed_column": 1, "speed_unit": "1"},
+    {"column": 0, "rate": 12800.0, "speed_column": 2, "speed_unit": "1"},
 )  # fmt: skip
+RUN_UP = text(X, T + 320, np.arange(N) % 40 // 20, header="x [g];speed;tacho\n")
 
 
 def seeds(folder: Path) -> list[Path]:
@@ -36,7 +38,8 @@ def seeds(folder: Path) -> list[Path]:
         write(folder / name, RIGHT[name][0])
     for name in OF_PROGRAMS:
         READ[name][0](folder / name)
-    return [folder / name for name in (*SEEDS, *OF_PROGRAMS)]
+    (folder / "run_up.csv").write_text(RUN_UP, encoding="utf-8")
+    return [folder / name for name in (*SEEDS, *OF_PROGRAMS, "run_up.csv")]
 
 
 def mutate(content: bytes, rng: np.random.Generator) -> bytes:
