@@ -9,6 +9,7 @@ from features.signal.lines import Orders
 from features.signal.rows import FloatArray, centre
 from features.table.band import DEFAULT_BAND, Band
 from features.table.definitions import BUILT_IN, GROUPS, define_features, find_group
+from features.table.feature_group import FeatureGroup
 from features.table.record_batch import BATCH, RecordBatch, usable_records
 from gen.support.plugins import unusable
 
@@ -65,6 +66,8 @@ def indicators(
         For a group that does not exist.
     """
     names = feature_names(groups, band)
+    # the groups of plug-ins are checked once, and not in each batch
+    chosen = [(name, find_group(name)) for name in groups]
     values = np.full((len(x), len(names)), np.nan)
     rates, *each = (np.broadcast_to(np.asarray(value, float), len(x)) for value in (shaft_rate, *orders))
     usable = np.flatnonzero(usable_records(x, rates, Orders(*each)))
@@ -72,13 +75,12 @@ def indicators(
         rows = usable[start : start + BATCH]
         nominal = Orders(*(order[rows] for order in each))
         batch = RecordBatch(centre(x[rows]), fs, rates[rows], nominal, band)
-        values[rows] = np.concatenate([_values(group, batch) for group in groups], axis=-1)
+        values[rows] = np.concatenate([_values(name, group, batch) for name, group in chosen], axis=-1)
     return values, names
 
 
-def _values(name: str, batch: RecordBatch) -> FloatArray:
+def _values(name: str, group: FeatureGroup, batch: RecordBatch) -> FloatArray:
     """Values of a group, shape (record, feature); those of a plug-in are checked."""
-    group = find_group(name)
     values, shape = group.compute(batch), (len(batch.x), len(group.features_in(batch.band)))
     if name not in BUILT_IN and np.shape(values) != shape:
         raise unusable(
