@@ -36,8 +36,11 @@ def read_sheet(path: Path, sheet: str | None) -> NumberTable:
     """
     library = optional("python_calamine")
     with guarded(path, "spreadsheet"):
-        # old Excel files have at most 65,536 rows of 256 columns
-        active = _check_size(path) if zipfile.is_zipfile(path) else _check_chains(path)
+        active = 0
+        if zipfile.is_zipfile(path):
+            active = _check_size(path)
+        else:  # old Excel files have at most 65,536 rows of 256 columns
+            _check_chains(path)
         with library.CalamineWorkbook.from_path(str(path)) as book:
             shown = library.SheetVisibleEnum.Visible, library.SheetTypeEnum.WorkSheet
             visible = [entry.name for entry in book.sheets_metadata if (entry.visible, entry.typ) == shown]
@@ -79,12 +82,12 @@ def _check_size(path: Path) -> int:
         return int(tab[1]) if tab else 0
 
 
-def _check_chains(path: Path) -> int:
-    """Number of the active sheet, 0, of an old Excel file; the library would follow a ring of its sectors until memory ends."""
+def _check_chains(path: Path) -> None:
+    """Refuse an old Excel file with a ring of sectors, which the library would follow until memory ends."""
     with path.open("rb") as stream:
         content = stream.read(_OLD_BYTES)
     if not content.startswith(b"\xd0\xcf\x11\xe0"):
-        return 0
+        return
     size = 4096 if content[30] == 12 else 512
     head = np.frombuffer(content[:512].ljust(512, b"\0"), "<u4")
     counts, tables = head[[10, 11, 16, 18]], head[19:]
@@ -101,7 +104,6 @@ def _check_chains(path: Path) -> int:
         place = place[place]
     if np.any(place < end) or counts.max() > len(content) // size or head[17] < len(content):
         raise UnusableError("is damaged, or an old Excel file above 6.8 MB; save it as .xlsx")
-    return 0
 
 
 def _blocks(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterator[bytes]:
