@@ -127,7 +127,8 @@ def mark_between(lines: Sequence[str]) -> str:
     numbers = {mark: [[*filter(is_number, fields)] for fields in rows[mark]] for mark in best}
     mark = next((mark for mark in best if max(map(len, rows[mark])) > 1), best[0])
     # 0,5 may be one number or two, and 512,37 too, where no number has a point
-    whole = mark == "," and not {*".,"} & {*"".join(map("".join, numbers[mark]))}
+    written = "".join(number for row in numbers[mark] for number in row)
+    whole = mark == "," and "." not in written and "," not in written
     if whole or any(numbers[other] != numbers[mark] for other in best):
         message = "has commas or blanks between digits, which may stand between columns or in numbers; give the mark between columns"
         raise UnusableError(message, "delimiter")
