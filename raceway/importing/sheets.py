@@ -23,6 +23,12 @@ _CELL_BYTES = 32  # that the library takes for each cell of the rectangle around
 _MOST_ROWS = 1_048_576
 _OLD_BYTES = 7_300_000  # of an old Excel file whose head lists all of its tables of sectors
 _CHUNK = 4_000_000  # bytes
+_OLD_SHAPE = (65_536, 256)  # rows and columns of an old Excel file
+# record of the shape of a sheet, whose first bytes are also those of a cell in row 512 after the head of its record
+_OLD_DIMENSIONS = re.compile(
+    rb"(?<![\x01\x03-\x06\x7e\xbd\xbe\xd6\xfd][\x00\x02\x04].\x00)\x00\x02(?:\x0e\x00.{4}(.{4})..(..)|\x0a\x00..(..)..(..))",
+    re.DOTALL,
+)
 
 
 def read_sheet(path: Path, sheet: str | None) -> NumberTable:
@@ -40,7 +46,7 @@ def read_sheet(path: Path, sheet: str | None) -> NumberTable:
         if zipfile.is_zipfile(path):
             active = _check_size(path)
         else:  # old Excel files have at most 65,536 rows of 256 columns
-            _check_chains(path)
+            _check_old_excel(path)
         with library.CalamineWorkbook.from_path(str(path)) as book:
             shown = library.SheetVisibleEnum.Visible, library.SheetTypeEnum.WorkSheet
             visible = [entry.name for entry in book.sheets_metadata if (entry.visible, entry.typ) == shown]
@@ -82,8 +88,8 @@ def _check_size(path: Path) -> int:
         return int(tab[1]) if tab else 0
 
 
-def _check_chains(path: Path) -> None:
-    """Refuse an old Excel file with a ring of sectors, which the library would follow until memory ends."""
+def _check_old_excel(path: Path) -> None:
+    """Refuse an old Excel file with a ring of sectors or the shape of a larger sheet, for which the library takes memory until it ends."""
     with path.open("rb") as stream:
         content = stream.read(_OLD_BYTES)
     if not content.startswith(b"\xd0\xcf\x11\xe0"):
@@ -104,6 +110,12 @@ def _check_chains(path: Path) -> None:
         place = place[place]
     if np.any(place < end) or counts.max() > len(content) // size or head[17] < len(content):
         raise UnusableError("is damaged, or an old Excel file above 6.8 MB; save it as .xlsx")
+    for match in _OLD_DIMENSIONS.finditer(content):
+        rows, columns = (int.from_bytes(number, "little") for number in match.groups() if number is not None)
+        if rows > _OLD_SHAPE[0] or columns > _OLD_SHAPE[1]:
+            raise UnusableError(
+                f"has a sheet of {rows} rows and {columns} columns, more than an old Excel file can have; save it as .xlsx"
+            )
 
 
 def _blocks(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterator[bytes]:
