@@ -90,11 +90,12 @@ def _table(variables: Mapping[str, Any], variable: str | None) -> NumberTable:
 
 
 def _number(value: Any) -> float | None:
-    """First number of a variable, which may be text."""
+    """Number in a variable, which may be text; None if its values differ."""
     values = np.asarray(value)
     if _is_text(value):
         return number_in(str(values.item()) if values.dtype.kind == "U" else "".join(map(chr, values.flat)))
-    return float(values.flat[0]) if values.dtype.kind in _REAL else None
+    plain = values.dtype.kind in _REAL and bool(np.all(values == values.flat[0]))
+    return float(values.flat[0]) if plain else None
 
 
 def _is_text(value: Any) -> bool:

@@ -6,6 +6,7 @@ import zipfile
 import h5py
 import numpy as np
 import pytest
+import scipy.io
 
 from features.baselines.model_file import read_model_file
 from gen.support.errors import CorpusError
@@ -126,3 +127,10 @@ def test_a_recording_too_short_for_a_spectrum_is_named(tmp_path):
     (tmp_path / "a.csv").write_text("x [g]\n" + "0.5\n0.25\n" * 3)
     with pytest.raises(CorpusError, match=r"a\.csv: holds 6 samples, and a diagnosis needs 8 at least"):
         read_recording(tmp_path / "a.csv", Reading((), None, None, None, FS, None))
+
+
+def test_a_rate_or_a_speed_of_several_values_is_not_taken_as_its_first(tmp_path):
+    scipy.io.savemat(tmp_path / "a.mat", {"x": X, "fs": [FS, 2 * FS], "rpm": [1500, 1800]})
+    scipy.io.savemat(tmp_path / "b.mat", {"x": X, "fs": [FS, FS], "rpm": 1500})
+    several, alike = (read_signal(tmp_path / name, variable="x", unit="g") for name in ("a.mat", "b.mat"))
+    assert (several.fs, several.rpm, alike.fs, alike.rpm) == (None, None, FS, 1500)
