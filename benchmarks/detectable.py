@@ -22,6 +22,7 @@ from gen.measurement.judging import FALSE_ALARM, judges_of
 from gen.measurement.measure import Measured, counts_per_unit, measure
 from gen.measurement.mixing import Parts
 from gen.measurement.rig import rig_filters
+from gen.mechanisms.background.background import MACHINE_SOURCES
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario
 from gen.simulation.truth import lines_of_faults
@@ -45,12 +46,15 @@ class Case(NamedTuple):
     """[Hz]."""
 
 
+_BACKGROUND = {"noise", *(source.place for source in MACHINE_SOURCES)}
+
+
 class OtherNoise(Scenario):
-    """The same record with another noise of the machine."""
+    """The same record with another noise of the machine, and other impulses and bursts."""
 
     def stream(self, name: str, level: Level = "record") -> np.random.Generator:
-        """Random stream by name; that of the noise is another one."""
-        return super().stream(f"other {name}" if name == "noise" else name, level)
+        """Random stream by name; those of the background of the record are others."""
+        return super().stream(f"other {name}" if name in _BACKGROUND and level == "record" else name, level)
 
 
 def cases(recipe: Recipe, pairs: int) -> list[Case]:
