@@ -19,7 +19,7 @@ from gen.physics.elementary import power
 from gen.support.units import decibel_to_ratio
 
 _FLATTEST = 0.8  # the machine never moves along a straight line
-_PERIOD = 2**15  # samples of a table of one period: the 400th line is in it to 1e-3 of its amplitude
+_SAMPLES = 80  # of the highest line in a table of one period, between which it is read to 1e-3 of its amplitude
 
 
 class ShaftLines(MachineSource):
@@ -74,11 +74,12 @@ class ShaftLines(MachineSource):
         lengths = math.sqrt(2) * decibel_to_ratio(drawn["level"] + fall) / np.sqrt(1 + flatness**2)
         fastest = float(np.abs(np.diff(angles)).max()) * drawn["order"]
         kept = math.ceil(math.pi / fastest) - 1 if fastest > 0 else len(numbers)
-        spectrum = np.zeros(_PERIOD, complex)
+        size = _SAMPLES * len(numbers)
+        spectrum = np.zeros(size, complex)
         spectrum[numbers[:kept]] = (lengths * forward)[:kept]
         spectrum[-numbers[:kept]] = (lengths * flatness * backward)[:kept]
         period = ifft(spectrum, norm="forward")
-        turn = np.arange(_PERIOD + 1) * (2 * math.pi / _PERIOD)
+        turn = np.arange(size + 1) * (2 * math.pi / size)
         return np.interp(drawn["order"] * angles % (2 * math.pi), turn, np.append(period, period[0]))
 
 
