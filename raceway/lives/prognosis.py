@@ -16,7 +16,8 @@ lower error says that features or splits give lives away.
    and Health Management 1 (2010).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from numbers import Integral
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,7 +37,7 @@ SHARES = (0.5, 0.75, 0.9)
 WITHIN = 0.2
 _DRAWS = 20
 _NONE_FAILED = "no bearing of the feature table failed; make longer tests, or more bearings."
-_NEEDED = ("age", "rul", "event", "specimen", "stage")
+_NEEDED = ("age", "rul", "event", "identity", "specimen", "stage")
 
 
 class Lives(NamedTuple):
@@ -89,6 +90,41 @@ def in_order(table: xr.Dataset, name: str) -> xr.Dataset:
 def specimens_of(lives: xr.Dataset) -> NDArray[np.int_]:
     """Number of the bearing of each snapshot from 0, shape (snapshot,); bearings of joined corpora can have the same name."""
     return np.unique(lives["specimen"].values, return_inverse=True)[1]
+
+
+def check_others(table: xr.Dataset, tested: xr.Dataset) -> None:
+    """Refuse a table to test on that has bearings of the training, or other features; both are of lives.
+
+    Raises
+    ------
+    CorpusError
+        With a bearing that both have, or the advice to compute the same features.
+    """
+    ours, theirs = (
+        {"/".join(str(text).split("/")[:3]) for text in of["identity"].values.tolist()} for of in (table, tested)
+    )
+    if common := sorted(ours & theirs):
+        raise CorpusError(f"the tested bearings are among those of the training ({common[0]}); test other bearings.")
+    if not np.array_equal(table["feature"].values, tested["feature"].values):
+        raise CorpusError(
+            "the tested bearings have other features than those of the training; compute the same groups of both."
+        )
+
+
+def bearing_folds(bearing: NDArray[Any], folds: int) -> Iterable[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+    """Places of the training and of the test in each fold, none of which parts the snapshots of a bearing.
+
+    Raises
+    ------
+    CorpusError
+        If the number of folds is not a whole one from 2 to the number of bearings.
+    """
+    count = len(np.unique(bearing))
+    if not isinstance(folds, Integral) or not 2 <= folds <= count:
+        raise CorpusError(
+            f"folds: {folds} is not a whole number from 2 to {count}, the number of bearings; use another, or more bearings."
+        )
+    return GroupKFold(int(folds), shuffle=True, random_state=0).split(bearing, groups=bearing)
 
 
 def lives_of(table: xr.Dataset) -> Lives:
@@ -192,28 +228,17 @@ def score_lives(table: xr.Dataset, tested: xr.Dataset | None = None, *, folds: i
     Raises
     ------
     CorpusError
-        If the tables are not of lives, have a bearing in common, or have fewer bearings than folds.
+        If the tables are not of lives, have a bearing in common or other features, or folds are not from 2 to the number of bearings.
     """
     lives = lives_of(table)
     if not lives.failed.any():
         raise CorpusError(_NONE_FAILED)
     if tested is not None:
-        # estimates are of bearings that were not trained
-        common = sorted({*table["identity"].values.tolist()} & {*tested["identity"].values.tolist()})
-        if common:
-            raise CorpusError(
-                f"the tested bearings are among those of the training ({common[0]}); test other bearings."
-            )
-        if not np.array_equal(table["feature"].values, tested["feature"].values):
-            raise CorpusError(
-                "the tested bearings have other features than those of the training; compute the same groups of both."
-            )
+        check_lives(tested, "the table of the tested bearings")
+        check_others(table, tested)
         return score_methods(lives, lives_of(tested))
-    if len(np.unique(lives.bearing)) < folds:
-        raise CorpusError(f"{len(np.unique(lives.bearing))} bearings are fewer than {folds} folds; use fewer folds.")
     estimates = {name: np.empty(len(lives.age)) for name in METHODS}
-    # a bearing is trained or tested as a whole
-    for train, test in GroupKFold(folds, shuffle=True, random_state=0).split(lives.age, groups=lives.bearing):
+    for train, test in bearing_folds(lives.bearing, folds):
         if not lives.failed[train].any():
             raise CorpusError(
                 "no bearing of the training failed in one of the folds; use more folds, or a corpus in which more fail."
