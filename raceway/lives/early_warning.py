@@ -11,17 +11,16 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 import xarray as xr
-from sklearn.model_selection import GroupKFold
 
 from features.baselines import DEFAULT_ESTIMATOR
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import Maker, maker_name
 from features.baselines.records import IntArray
 from gen.corpus import FAULTS
-from gen.corpus.fault_classes import HEALTHY
+from gen.corpus.fault_classes import HEALTHY, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
-from raceway.lives.prognosis import in_order, specimens_of
+from raceway.lives.prognosis import bearing_folds, check_others, in_order, specimens_of
 from raceway.lives.survival import BoolArray, FloatArray
 
 FEATURES = ("raw_kurtosis", "whitened_highest_line")
@@ -34,7 +33,7 @@ class Watched(NamedTuple):
     features: pd.DataFrame
     """Shape (snapshot, feature)."""
     fault: IntArray
-    """Code of the class that can be seen."""
+    """Code of the class that can be seen; that of unknown where the stage of the damage is not known."""
     bearing: IntArray
     age: FloatArray
     intact: BoolArray
@@ -48,7 +47,7 @@ class Watched(NamedTuple):
 
 
 Detector = Callable[[Watched, Watched], tuple[FloatArray, FloatArray]]
-"""Numbers of the snapshots of the training and of the test, shape (snapshot,) each."""
+"""Numbers of the snapshots of the training, for the threshold, and of the test, shape (snapshot,) each; NaN where there is none."""
 
 
 def warn_early(
@@ -79,56 +78,77 @@ def warn_early(
     -------
     DataFrame
         One row for each detector. ``alarms_per_1000_h`` of the tested bearings before their spalls begin; ``missed``, the share of bearings
-        with a visible spall that get no alarm; ``delay`` beyond the first snapshot in which it can be seen, the median [s]; and
-        ``time_left``, the share that is left then of the time from there to the last snapshot, the median.
+        with a visible spall that get no alarm; ``delay`` beyond the first snapshot in which it can be seen, the median [s], and
+        ``delay_90``, which nine of ten alarms do not exceed; ``time_left``, the share that is left then of the time from there to the last
+        snapshot, the median; and ``allowed``, the alarms by which the threshold was set, in the shortest training: below 1 it is the
+        highest number before any spall, and the rate may be higher than wanted.
 
     Raises
     ------
     CorpusError
-        If a table has no lives, or it is not known when a spall can be seen.
+        If a table has no lives, it is not known when a spall can be seen, the tables have a bearing in common or other features, or no
+        snapshot before spalls or of visible ones is there to train or test on.
     """
-    watched = _watched(table)
+    if not 0 <= alarms_per_1000_h < np.inf:
+        raise CorpusError(f"alarms_per_1000_h: {alarms_per_1000_h:g} is not a finite number from 0; use 1 or so.")
+    watched = _watched(table, "the feature table")
     detectors: dict[str, Detector] = {name: _of_feature(name) for name in FEATURES if name in watched.features}
-    detectors[estimator if isinstance(estimator, str) else maker_name(estimator)] = _of_classifier(estimator, seed)
+    name_of_estimator = estimator if isinstance(estimator, str) else maker_name(estimator)
+    detectors[name_of_estimator] = _of_classifier(estimator, seed)
     if tested is not None:
-        pairs = [(watched, _watched(tested))]
+        pairs = [(watched, _watched(tested, "the table of the tested bearings"))]
+        check_others(table, tested)
     else:
-        splits = GroupKFold(folds, shuffle=True, random_state=0).split(watched.age, groups=watched.bearing)
+        splits = bearing_folds(watched.bearing, folds)
         pairs = [(watched.some(train), watched.some(test)) for train, test in splits]
+    if not all(train.intact.any() for train, _ in pairs):
+        raise CorpusError("early warning: a training has no snapshot before spalls begin; use more bearings.")
+    if not any((test.age >= test.seen_from).any() for _, test in pairs):
+        raise CorpusError("early warning: no tested bearing has a spall that can be seen; test more bearings.")
+    allowed = [alarms_per_1000_h * _hours(train) / 1000 for train, _ in pairs]
     rows = {}
     for name, detector in detectors.items():
         hours, false, delays = 0.0, 0, list[tuple[float, float]]()
-        for train, test in pairs:
+        for (train, test), exceedances in zip(pairs, allowed, strict=True):
             numbers, tried = detector(train, test)
-            above = tried > _threshold(numbers[train.intact], alarms_per_1000_h * _hours(train) / 1000)
+            above = tried > _threshold(numbers[train.intact], exceedances)
             hours, false = hours + _hours(test), false + int(above[test.intact].sum())
             delays += _delays(test, above)
         late, left = np.array(delays).T
-        found = np.isfinite(late)
+        warned = np.isfinite(late)
         rows[name] = {
             "alarms_per_1000_h": 1000 * false / hours if hours else np.nan,
-            "missed": float(np.mean(~found)),
-            "delay": float(np.median(late[found])) if found.any() else np.nan,
-            "time_left": float(np.median(left[found])) if found.any() else np.nan,
+            "missed": float(np.mean(~warned)),
+            "delay": float(np.median(late[warned])) if warned.any() else np.nan,
+            "delay_90": float(np.quantile(late[warned], 0.9)) if warned.any() else np.nan,
+            "time_left": float(np.median(left[warned])) if warned.any() else np.nan,
+            "allowed": min(allowed),
         }
     return pd.DataFrame.from_dict(rows, orient="index")
 
 
-def knows_what_is_seen(table: xr.Dataset) -> bool:
-    """Whether a feature table knows of any bearing when its spall can first be seen."""
-    return "first_detectable_time" in table and bool(np.isfinite(table["first_detectable_time"].values).any())
+def check_seen(records: xr.Dataset, name: str) -> None:
+    """Refuse lives, or their table, of which it is not known when a spall can first be seen, with a ``name`` for the sentence.
 
-
-def _watched(table: xr.Dataset) -> Watched:
-    of = in_order(table, "the feature table")
-    if not knows_what_is_seen(of):
+    Raises
+    ------
+    CorpusError
+        If it is known of no bearing.
+    """
+    if "first_detectable_time" not in records or not np.isfinite(records["first_detectable_time"].values).any():
         raise CorpusError(
-            "the feature table does not know when spalls can first be seen; early warning needs simulated lives with truth.twins: true."
+            f"{name}: knows of no spall when it can first be seen; early warning needs simulated lives with truth.twins: true."
         )
+
+
+def _watched(table: xr.Dataset, name: str) -> Watched:
+    of = in_order(table, name)
+    check_seen(of, name)
     age, seen_from = of["age"].values, of["first_detectable_time"].values
     # a spall that cannot be seen yet is nothing to learn from
     fault = np.where(age >= seen_from, of["fault"].values, FAULTS.index(HEALTHY))
-    names = [str(name) for name in of["feature"].values]
+    fault[~np.isin(of["stage"].values, (0, 1, 2))] = UNKNOWN_CODE
+    names = [str(feature) for feature in of["feature"].values]
     features = pd.DataFrame(of["features"].transpose("record", "feature").values, columns=names)
     return Watched(features, fault, specimens_of(of), age, of["stage"].values == 0, seen_from)
 
@@ -138,20 +158,25 @@ def _of_feature(name: str) -> Detector:
 
 
 def _of_classifier(estimator: str | Maker, seed: int) -> Detector:
-    def detect(train: Watched, test: Watched) -> tuple[FloatArray, FloatArray]:
-        fitted = make_estimator(estimator, seed).fit(train.features, train.fault)
+    def numbers_of(fitted_to: Watched, others: Watched) -> FloatArray:
+        """Probability of a fault in snapshots of others."""
+        lives = fitted_to.some(np.flatnonzero(fitted_to.fault != UNKNOWN_CODE))
+        if len(np.unique(lives.fault)) < 2:
+            raise CorpusError("early warning: a training has no two classes to tell apart; use more bearings.")
+        fitted = make_estimator(estimator, seed).fit(lives.features, lives.fault)
         sound = fitted.classes_ == FAULTS.index(HEALTHY)
-        of_train, of_test = (
-            1 - class_probabilities(fitted, some.features)[:, sound].sum(axis=1) for some in (train, test)
-        )
-        return of_train, of_test
+        return 1 - class_probabilities(fitted, others.features)[:, sound].sum(axis=1)
+
+    def detect(train: Watched, test: Watched) -> tuple[FloatArray, FloatArray]:
+        return numbers_of(train, train), numbers_of(train, test)
 
     return detect
 
 
 def _threshold(numbers: FloatArray, exceedances: float) -> float:
-    """Number that so many of some are above, rounded down."""
-    return float(np.sort(numbers)[max(len(numbers) - 1 - int(exceedances), 0)])
+    """Number that so many of some are above, rounded down; infinite if there are none."""
+    known = np.sort(numbers[~np.isnan(numbers)])
+    return float(known[max(len(known) - 1 - int(exceedances), 0)]) if len(known) else np.inf
 
 
 def _hours(watched: Watched) -> float:

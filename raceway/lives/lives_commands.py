@@ -14,6 +14,7 @@ from raceway.console.options import (
     picture_option,
     worker_options,
 )
+from raceway.console.progress_bar import notice
 
 
 @click.command()
@@ -50,13 +51,13 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
 @click.option(
     "--false-alarms",
     type=click.FloatRange(0),
-    default=1.0,
-    show_default=True,
-    help="Snapshots above the threshold of a detector in 1,000 h before spalls begin.",
+    help="Snapshots above the threshold of a detector in 1,000 h before spalls begin; by default 1.",
 )
 @worker_options
 @json_option
-def prognose(corpus: Path, tested: Path | None, folds: int, false_alarms: float, team: Team, as_json: bool) -> None:
+def prognose(
+    corpus: Path, tested: Path | None, folds: int, false_alarms: float | None, team: Team, as_json: bool
+) -> None:
     """Score remaining life and early warning on lives in DIR.
 
     No split parts the snapshots of a bearing. Each estimate stands beside those by age alone; without_signal is the boosting without
@@ -68,19 +69,27 @@ def prognose(corpus: Path, tested: Path | None, folds: int, false_alarms: float,
       raceway prognose corpus --json
     """
     from gen.corpus import open_corpus
+    from gen.support.errors import CorpusError
     from gen.support.units import from_si
-    from raceway.lives.early_warning import knows_what_is_seen, warn_early
+    from raceway.lives.early_warning import check_seen, warn_early
     from raceway.lives.prognosis import SHARES, check_lives, score_lives
 
     # refused before the features are computed, which takes minutes
     for lives in (corpus, tested or corpus):
         with open_corpus(lives) as opened:
             check_lives(opened, str(lives))
+            if false_alarms is not None:
+                check_seen(opened, str(lives))
     table, other = table_of(corpus, team=team), tested and table_of(tested, team=team)
     scores = score_lives(table, other, folds=folds)
-    warned = None
-    if all(knows_what_is_seen(of) for of in (table, other) if of is not None):
-        warned = warn_early(table, other, alarms_per_1000_h=false_alarms, folds=folds)
+    warned, rate = None, 1.0 if false_alarms is None else false_alarms
+    try:
+        warned = warn_early(table, other, alarms_per_1000_h=rate, folds=folds)
+    except CorpusError as error:
+        # who asks for a rate wants early warning
+        if false_alarms is not None:
+            raise
+        notice(f"{error}")
     if as_json:
         warnings = {} if warned is None else {"early_warning": warned.to_dict("index")}
         show.as_json({"lives": scores.to_dict("index")} | warnings)
@@ -101,11 +110,17 @@ def prognose(corpus: Path, tested: Path | None, folds: int, false_alarms: float,
                 f"{row.alarms_per_1000_h:.2f}",
                 f"{row.missed:.2f}",
                 f"{from_si(row.delay, 'h'):,.1f}",
+                f"{from_si(row.delay_90, 'h'):,.1f}",
                 f"{row.time_left:.2f}",
             ]
             for name, row in warned.iterrows()
         )
-        show.table(("early warning", "false alarms in 1,000 h", "missed", "delay [h]", "time left"), rows)
+        show.table(("early warning", "false alarms in 1,000 h", "missed", "delay [h]", "90 % [h]", "time left"), rows)
         show.text(
-            "delay: from the first snapshot in which the spall can be seen at all; time left: share of the time to the last one."
+            "delay: from the first snapshot in which the spall can be seen at all, the median and that of nine of ten alarms; time left: "
+            "share of the time to the last one."
         )
+        if rate and warned["allowed"].min() < 1:
+            notice(
+                f"a training is too short for {rate:g} false alarms in 1,000 h: its threshold is its highest number."
+            )

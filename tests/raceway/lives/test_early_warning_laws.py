@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from gen.corpus import FAULTS
+from gen.corpus.schema import identity
 from gen.support.errors import CorpusError
 from raceway.lives.early_warning import warn_early
 
@@ -12,18 +13,19 @@ HOUR = 3600.0
 BEGUN, SEEN, END = 400, 450, 600  # h, one snapshot each
 
 
-def table(seed, rises_at=SEEN, bearings=30):
+def table(seed, rises_at=SEEN, bearings=30, rise=20.0):
     """Lives in which ``raw_kurtosis`` jumps at some hour, beside a feature that is noise; all spalls can be seen from the same hour on."""
     rng = np.random.default_rng(seed)
     age = np.tile(np.arange(END) * HOUR, bearings)
     hours, specimen = age / HOUR, np.repeat(np.arange(bearings), END)
     features = rng.standard_normal((len(age), 2))
-    features[:, 0] += 20 * (hours >= rises_at)
+    features[:, 0] += rise * (hours >= rises_at)
     columns = {
         "age": age, "rul": (END - hours) * HOUR, "event": np.ones(len(age), int), "specimen": specimen,
         "stage": (hours >= BEGUN).astype(int),
         "fault": np.where(hours >= BEGUN, FAULTS.index("outer"), FAULTS.index("healthy")),
         "first_detectable_time": np.full(len(age), SEEN * HOUR),
+        "identity": np.array([identity(f"{seed}", 0, *some) for some in zip(specimen, hours.astype(int), strict=True)]),
     }  # fmt: skip
     return xr.Dataset(
         {"features": (("record", "feature"), features), "feature": ["raw_kurtosis", "noise"]}
@@ -32,13 +34,13 @@ def table(seed, rises_at=SEEN, bearings=30):
 
 
 @pytest.mark.parametrize("rate", [1.0, 20.0])
-def test_other_bearings_give_the_false_alarms_that_were_asked_for(rate):
-    warned = warn_early(
-        table(0, bearings=60), table(1, bearings=60), alarms_per_1000_h=rate, estimator="logistic_regression"
-    )
+@pytest.mark.parametrize("estimator", ["logistic_regression"])
+def test_other_bearings_give_the_false_alarms_that_were_asked_for(rate, estimator):
+    tables = (table(seed, bearings=60, rise=1.0) for seed in (0, 1))
+    warned = warn_early(*tables, alarms_per_1000_h=rate, estimator=estimator)
     expected = rate * 60 * BEGUN / 1000
-    for found in warned.alarms_per_1000_h:
-        assert found * 60 * BEGUN / 1000 == pytest.approx(expected, abs=5 * np.sqrt(2 * expected))
+    for alarms in warned.alarms_per_1000_h:
+        assert alarms * 60 * BEGUN / 1000 == pytest.approx(expected, abs=5 * np.sqrt(2 * expected))
 
 
 @pytest.mark.parametrize("late", [0, 30])
@@ -55,6 +57,83 @@ def test_a_feature_that_never_rises_misses_every_bearing():
     assert warned.missed.min() > 0.9
 
 
-def test_tables_that_do_not_know_what_can_be_seen_are_refused():
-    with pytest.raises(CorpusError, match=r"early warning needs simulated lives with truth\.twins: true"):
-        warn_early(table(4).drop_vars("first_detectable_time"))
+def by_hand(corpus, lives, seen_from):
+    """Lives of an hour between snapshots, spalled from the fifth on, with the values of ``raw_kurtosis`` that are listed."""
+    hours, number = np.tile(np.arange(10), len(lives)), np.repeat(np.arange(len(lives)), 10)
+    columns = {
+        "age": hours * HOUR, "rul": (10 - hours) * HOUR, "event": np.ones(len(hours), int), "specimen": number,
+        "stage": (hours >= 5).astype(int), "fault": np.where(hours >= 5, FAULTS.index("ball"), FAULTS.index("healthy")),
+        "first_detectable_time": np.repeat(seen_from, 10) * HOUR,
+        "identity": np.array([identity(corpus, 0, *some) for some in zip(number, hours, strict=True)]),
+    }  # fmt: skip
+    return xr.Dataset(
+        {"features": (("record", "feature"), np.concatenate(lives)[:, None].astype(float)), "feature": ["raw_kurtosis"]}
+        | {name: ("record", values) for name, values in columns.items()}
+    )
+
+
+TRAINED = by_hand("a", [[1, 2, 3, 4, 9, 0, 0, 0, 0, 0], [1, 2, np.nan, 4, 8, 0, 0, 0, 0, 0]], [5.0, 5.0])
+"""Eight hours without a spall, in which an alarm in eight hours is allowed: the threshold is 8."""
+TRIED = by_hand(
+    "b",
+    [
+        [0, 9, 9, 0, 0, 0, 9, 0, 0, 0],  # seen at 5 h, alarm at 6 h: three of four hours are left
+        [
+            0,
+            0,
+            0,
+            0,
+            0,
+            9,
+            0,
+            0,
+            9,
+            0,
+        ],  # seen at 6 h, alarm at 8 h, one of three hours is left: the alarm before is by chance
+        [0, 0, 0, 0, 0, 8, 8, 8, 8, 8],  # no alarm
+        [0, 0, 0, 0, 0, 9, 9, 9, 9, 9],  # never seen
+    ],
+    [5.0, 6.0, 5.0, np.nan],
+)
+
+
+def test_alarms_and_delays_are_those_that_one_counts_by_hand():
+    (row,) = warn_early(TRAINED, TRIED, alarms_per_1000_h=125, estimator="majority").iloc[:1].itertuples()
+    assert row.alarms_per_1000_h == pytest.approx(1000 * 2 / 16)  # two in sixteen hours
+    assert row.missed == pytest.approx(1 / 3)
+    assert (row.delay, row.delay_90) == pytest.approx((1.5 * HOUR, 1.9 * HOUR))
+    assert row.time_left == pytest.approx((3 / 4 + 1 / 3) / 2)
+    assert row.allowed == pytest.approx(1)
+
+
+def test_a_snapshot_of_unknown_stage_is_neither_healthy_nor_faulty():
+    """Loud ones of unknown stage would raise the threshold, and teach that loud is healthy."""
+    louder = table(5).copy(deep=True)
+    unknown = louder["age"].values < 50 * HOUR
+    louder["features"].values[unknown, 0] = 40.0
+    louder["stage"].values[unknown] = 3
+    options = {"alarms_per_1000_h": 0, "estimator": "logistic_regression"}
+    warned, without = (warn_early(of, table(6), **options) for of in (louder, louder.isel(record=~unknown)))
+    assert warned.drop(columns="allowed").equals(without.drop(columns="allowed"))
+    assert (warned.missed == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("trained", "tested", "options", "sentence"),
+    [
+        (table(4).drop_vars("first_detectable_time"), None, {}, r"early warning needs simulated lives with truth\.twins: true"),
+        (TRAINED, TRIED.assign(first_detectable_time=np.nan * TRIED["age"]), {}, "the table of the tested bearings: knows of no spall"),
+        (TRAINED.drop_vars("stage"), None, {}, "the feature table: has no lives"),
+        (TRAINED, TRIED.drop_vars("stage"), {}, "the table of the tested bearings: has no lives"),
+        (TRAINED.assign(stage=TRAINED["stage"] + 1), TRIED, {}, "has no snapshot before spalls begin"),
+        (TRAINED.assign(fault=0 * TRAINED["fault"]), TRIED, {}, "has no two classes to tell apart"),
+        (TRAINED, TRIED.isel(record=TRIED["age"].values < 5 * HOUR), {}, "no tested bearing has a spall that can be seen"),
+        (TRAINED, TRIED.assign(feature=["rms"]), {}, "have other features than those of the training"),
+        (TRAINED.isel(record=slice(0, None, 2)), TRAINED.isel(record=slice(1, None, 2)), {}, r"among those of the training \(a/0/0\)"),
+        *((TRIED, None, {"folds": folds}, "folds: .* is not a whole number from 2 to 4") for folds in (1, 2.5, 5)),
+        *((TRAINED, TRIED, {"alarms_per_1000_h": rate}, "is not a finite number from 0") for rate in (-1, np.nan, np.inf)),
+    ],
+)  # fmt: skip
+def test_what_gives_no_early_warning_is_refused_in_a_sentence(trained, tested, options, sentence):
+    with pytest.raises(CorpusError, match=sentence):
+        warn_early(trained, tested, estimator="majority", **options)

@@ -42,10 +42,25 @@ def test_a_bearing_that_is_not_there_is_named(lives, tiny_corpus):
 def test_the_commands_draw_and_score(run, lives, tmp_path):
     assert run("life", lives, "-o", tmp_path / "x.png").exit_code == 0
     assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")
-    shown = run("prognose", lives, "--folds", 2, "--test", lives)
-    assert "are among those of the training" in shown.stderr
+    assert "are among those of the training" in run("prognose", lives, "--test", lives).stderr
+    shown = run("prognose", lives, "--folds", 2)
     hours = [cell for row in shown.stdout.splitlines()[1:6] for cell in (*row.split()[1:4], row.split()[-1])]
+    assert len(hours) == 20
     assert all(re.fullmatch(r"\d{1,3}(,\d{3})*\.\d", cell) for cell in hours), hours
+    assert re.search("^early warning .* 90 % ", shown.stdout, re.MULTILINE)
+
+
+@pytest.mark.usefixtures("tables_once")
+def test_without_twins_early_warning_is_left_out_but_not_for_those_who_ask_for_it(run, tmp_path):
+    generate(Recipe(small_with(LIVES | {"truth": {"twins": False}})), tmp_path / "c")
+    sentence = (
+        "knows of no spall when it can first be seen; early warning needs simulated lives with truth.twins: true.\n"
+    )
+    shown = run("prognose", tmp_path / "c", "--folds", 2)
+    assert shown.stderr.endswith(f"the feature table: {sentence}")
+    assert "early warning" not in shown.stdout
+    refused = run("prognose", tmp_path / "c", "--false-alarms", 1)
+    assert (refused.exit_code, refused.stderr) == (2, f"{tmp_path / 'c'}: {sentence}")
 
 
 @pytest.mark.parametrize("options", [(), ("--test",)])
