@@ -1,8 +1,9 @@
 """Early warning: how soon after a spall can first be seen a detector gives alarm, at a fixed rate of false alarms.
 
 A detector gives each snapshot a number. Its threshold is set on bearings of the training, so that their snapshots before the spall begins
-exceed it at the wanted rate, and is tried on other bearings. The delay counts from the first snapshot in which the spall can be seen, which
-is known by the twin of the record, the same machine without the spall: nothing can be earlier but by chance.
+exceed it at the wanted rate, and is tried on other bearings. A classifier is too sure of the bearings that it was fitted to, so each
+bearing of the training gets its numbers from a fit to others. The delay counts from the first snapshot in which the spall can be seen,
+which is known by the twin of the record, the same machine without the spall: nothing can be earlier but by chance.
 """
 
 from collections.abc import Callable
@@ -25,6 +26,8 @@ from raceway.lives.survival import BoolArray, FloatArray
 
 FEATURES = ("raw_kurtosis", "whitened_highest_line")
 """Detectors without training: impulsiveness, and the highest fault line of the envelope."""
+
+_HELD_OUT = 5  # splits of a training for the threshold of a classifier, at most
 
 
 class Watched(NamedTuple):
@@ -168,7 +171,11 @@ def _of_classifier(estimator: str | Maker, seed: int) -> Detector:
         return 1 - class_probabilities(fitted, others.features)[:, sound].sum(axis=1)
 
     def detect(train: Watched, test: Watched) -> tuple[FloatArray, FloatArray]:
-        return numbers_of(train, train), numbers_of(train, test)
+        # no bearing of the training has numbers from a fit to itself
+        held_out = np.empty(len(train.age))
+        for rest, own in bearing_folds(train.bearing, max(2, min(_HELD_OUT, len(np.unique(train.bearing))))):
+            held_out[own] = numbers_of(train.some(rest), train.some(own))
+        return held_out, numbers_of(train, test)
 
     return detect
 
