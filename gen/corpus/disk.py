@@ -25,8 +25,8 @@ INDEX_NAME, MANIFEST_NAME, RECIPE_NAME = "index.nc", "manifest.json", "recipe.ya
 CARD_NAME, CROISSANT_NAME = "README.md", "croissant.json"  # written by ``raceway.describe``
 CARD_SUFFIX = ".card"
 """Suffix of the folder of the data card beside a corpus in a single file."""
-Stamp = tuple[int, int]
-"""Size and time of the last change [ns]; a file with a different stamp has changed."""
+Stamp = tuple[int, int, int]
+"""Size, time of the last change, and that of the last change of this time [ns]; a file with a different stamp has changed."""
 
 _ADVICE = dict.fromkeys(
     (0, errno.ENOSPC, errno.EDQUOT, errno.EFBIG), "free some space or choose another folder"
@@ -40,7 +40,8 @@ _unfinished: set[Path] = set()
 def stamp(path: Path | str) -> Stamp:
     """Stamp of a file; OSError if there is no file."""
     status = Path(path).stat()
-    return status.st_size, status.st_mtime_ns
+    # a program can put the time of the last change back, but not st_ctime
+    return status.st_size, status.st_mtime_ns, status.st_ctime_ns
 
 
 def sha256(path: Path) -> str:

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.codecs import Codec
-from gen.corpus.disk import stamp
+from gen.corpus.disk import Stamp, stamp
 from gen.corpus.schema import MISSING_COUNT, SIGNAL, SIGNAL_DIMS
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
@@ -43,7 +43,7 @@ _ACTED_ON = {*PACKING, "missing_value", "_Unsigned", "dtype", "calendar", "bound
 _OF_HDF5 = {
     "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "_Netcdf4Dimid", "_Netcdf4Coordinates", "_NCProperties", "_nc3_strict",
 }  # fmt: skip
-_trusted = set[tuple[str, tuple[int, int]]]()
+_trusted = set[tuple[str, Stamp]]()
 """Files that passed in this process, with their stamps: the look takes longer than opening a file."""
 
 if hasattr(os, "register_at_fork"):  # Windows has no fork

@@ -77,6 +77,21 @@ def part(folder, number):
     return folder / "parts" / part_name(number)
 
 
+@pytest.mark.parametrize("name", FILES[:2])
+def test_a_changed_file_whose_time_was_put_back_is_seen_as_changed(nine, tmp_path, name):
+    shutil.copytree(nine, tmp_path / "all")
+    corpus, path = tmp_path / "all" / name.partition("/")[0], tmp_path / "all" / name
+    before = path.stat()
+    with open_corpus(corpus) as opened:
+        content = bytearray(path.read_bytes())
+        content[len(content) // 2] ^= 1
+        path.write_bytes(content)
+        os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+        with pytest.raises(CorpusError, match="changed since the corpus was opened"):
+            opened[SIGNAL].values  # noqa: B018
+    assert_refused(corpus, "its bytes do not have the hash")
+
+
 NO_MANIFEST = r"manifest\.json: not the manifest of a corpus"
 REFUSED = {
     "a part is missing": (lambda c: part(c, 1).unlink(), r"part-00001\.nc: is missing; copy it again"),
