@@ -45,8 +45,9 @@ def stamp(path: Path | str) -> Stamp:
 
 
 def sha256(path: Path) -> str:
-    """SHA-256 of a file, in hexadecimal; kept in this process until the stamp of the file changes."""
-    return _hashes(path.absolute(), stamp(path))[0]
+    """SHA-256 of a file, in hexadecimal; kept in this process until the stamp of the file changes. CorpusError if it cannot be read."""
+    with reading(path):
+        return _hashes(path.absolute(), stamp(path))[0]
 
 
 @lru_cache(100_000)
@@ -84,8 +85,33 @@ def remove_checksum(path: Path) -> None:
 
 
 def has_whole_bytes(path: Path) -> bool:
-    """Whether a file ends with the SHA-256 of all its other bytes."""
-    return _hashes(path.absolute(), stamp(path))[1]
+    """Whether a file ends with the SHA-256 of all its other bytes; CorpusError if it cannot be read."""
+    with reading(path):
+        return _hashes(path.absolute(), stamp(path))[1]
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Raise CorpusError about ``path`` in place of an error of the system."""
+    try:
+        yield
+    except OSError as error:
+        advice = "get permission to read it, or copy it again"
+        raise CorpusError(f"{path}: could not be read ({system_reason(error)}); {advice}.") from error
+
+
+def system_reason(error: Exception) -> str:
+    """Reason of the system for an error, without the numbers and addresses with which HDF5 and netCDF give it; else its first line."""
+    code = _code_of(error)
+    text = os.strerror(code) if code else str(getattr(error, "strerror", None) or error) or type(error).__name__
+    return re.sub(r": \S+ = [^)]*", "", text.splitlines()[0])
+
+
+def _code_of(error: Exception) -> int:
+    """Number of the system; 0 without."""
+    # HDF5 puts the number of the system into a text with addresses; netCDF has numbers of its own, which are negative
+    in_text = re.search(r"errno = (\d+)", str(error))
+    return int(in_text[1]) if in_text else max(0, getattr(error, "errno", None) or 0)
 
 
 def plain_file(directory: Path, name: str) -> Path:
@@ -97,13 +123,14 @@ def plain_file(directory: Path, name: str) -> Path:
         If the file is missing, is not a plain file (a folder, a pipe, a device), or is a link that leads out of the folder.
     """
     path = directory / name
-    # links are rare, and resolving every path takes ten times as long
-    linked = path.is_symlink() or (path.parent != directory and path.parent.is_symlink())
-    if linked and path.exists() and not path.resolve().is_relative_to(directory.resolve()):
-        raise CorpusError(f"{path}: is a link that leads out of the corpus; replace it with a copy of the file.")
-    if not path.is_file():
-        reason = "is not a plain file" if path.exists() else "is missing"
-        raise CorpusError(f"{path}: {reason}; copy it again, or run the command that made the corpus again.")
+    with reading(path):
+        # links are rare, and resolving every path takes ten times as long
+        linked = path.is_symlink() or (path.parent != directory and path.parent.is_symlink())
+        if linked and path.exists() and not path.resolve().is_relative_to(directory.resolve()):
+            raise CorpusError(f"{path}: is a link that leads out of the corpus; replace it with a copy of the file.")
+        if not path.is_file():
+            reason = "is not a plain file" if path.exists() else "is missing"
+            raise CorpusError(f"{path}: {reason}; copy it again, or run the command that made the corpus again.")
     return path
 
 
@@ -189,13 +216,10 @@ def writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
             raise
         raise CorpusError(str(error).replace(hidden, str(path))) from error
     except (OSError, RuntimeError) as error:
-        # HDF5 puts the number of the system into a text with addresses; netCDF has numbers of its own, which are negative
-        in_text = re.search(r"errno = (\d+)", str(error))
-        code = int(in_text[1]) if in_text else max(0, getattr(error, "errno", None) or 0)
         # HDF5 loses the number on a full disk, so without one the advice is that for a full disk
-        text = os.strerror(code) if code else str(getattr(error, "strerror", None) or error).replace(hidden, str(path))
-        advice = _ADVICE.get(code, "choose another folder")
-        raise CorpusError(f"{path}: could not be written ({' '.join(text.split())}); {advice}.") from error
+        advice = _ADVICE.get(_code_of(error), "choose another folder")
+        reason = system_reason(error).replace(hidden, str(path))
+        raise CorpusError(f"{path}: could not be written ({reason}); {advice}.") from error
 
 
 def remove_left_behind_of(path: Path) -> None:

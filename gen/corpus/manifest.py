@@ -19,6 +19,7 @@ from gen.corpus.disk import (
     RECIPE_NAME,
     has_whole_bytes,
     plain_file,
+    reading,
     sha256,
     write_text_durably,
 )
@@ -184,6 +185,11 @@ def read_manifest(path: Path | str, check: Check = "sha256") -> Manifest:
         If it is missing, unreadable or of another format version, or its names or counts are wrong.
     """
     path = Path(path)
+    with reading(path):
+        return _read_manifest(path, check)
+
+
+def _read_manifest(path: Path, check: Check) -> Manifest:
     if path.is_file():
         # before a library opens it
         if check == "sha256" and not has_whole_bytes(path):
@@ -250,13 +256,14 @@ def row_of(path: Path) -> PartRow | None:
 def recipe_text(path: Path | str) -> str | None:
     """Recipe of a corpus as YAML; None if it has none."""
     path = Path(path)
-    if path.is_file():
-        return file_facts(path)[0].get(RECIPE_TEXT)
-    if not (path / RECIPE_NAME).exists():
-        return None
-    file = plain_file(path, RECIPE_NAME)
-    check_limit("yaml_bytes", file.stat().st_size, f"{file}:", CorpusError)
-    return file.read_text("utf-8", errors="replace")
+    with reading(path / RECIPE_NAME):
+        if path.is_file():
+            return file_facts(path)[0].get(RECIPE_TEXT)
+        if not (path / RECIPE_NAME).exists():
+            return None
+        file = plain_file(path, RECIPE_NAME)
+        check_limit("yaml_bytes", file.stat().st_size, f"{file}:", CorpusError)
+        return file.read_text("utf-8", errors="replace")
 
 
 def file_problems(path: Path, manifest: Manifest, check: Check) -> list[str]:

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.codecs import Codec
-from gen.corpus.disk import Stamp, stamp
+from gen.corpus.disk import Stamp, stamp, system_reason
 from gen.corpus.schema import MISSING_COUNT, SIGNAL, SIGNAL_DIMS
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
@@ -65,7 +65,7 @@ def library_errors(path: Path | str) -> Iterator[None]:
         except CorpusError:
             raise
         except Exception as error:  # h5py raises a dozen unrelated types on damaged bytes
-            reason = (str(error) or type(error).__name__).splitlines()[0]
+            reason = system_reason(error)
             if isinstance(error, KeyError):  # of a name, or of h5py with a sentence
                 reason = str(error.args[0]) if " " in str(error.args[0]) else f"it has no variable {error.args[0]}"
             raise CorpusError(f"{path}: not a readable file of a corpus ({reason}); make or copy it again.") from error

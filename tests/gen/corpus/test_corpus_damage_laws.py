@@ -1,8 +1,11 @@
 """Laws of damage: every change of a stored corpus is detected, and a failed write leaves no file."""
 
+import errno
+import io
 import json
 import os
 import shutil
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -75,6 +78,35 @@ def other_index(folder):
 
 def part(folder, number):
     return folder / "parts" / part_name(number)
+
+
+@pytest.mark.parametrize("name", ["manifest.json", "index.nc", f"parts/{part_name(1)}", "recipe.yaml"])
+def test_a_folder_in_the_place_of_a_file_is_refused(copied_folder, name):
+    (copied_folder / name).unlink(missing_ok=True)
+    (copied_folder / name).mkdir()
+    (problem,) = validate_corpus(copied_folder)
+    assert problem.startswith(f"{copied_folder / name}: is not a plain file; copy it again")
+
+
+@pytest.mark.parametrize("name", ["manifest.json", "index.nc", f"parts/{part_name(1)}"])
+@pytest.mark.parametrize("code", [errno.EACCES, errno.EIO])
+def test_a_file_that_the_system_cannot_read_is_refused(copied_folder, monkeypatch, name, code):
+    """A test may run as root, who may read everything."""
+    opened = io.open
+
+    def unreadable(file, *args, **kwargs):
+        if Path(file) == copied_folder / name:
+            raise OSError(code, os.strerror(code), file)
+        return opened(file, *args, **kwargs)
+
+    monkeypatch.setattr(io, "open", unreadable)
+    assert_refused(
+        copied_folder, rf"could not be read \({os.strerror(code)}\); get permission to read it, or copy it again\."
+    )
+
+
+def test_a_path_that_no_system_has_is_refused(tmp_path):
+    assert_refused(tmp_path / ("x" * 300), r"x: could not be read \(File name too long\)")
 
 
 @pytest.mark.parametrize("name", FILES[:2])
