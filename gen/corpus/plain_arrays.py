@@ -2,7 +2,6 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from numbers import Real
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -68,11 +67,15 @@ def records_of_arrays(
     """
     if isinstance(signals, xr.Dataset):
         raise CorpusError("records: a Dataset has its own sample rate and labels; leave fs and labels out.")
-    x = np.asarray(signals)
+    if np.ma.isMaskedArray(signals):
+        raise CorpusError(
+            "records: a masked array has samples that are not known; fill them, or leave its records out."
+        )
+    x, rate = np.asarray(signals), np.asarray(fs)
     if x.dtype.kind not in "iuf" or x.ndim not in (2, 3) or not x.size:
         raise CorpusError(f"records: {x.dtype} of shape {x.shape}; give numbers of shape (record, channel, time).")
-    rate = fs if isinstance(fs, Real) and fs else None
-    if rate is None or not isinstance(labels, Mapping | pd.DataFrame) or not {"fault", "specimen"} <= {*labels.keys()}:
+    stated = rate.dtype.kind in "iuf" and rate.ndim == 0 and rate != 0
+    if not stated or not isinstance(labels, Mapping | pd.DataFrame) or not {"fault", "specimen"} <= {*labels.keys()}:
         raise CorpusError(
             "labels: an array needs fs, its sample rate in Hz, and labels, a table with fault and specimen, the bearing of each record."
         )
@@ -92,6 +95,12 @@ def records_of_arrays(
         (name, factor), values = keys[key], np.asarray(labels[key])
         if values.shape not in ((), (len(x),)):
             raise CorpusError(f"labels: {key} has shape {values.shape}, not one value for each of {len(x)} records.")
+        # a missing quantity is NaN in a corpus too, but a missing name would be a name
+        missing = variables[name].dtype != "f8" and pd.isna(values).any()
+        if missing or np.ma.isMaskedArray(labels[key]):
+            raise CorpusError(
+                f"labels: {key} is masked or lacks values; give one for each record, or leave the column out."
+            )
         if name in labelled:
             raise CorpusError(f"labels: {key} gives {name} twice; leave one of its columns out.")
         labelled.add(name)

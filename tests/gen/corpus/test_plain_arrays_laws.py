@@ -16,9 +16,9 @@ LABELS = {"fault": ["inner", "healthy"] * 3, "specimen": ["b", "a", "b", "c", "c
 
 
 @pytest.mark.parametrize("x", [SIGNALS, SIGNALS[:, 0]], ids=["channels", "one channel"])
-@pytest.mark.parametrize("name", ["c", "c.nc"])
-def test_signals_classes_and_groups_come_back(tmp_path, name, x):
-    corpus = gen.write_corpus(x, tmp_path / name, fs=FS, labels=pd.DataFrame(LABELS))
+@pytest.mark.parametrize(("name", "fs"), [("c", FS), ("c.nc", np.array(FS))])
+def test_signals_classes_and_groups_come_back(tmp_path, name, fs, x):
+    corpus = gen.write_corpus(x, tmp_path / name, fs=fs, labels=pd.DataFrame(LABELS))
     assert gen.validate_corpus(corpus) == []
     found = gen.to_arrays(corpus)
     np.testing.assert_array_equal(found.X, x.reshape(6, -1, 400))
@@ -68,8 +68,29 @@ WRONG = {
     "texts": ({"records": SIGNALS.astype(str)}, {}, SHAPES),
     "four axes": ({"records": SIGNALS[None]}, {}, SHAPES),
     "a Dataset, which has labels of its own": ({"records": xr.Dataset()}, {}, "leave fs and labels out"),
+    "a masked signal": (
+        {"records": np.ma.masked_greater(SIGNALS, 2)},
+        {},
+        "records: a masked array has samples that are not known",
+    ),
+    "a bearing that is not known": (
+        {},
+        {"specimen": [1, np.nan, 2, 2, 3, 3]},
+        "labels: specimen is masked or lacks values; give one",
+    ),
+    "a bearing without a name": (
+        {},
+        {"specimen": ["a", None, *"bbcc"]},
+        "labels: specimen is masked or lacks values; give one",
+    ),
+    "masked speeds": (
+        {},
+        {"shaft_rpm": np.ma.masked_equal([1500, 0] * 3, 0)},
+        "labels: shaft_rpm is masked or lacks values",
+    ),
     "no sample rate": ({"fs": None}, {}, "an array needs fs, its sample rate in Hz"),
     "no table": ({"labels": None}, {}, "an array needs fs, its sample rate in Hz, and labels"),
+    "two sample rates": ({"fs": np.array([FS, FS])}, {}, "an array needs fs, its sample rate in Hz"),
     "a sample rate of zero": ({"fs": 0.0}, {}, "an array needs fs, its sample rate in Hz"),
     "a sample rate of minus one": ({"fs": -1.0}, {}, "sample_rate is -1 Hz, not one rate from"),
     "a class that is none": ({}, {"fault": ["iner"] * 6}, "fault has no value 'iner'; the nearest is inner."),
