@@ -146,7 +146,7 @@ def manifest_of(content: Mapping[str, Any] | bytes, place: Path) -> Manifest:
             _check_format(values["raceway_format"], place)
             # the hash covers all other keys, so that an edited manifest is noticed
             if values.pop(_HASH, None) != _hash_of(values):
-                raise CorpusError(_altered(place))
+                raise CorpusError(_altered(place, "in it"))
         manifest = Manifest.model_validate_json(json.dumps(values))
     except ValidationError as error:
         reason = first_problem(error)
@@ -286,13 +286,13 @@ def _file_problem(directory: Path, row: PartRow | None, check: Check) -> str | N
             whole = has_whole_bytes(file) if row is None else sha256(file) == row.sha256
     except CorpusError as error:
         return str(error)
-    return None if whole else _altered(file)
+    return None if whole else _altered(file) if row is None else _altered(file, f"in {MANIFEST_NAME} for this part")
 
 
-def _altered(file: Path) -> str:
+def _altered(file: Path, place: str = "at its end") -> str:
     return (
-        f"{file}: its bytes do not have the hash that Raceway stored: it is another file, such as a feature table, or is altered, cut off "
-        f"or rewritten by another program; give a corpus, copy it again, or make it again."
+        f"{file}: its bytes do not have the hash that Raceway stored {place}: it is another file, such as a feature table, or is altered, "
+        f"cut off or rewritten by another program; give a corpus, copy it again, or make it again."
     )
 
 

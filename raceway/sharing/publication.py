@@ -162,7 +162,7 @@ def publication_of(manifest: Manifest) -> Publication:
     try:
         return read_publication(manifest.publication)
     except CorpusError as error:
-        raise CorpusError(f"publication of the corpus: {error}") from None
+        raise CorpusError(f"publication of {manifest.title or 'the corpus'}: {error}") from None
 
 
 def read_publication(facts: Mapping[str, Any]) -> Publication:

@@ -130,7 +130,7 @@ READERS = {
 NO_CORPORA = {
     "nowhere": "nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file.",
     "file": "file.txt: its bytes do not have the hash that Raceway stored",
-    "table": "table.nc: its bytes do not have the hash that Raceway stored: it is another file, such as a feature table",
+    "table": "table.nc: its bytes do not have the hash that Raceway stored at its end: it is another file, such as a feature table",
     "folder": "folder: has no manifest.json, so it is not a corpus; make one with raceway generate.",
     "no_json": "manifest.json: not the manifest of a corpus",
     "vague": "manifest.json: not the manifest of a corpus (complete: input should be a valid boolean)",

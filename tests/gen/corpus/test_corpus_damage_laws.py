@@ -58,7 +58,8 @@ def test_a_file_with_any_other_byte_is_refused_by_name(nine, tmp_path_factory, n
     else:
         content.insert(place, mask)
     path.write_bytes(content)
-    assert_refused(corpus, rf"{path}: its bytes do not have the hash that Raceway stored")
+    place = r"in manifest\.json for this part" if "parts" in name else "at its end"
+    assert_refused(corpus, rf"{path}: its bytes do not have the hash that Raceway stored {place}: ")
 
 
 def link_out(path, outside):
@@ -181,7 +182,7 @@ def test_a_text_that_is_no_manifest_is_refused(copied_folder, text):
 
 def test_a_manifest_without_its_hash_is_refused(copied_folder):
     (copied_folder / "manifest.json").write_text(json.dumps(manifest_content(copied_folder)))
-    with pytest.raises(CorpusError, match=r"manifest\.json: its bytes do not have the hash"):
+    with pytest.raises(CorpusError, match=r"manifest\.json: its bytes do not have the hash that Raceway stored in it"):
         open_corpus(copied_folder)
 
 

@@ -71,7 +71,7 @@ def test_copying_there_and_back_gives_the_same_bytes(source, tmp_path):
 @pytest.mark.parametrize("name", NAMES)
 def test_wrong_facts_of_publication_go_into_no_copy(source, tmp_path, name):
     edit_manifest(source, publication={"license": "my own"})
-    with pytest.raises(CorpusError, match="publication of the corpus: license: 'my own' is not an SPDX identifier"):
+    with pytest.raises(CorpusError, match="publication of A corpus: license: 'my own' is not an SPDX identifier"):
         copy(source, tmp_path / name)
     assert [path.name for path in tmp_path.iterdir()] == ["source"]
 
