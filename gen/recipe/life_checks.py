@@ -34,6 +34,7 @@ def life_problems(recipe: Sections) -> Iterator[str]:
 def _other_keys(recipe: Sections, life: LifeSection) -> Iterator[str]:
     corpus, size, converter = recipe.corpus, recipe.corpus.records_per_specimen, recipe.recording.converter
     reach = ranges(recipe)
+    knocking = any(getattr(recipe.background, name) is not None for name in ("knocks", "impulses"))
     # a life grows one spall
     for number, fault in enumerate(recipe.faults):
         if not isinstance(fault, Spalls):
@@ -57,6 +58,8 @@ def _other_keys(recipe: Sections, life: LifeSection) -> Iterator[str]:
         (life.withdrawal_h.support()[1] <= life.entry_h.support()[0], "life.withdrawal_h", "it is before entry_h; use more"),
         (recipe.contact.lubricant is None and life.temperature_history_k.support()[1] > 0, "life.temperature_history_k",
          "it has no effect without oil; give contact.lubricant"),
+        (not knocking and life.knocks_share.support()[0] < 1, "life.knocks_share",
+         "it has no effect without knocks; give background.knocks or background.impulses"),
         (converter.kind == "adc" and (life.end.peak_m_s2 or 0) > converter.full_scale_m_s2, "life.end.peak_m_s2",
          "it is above the full scale of the converter and never reached; lower it"),
     ):  # fmt: skip

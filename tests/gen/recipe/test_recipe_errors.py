@@ -220,6 +220,10 @@ def test_whatever_a_recipe_holds_it_is_refused_in_sentences(tmp_path_factory, da
         ({"faults": [{"kind": "inner", "profile": "trace", "trace_um": [0, 3, 0], "width_mm": 0.3}]}, "would stretch"),
         ({"life": {"cadence_h": 40, "history_h": 1e-4}}, "life.history_h: is too short"),
         ({"life": {"cadence_h": 40, "temperature_history_k": 3}}, "no effect without oil"),
+        (
+            {"life": {"cadence_h": 40, "knocks_share": 0.5}, "background": {}},
+            "no effect without knocks; give background.knocks or background.impulses",
+        ),
         ({"faults": [{"kind": "cage"}]}, "cage has no life"),
         ({"faults": [{"kind": "healthy"}]}, "healthy has no life"),
         ({"faults": [{"kind": "inner", "width_mm": 0.3, "n_spalls": 2}]}, "one spall grows"),
