@@ -2,6 +2,7 @@
 
 import functools
 from collections.abc import Iterator, Mapping
+from numbers import Real
 from typing import Annotated, Any, ClassVar, Self, get_origin
 
 import numpy as np
@@ -153,10 +154,15 @@ class Section(BaseModel):
         """RecipeError if a drawn value is not in the range of its key; paths of keys begin with ``place``."""
         for key, bounds in bounds_of(type(self)).items():
             drawn = self.__dict__[key]
+            # a key that may be left out has nothing to draw then
+            if drawn is None and type(self).model_fields[key].default is None:
+                continue
             for value in drawn if isinstance(drawn, tuple) else (drawn,):
-                if not is_within(value, bounds):
+                number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else np.nan
+                if not is_within(number, bounds):
+                    shown = " ".join(str(value).split())
                     raise RecipeError(
-                        f"{place}{key}: {value:g} was drawn, which is not in {interval(bounds)}; correct draw() of its class."
+                        f"{place}{key}: {shown} was drawn, which is not in {interval(bounds)}; correct draw() of its class."
                     )
         for key, sections in self.below():
             for section in sections if isinstance(sections, tuple) else (sections,):

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from gen.corpus import SPLITS
 from gen.drawing import Combination, Draws, Section, Wholes, quantities, stream, weighted_index
+from gen.mechanisms.mechanism import plugins_of
 from gen.physics.axial import least_axial_load
 from gen.physics.bearing import free_contact_angle
 from gen.physics.rating import static_rating
@@ -81,17 +82,17 @@ def draw_scenarios(
         fault_try = (fault_tries or {}).get(number, 0)
         specimens[number] = _draw_specimen(recipe, *rigs[recipe.rig_of(number)], draws, fault_try)
     scenarios = list(_draw_records(recipe, specimens, numbers))
-    _check_drawn(scenarios)
+    if plugins_of(recipe):
+        _check_drawn(scenarios)
     return scenarios
 
 
 def _check_drawn(scenarios: list[Scenario]) -> None:
-    """RecipeError if a mechanism, such as that of a plug-in, drew a value that its key does not allow: replay would refuse the record."""
+    """RecipeError if a mechanism of a plug-in drew a value that its key does not allow: replay would refuse the record."""
     checked: set[int] = set()  # records share the mechanisms of their rig and specimen
     for scenario in scenarios:
         recipe = scenario.recipe
         for key, section in (
-            ("faults", recipe.faults[0]),
             ("background", recipe.background),
             ("machine_conditions", recipe.machine_conditions),
             ("sensor_faults", recipe.sensor_faults),
@@ -186,6 +187,8 @@ def _draw_specimen(recipe: Recipe, rig: Recipe, of_rig: Draws, draws: Draws, fau
     for key, undrawn in (("operation", recipe.operation_of(entry)), ("level", recipe.level_of(entry))):
         drawn[key] = undrawn.draw(of_rig.within(key, "rig")).draw(draws.within(key, "specimen"))
     fault = recipe.faults[entry].draw(built._replace(point=[], attempt=fault_try).within("faults", "specimen"))
+    if plugins_of(recipe):
+        fault.check_drawn(f"specimen {draws.of}: faults.")
     for part in fault.components:
         part.check(built.bearing, f"specimen {draws.of}")
     # conditions of the fault are those of the record by now

@@ -173,9 +173,12 @@ MECHANISMS = {
 }
 
 
+@pytest.mark.parametrize("wrong", ["outside", None, "text", True, np.nan, np.zeros((9, 9))], ids=str)
 @pytest.mark.parametrize("place", MECHANISMS)
-def test_a_mechanism_that_draws_what_its_keys_do_not_allow_is_refused_by_the_key(recipe_with, place):
+def test_a_plug_in_that_draws_what_its_keys_do_not_allow_is_refused_by_the_key(recipe_with, monkeypatch, place, wrong):
     base, keys, key, value = MECHANISMS[place]
+    value = value if isinstance(wrong, str) and wrong == "outside" else wrong
+    monkeypatch.setattr("gen.scenarios.draw.plugins_of", lambda *_: ["mechanism"])
 
     class Mechanism(base):
         def draw(self, of):
@@ -183,5 +186,8 @@ def test_a_mechanism_that_draws_what_its_keys_do_not_allow_is_refused_by_the_key
 
     mechanism, recipe = Mechanism(**keys), recipe_with()
     section = (mechanism,) if place == "faults" else getattr(recipe, place).model_copy(update={base.place: mechanism})
-    with pytest.raises(RecipeError, match=rf"record 0: {place}\.(\w+\.)?{key}: .* was drawn, which is not in [\[(]"):
+    with pytest.raises(
+        RecipeError,
+        match=rf"^(record|specimen) 0: {place}\.(\w+\.)?{key}: .* was drawn, which is not in [\[(].*class\.$",
+    ):
         draw_scenarios(recipe.model_copy(update={place: section}))
