@@ -134,7 +134,7 @@ NO_CORPORA = {
     "folder": "folder: has no manifest.json, so it is not a corpus; make one with raceway generate.",
     "no_json": "manifest.json: not the manifest of a corpus",
     "vague": "manifest.json: not the manifest of a corpus (complete: input should be a valid boolean)",
-    "later_format": "manifest.json: corpus format 99, this version of raceway reads format 3; make the corpus again.",
+    "later_format": "manifest.json: corpus format 99, this version of raceway reads format 4; make the corpus again.",
     "leading_out": "manifest.json: not the manifest of a corpus (parts.0.name: string should match pattern",
 }
 
