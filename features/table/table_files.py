@@ -1,10 +1,12 @@
 """Feature tables on disk: netCDF with a checksum of each variable, or Parquet."""
 
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from importlib.util import find_spec
 from pathlib import Path
 
 import xarray as xr
+from xarray.backends import NetCDF4DataStore
 
 from features.table.channels import channels_of
 from gen.corpus import LIBRARY_LOCK, check_result, whole_or_not_at_all
@@ -88,8 +90,9 @@ def _write_netcdf(table: xr.Dataset, path: Path) -> None:
         kind = {"dtype": "S1", "char_dim_name": f"{name}_length"} if text else {"_FillValue": None}
         # the checksum is compared by the library whenever the values are read
         encoding[name] = {"zlib": True, "fletcher32": True, **kind}
-    with LIBRARY_LOCK:
-        table.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding)
+    # to_netcdf would load dask to choose a lock, which takes half a second
+    with LIBRARY_LOCK, closing(NetCDF4DataStore.open(path, "w", lock=False)) as store:
+        table.dump_to_store(store, encoding=encoding)
 
 
 def _write_parquet(table: xr.Dataset, path: Path) -> None:
