@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from gen.measurement.measure import compile_measuring
+from gen.mechanisms.background.background import machine_sources_of
 from gen.mechanisms.mechanism import mechanisms_of
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
@@ -14,8 +15,8 @@ def compile_kernels(recipe: Recipe, notice: Callable[[str], None] = lambda _: No
     """Compile what this machine does not have yet; ``notice`` is called with a sentence before the kernel is compiled."""
     with keep_garbage():
         compile_measuring(draw_scenarios(recipe, 0, 1)[0])
-        for guest in (*mechanisms_of(recipe.background), *mechanisms_of(recipe.sensor_faults)):
-            guest.compile()
+        for mechanism in (*machine_sources_of(recipe), *mechanisms_of(recipe.sensor_faults)):
+            mechanism.compile()
     if not is_compiled():
         notice("compiling the kernel for this machine, 10 to 20 s; it is kept for the next time.")
         load_kernel()

@@ -1,9 +1,13 @@
 """Laws of compiling: once per machine, before the first record."""
 
+from functools import partial
+
 import numba
 
 from gen.generation import compilation
 from gen.generation.compilation import compile_kernels
+from gen.mechanisms.background.looseness import Looseness
+from gen.mechanisms.chain.loose_mount import LooseMount
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.decimate import decimation
 from gen.scenarios import draw_scenarios
@@ -28,3 +32,13 @@ def test_the_kernel_is_announced_before_it_is_compiled(recipe_with, monkeypatch)
     monkeypatch.setattr(compilation, "load_kernel", lambda: done.append("compiled"))
     compile_kernels(recipe_with({}), done.append)
     assert done == ["compiling the kernel for this machine, 10 to 20 s; it is kept for the next time.", "compiled"]
+
+
+def test_mechanisms_that_have_compiled_code_are_compiled_ahead_of_the_workers(recipe_with, monkeypatch):
+    compiled = []
+    for mechanism in (Looseness, LooseMount):
+        monkeypatch.setattr(mechanism, "compile", partial(compiled.append, mechanism))
+    loose = {"probability": 1, "lift": 1.5, "frequency_hz": 400, "level_db": 6}
+    mount = {"probability": 1, "frequency_hz": 4000, "damping_percent": 5, "holding_m_s2": 100}
+    compile_kernels(recipe_with({"machine_conditions.looseness": loose, "sensor_faults.loose_mount": mount}))
+    assert compiled == [Looseness, LooseMount]
