@@ -199,6 +199,31 @@ def square_root(x: float) -> float:
 
 
 @njit(**INLINE)
+def ninth_root(x: float) -> float:
+    """Ninth root of 0 or of a positive number, to 1e-14 of its value, without a root or a division.
+
+    A ninth of the exponent gives ``y = x**(-1/9)`` to 3 %. With ``e = 1 - x y**9``, two steps multiply it by the series of
+    ``(1 - e)**(-1/9)``.
+    """
+    x = max(x, 1e-300)
+    exponent = np.int32(1191820569.0 - float(np.int32(_bits(x) >> 32)) * (1 / 9))
+    y = _number(np.int64(exponent) << 32)
+    e = fma(-x, _ninth_power(y), 1.0)
+    y = fma(y * e, fma(e, fma(e, 95 / 2187, 5 / 81), 1 / 9), y)
+    e = fma(-x, _ninth_power(y), 1.0)
+    y = fma(y * e, fma(e, fma(e, fma(e, 665 / 19683, 95 / 2187), 5 / 81), 1 / 9), y)
+    square = y * y
+    fourth = square * square
+    return x * (fourth * fourth)
+
+
+@njit(**INLINE)
+def _ninth_power(x: float) -> float:
+    cube = x * x * x
+    return cube * cube * cube
+
+
+@njit(**INLINE)
 def root(x: float) -> float:
     """Square root in hardware where that is fast, in software elsewhere; the bits are the same."""
     if fast_divider():

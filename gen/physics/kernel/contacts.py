@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from gen.physics.extent import MAX_BALLS
-from gen.physics.kernel.compiling import INLINE, LANES, as_lane, fma, lane_count, root, wide
+from gen.physics.kernel.compiling import INLINE, LANES, as_lane, fma, lane_count, ninth_root, root, wide
 from gen.physics.kernel.layout import CONTACT_ROWS, Batch, Contact, FloatArray, Param, Shape, State
 
 _COUNT, _BALL = np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None], np.arange(MAX_BALLS)
@@ -50,21 +50,6 @@ class Instant(NamedTuple):
     """Rows of :class:`Contact`, ball after ball."""
     drops: FloatArray
     """Drop of each ball into spalls [m], shape (ball * LANES + lane)."""
-
-
-@njit(**INLINE)
-def ninth_root(x: float) -> float:
-    """Ninth root, to 1e-13 of its value between 1e-11 and 1e-3.
-
-    Three steps of Halley's method start from 1.25 times the eighth root, which is three square roots: over that range the ninth root is
-    1.08 to 1.42 times the eighth.
-    """
-    y = 1.25 * root(root(root(x))) + 1e-300
-    for _ in range(3):
-        cube = y * y * y
-        ninth = cube * cube * cube
-        y *= fma(8.0, ninth, 10 * x) / (fma(10.0, ninth, 8 * x) + 1e-300)
-    return y
 
 
 @njit(**INLINE)

@@ -1,4 +1,7 @@
-"""The square root in software has the bits of the processor's, so each machine may choose how many roots its divider takes."""
+"""The square root in software has the bits of the processor's, so each machine may choose how many roots its divider takes.
+
+The ninth root, of rollers, is one to the last digits.
+"""
 
 import math
 
@@ -6,7 +9,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from gen.physics.kernel.compiling import root, square_root
+from gen.physics.kernel.compiling import ninth_root, root, square_root
 
 SMALLEST = 2.0**-968  # below it the remainder of the last correction is too small for its last bits
 
@@ -25,6 +28,21 @@ def chosen_roots(x):
     for i in range(len(x)):
         out[i] = root(x[i])
     return out
+
+
+@njit
+def ninth_roots(x):
+    out = np.empty_like(x)
+    for i in range(len(x)):
+        out[i] = ninth_root(x[i])
+    return out
+
+
+def test_the_ninth_root_is_one():
+    x = np.r_[np.geomspace(1e-290, 1e3, 100_001), 1.0, np.nextafter([1.0, 2.0, 4.0], 0)]
+    exact = np.longdouble(x) ** (1 / np.longdouble(9))
+    assert np.abs(ninth_roots(x) / exact - 1).max() < 1e-14
+    assert 0 <= ninth_roots(np.zeros(1))[0] < 1e-30
 
 
 def hardest(nearest):
