@@ -1,9 +1,10 @@
-"""Run benchmarks, print a table of ratios, and keep the rows in the file of this processor, ``benchmarks/results-....json``.
+"""Run benchmarks and print a table of ratios.
 
-``python -m benchmarks [NAME...]`` runs all or some benchmarks, ``python -m benchmarks --pages`` makes the tables of docs/running.md
-from the files, and ``python -m benchmarks against CHECKOUT`` compares with another checkout (:mod:`benchmarks.against`). Each row
-compares a value with that of a named alternative: medians over interleaved pairs, and the median of the ratios. Small values in s, ms,
-MB, GB or core hours are good, large rates are good. All benchmarks take about five minutes.
+``python -m benchmarks [NAME...]`` runs all or some benchmarks; with ``--keep`` the rows go to the file of this processor,
+``benchmarks/results-....json``. ``python -m benchmarks --pages`` makes the tables of docs/running.md from these files, and
+``python -m benchmarks against CHECKOUT`` compares with another checkout (:mod:`benchmarks.against`). Each row compares a value with that
+of a named alternative: medians over interleaved pairs, and the median of the ratios. Small values in s, ms, MB, GB or core hours are
+good, large rates are good. All benchmarks take about five minutes.
 """
 
 import argparse
@@ -63,6 +64,9 @@ def main(arguments: list[str]) -> None:
         return
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(SUBJECTS)}; by default all")
+    parser.add_argument(
+        "--keep", action="store_true", help="keep the rows for docs/running.md, in the file of this processor"
+    )
     parser.add_argument("--pages", action="store_true", help="only make the tables of docs/running.md again")
     options = parser.parse_args(arguments)
     if unknown := set(options.names) - set(SUBJECTS):
@@ -75,7 +79,8 @@ def main(arguments: list[str]) -> None:
         for line in SUBJECTS[name]():
             print(f"{line.name}: {line.ratio:.3g}" if isinstance(line, Row) else line.why, file=sys.stderr)
             lines.append(line)
-            keep([line], results_file(processor_key()), facts())
+            if options.keep:
+                keep([line], results_file(processor_key()), facts())
     print(table(lines))
 
 
