@@ -1,8 +1,9 @@
 """The reference model of ``diagnose``, which is trained at its first use and kept per user.
 
 It is trained on records of the recipe domain_randomised that last 2 s, in which lines rise higher above the floor than in the half seconds
-of the recipe, and holds a model trained on those for shorter recordings. The feature table of both ships with Raceway, so that the training
-takes seconds. ``make reference`` writes it (`benchmarks.reference_table`); unlike a model file it depends on no version of scikit-learn.
+of the recipe. It holds a model trained on those for shorter recordings, and one for recordings that are sampled at 20 kHz or more, of a
+wider band. The feature tables of all three ship with Raceway, so that the training takes seconds. ``make reference`` writes them
+(`benchmarks.reference_table`); unlike a model file they depend on no version of scikit-learn.
 
 The kept file is named after the versions of Raceway and scikit-learn, and a hash of all that it was made from: table, sources and
 libraries. A damaged one is made again. A lock keeps two processes from making it at once.
@@ -36,7 +37,9 @@ CACHE_VARIABLE = "RACEWAY_CACHE"
 LONG = 2.0  # s, duration of the records of the reference model
 HASH_LETTERS = 16
 SHIPPED_TABLE = Path(__file__).with_name(f"{REFERENCE}.nc")
-_SOURCES = ("gen/corpus", "gen/support", "features", "raceway/kept_models.py", f"raceway/{SHIPPED_TABLE.name}")
+WIDE_TABLE = Path(__file__).with_name(f"{REFERENCE}_wide.nc")
+_TABLES = (f"raceway/{SHIPPED_TABLE.name}", f"raceway/{WIDE_TABLE.name}")
+_SOURCES = ("gen/corpus", "gen/support", "features", "raceway/kept_models.py", *_TABLES)
 _LIBRARIES = ("scikit-learn", "skops", "numpy", "scipy", "numba")  # whose versions make other models or files
 
 
@@ -46,7 +49,7 @@ def train_and_score(
     """Model trained on a feature table without its test split, and its scores on that split, with progress.
 
     A table without a test split, or with nothing else, is trained on as a whole and not scored. From a second table, of shorter records,
-    the model for these is trained; the scores are those of the first.
+    the model for these is trained, and from a third one that for a wider band; the scores are those of the first.
 
     Raises
     ------
@@ -66,18 +69,18 @@ def train_and_score(
             model.fit(some if whole else some.isel(record=~test), workers=workers, progress=report)
         return model, None if whole else model.score(some.isel(record=test))
 
-    (model, scores), *shorter = map(trained, tables)
-    model.shorter = shorter[0][0] if shorter else None
+    (model, scores), *others = map(trained, tables)
+    model.shorter, model.wide = [*(other for other, _ in others), None, None][:2]
     return model, scores
 
 
 def shipped_tables() -> "list[xr.Dataset]":
-    """Feature table that ships with Raceway, of records of 2 s and of those of half a second."""
+    """Feature tables that ship with Raceway, of records of 2 s, of those of half a second, and of 2 s in a wider band."""
     from features.table.table_files import read_table
 
     shipped = read_table(SHIPPED_TABLE)
     long = shipped[DURATION].values == LONG
-    return [shipped.isel(record=long), shipped.isel(record=~long)]
+    return [shipped.isel(record=long), shipped.isel(record=~long), read_table(WIDE_TABLE)]
 
 
 def open_model(path: Path | None = None) -> tuple["Model", Path]:

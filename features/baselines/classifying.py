@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 SAME_DURATION = 1.01  # ratio
+RECORDED = 0.45  # of the sample rate: frequencies below the anti-alias filter of a recording
 
 
 class Fitted(Protocol):
@@ -38,6 +39,7 @@ class Fitted(Protocol):
     relative: Any
     durations: tuple[float, ...]
     shorter: Any
+    wide: Any
 
     @property
     def name(self) -> str:
@@ -48,10 +50,13 @@ class Fitted(Protocol):
 Model = TypeVar("Model", bound=Fitted)
 
 
-def suited(model: Model, durations: Sequence[float]) -> Model:
-    """The model, or its model for shorter records if the shortest of these durations [s] is below that of its training."""
-    shorter = model.shorter
-    return shorter if shorter and durations and SAME_DURATION * min(durations) < min(model.durations) else model
+def suited(model: Model, durations: Sequence[float], highest: float) -> Model:
+    """The model, or its model for shorter records if the shortest of these durations [s] is below that of its training, or else that for
+    its wider band if the ``highest`` frequency of the records reaches its end [Hz].
+    """
+    if model.shorter and durations and SAME_DURATION * min(durations) < min(model.durations):
+        return model.shorter
+    return model.wide if model.wide and highest >= model.wide.band[1] else model
 
 
 def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset | None = None) -> Predictions:
@@ -92,7 +97,7 @@ def _of_waveforms(data: Waveforms, model: Fitted) -> Predictions:
 def _of_table(table: xr.Dataset, model: Fitted, reference: xr.Dataset | None) -> Predictions:
     if not model.features:
         raise CorpusError(f"{title_of(table)}: {model.name} was trained on waveforms; give waveforms.")
-    model = suited(model, durations_of(table))
+    model = suited(model, durations_of(table), band_of(table.attrs).high)
     tables, used, colour = channels_of(table), model, None
     # a reference has a model of its own, of features relative to healthy records
     if reference is not None:

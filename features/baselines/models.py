@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sklearn.exceptions import NotFittedError
 
 from features.baselines.calibration import UNCALIBRATED, Calibration
-from features.baselines.classifying import predict, suited
+from features.baselines.classifying import RECORDED, predict, suited
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import Estimator, relative_name
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, UNTRAINED
@@ -43,18 +43,18 @@ from features.table.corpus_features import feature_table
 from features.table.definitions import ALL_GROUPS, GROUPS
 from features.table.durations import durations_of
 from features.table.waveforms import Waveforms
-from gen.corpus import FAULTS, UNKNOWN_CODE, check_result, corpus_name
+from gen.corpus import FAULTS, UNKNOWN_CODE, check_result, corpus_name, open_corpus
 from gen.support.display import Shown
 from gen.support.errors import CorpusError
 from gen.support.executor import Workers, connected
 from gen.support.plugins import missing_distributions, plugin_versions
 from gen.support.progress import Progress, counter
 
-FORMAT = 8
+FORMAT = 9
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 _TRAINING = ("corpus", "records", "seed", "digests", "versions")
 _STORED = ("estimator", "name", "classes", "features", "groups", "band", "durations", *_TRAINING, "calibration")
-_PARTS = ("relative", "shorter")
+_PARTS = ("relative", "shorter", "wide")
 """Fields in a model file, and those that are models."""
 
 Data = xr.Dataset | Waveforms | Path | str
@@ -96,6 +96,8 @@ class Model(Shown):
         training corpus has no virtual references.
     shorter
         The same for records that are shorter than those of the training; None if there is none.
+    wide
+        The same for records whose sample rate allows a wider band; None if there is none.
     """
 
     classifier: str | Maker = DEFAULT_ESTIMATOR
@@ -114,6 +116,7 @@ class Model(Shown):
     calibration: Calibration = UNCALIBRATED
     relative: Model | None = None
     shorter: Model | None = None
+    wide: Model | None = None
 
     @property
     def name(self) -> str:
@@ -224,14 +227,14 @@ class Model(Shown):
     def _scores(
         self, data: xr.Dataset | Waveforms, healthy: xr.Dataset | None, seed: int, reference: str = ""
     ) -> Scores:
-        model = self if isinstance(data, Waveforms) else suited(self, durations_of(data))
         if isinstance(data, Waveforms):
             records = records_of(data, ())
             tested, seen = records.features, int(np.isin(record_digests(records.features), self.digests).sum())
         else:
-            records = labelled_records(data, self.features)
+            model = suited(self, durations_of(data), band_of(data.attrs).high)
+            records = labelled_records(data, model.features)
             tested = data.isel(record=data["fault"].values != UNKNOWN_CODE)
-            seen = seen_records(records.features.to_numpy()[:, : len(self.features)], model.digests)
+            seen = seen_records(records.features.to_numpy()[:, : len(model.features)], model.digests)
         return score(records, predict(tested, self, healthy), seed, seen=seen, reference=reference)
 
     def _tables(self, data: Data, reference: Data | None) -> tuple[Any, xr.Dataset | None]:
@@ -240,10 +243,10 @@ class Model(Shown):
         if _holds_signals(data) and reference is not None and _holds_signals(reference):
             check_durations(data, reference)
         groups = self.groups if reference is None else with_energies(tuple(self.groups))
+        signals = [source for source in (data, reference) if source is not None and _holds_signals(source)]
+        band = Band(*suited_to(self, *signals).band) if signals else DEFAULT_BAND
         table, healthy = (
-            _feature_table(source, groups, Band(*self.band))
-            if source is not None and _holds_signals(source)
-            else source
+            _feature_table(source, groups, band) if source is not None and _holds_signals(source) else source
             for source in (data, reference)
         )
         return table, cast("xr.Dataset | None", healthy)
@@ -333,6 +336,22 @@ def _content(model: Model) -> dict[str, Any]:
     """Fields of a model file."""
     parts = {name: None if (part := getattr(model, name)) is None else _content(part) for name in _PARTS}
     return {name: getattr(model, name) for name in _STORED} | {"calibration": model.calibration._asdict()} | parts
+
+
+def suited_to(model: Model, *corpora: Path | str | xr.Dataset) -> Model:
+    """The model whose features are computed of the signals of some corpora, by their durations and sample rates.
+
+    Raises
+    ------
+    CorpusError
+        If one cannot be read.
+    """
+    durations, rates = list[float](), list[float]()
+    for corpus in corpora:
+        with open_corpus(corpus) as opened:
+            rates.append(float(opened["sample_rate"].max()))
+            durations.append(opened.sizes["elapsed_time"] / rates[-1])
+    return suited(model, durations, RECORDED * min(rates))
 
 
 def _holds_signals(data: Data) -> TypeGuard[Path | str | xr.Dataset]:

@@ -132,6 +132,7 @@ def evaluate(
       raceway evaluate pump --model model.skops --reference pump
     """
     from features.baselines import count_unknown
+    from features.baselines.models import suited_to
     from features.baselines.reference_choice import check_durations
     from gen import open_corpus
     from raceway.kept_models import open_model
@@ -142,7 +143,8 @@ def evaluate(
     if reference is not None:
         check_durations(corpus, reference)
     loaded, source = open_model(model)
-    analysis = Analysis(channel, loaded.band, tuple(loaded.groups))
+    corpora = [corpus] if reference is None else [corpus, reference]
+    analysis = Analysis(channel, suited_to(loaded, *corpora).band, tuple(loaded.groups))
     table = table_of(corpus, speed, team, analysis)
     healthy = table if reference == corpus else reference and table_of(reference, speed, team, analysis)
     scores = loaded.score(table, reference=healthy)
@@ -181,10 +183,11 @@ def warn_of_seen(model: str, scores: "Scores") -> None:
 def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
     """Warn of records that are shorter or longer than those of the training."""
     from features.baselines.classifying import SAME_DURATION, suited
+    from features.table.band import band_of
     from features.table.durations import durations_of
 
     tested = durations_of(table)
-    trained = suited(model, tested).durations
+    trained = suited(model, tested, band_of(table.attrs).high).durations
     spans = ((model.shorter.durations,) if model.shorter else ()) + (model.durations,)
     if tested and trained and not trained[0] / SAME_DURATION < tested[0] <= tested[1] < trained[1] * SAME_DURATION:
         notice(

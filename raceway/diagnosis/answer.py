@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from features.baselines.calibration import HEALTHY_SHARE
-from features.baselines.classifying import predict, suited
+from features.baselines.classifying import RECORDED, predict, suited
 from features.baselines.models import Model
 from features.baselines.predictions import DAMAGED, UNSURE, Predictions
 from features.baselines.references import with_energies
@@ -197,7 +197,8 @@ def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[R
 
 def _predict(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Predictions:
     """Predictions of windows and recording."""
-    model = suited(model, [each.duration for each in (recording, *references)])
+    recordings = (recording, *references)
+    model = suited(model, [each.duration for each in recordings], RECORDED * min(each.fs for each in recordings))
     tested = _table(recording, recording.signals, pair, model, UNKNOWN_CODE)
     if not references:
         return predict(tested, model)
