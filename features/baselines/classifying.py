@@ -51,8 +51,10 @@ Model = TypeVar("Model", bound=Fitted)
 
 
 def suited(model: Model, durations: Sequence[float], highest: float) -> Model:
-    """The model, or its model for shorter records if the shortest of these durations [s] is below that of its training, or else that for
-    its wider band if the ``highest`` frequency of the records reaches its end [Hz].
+    """The model, or its model for other records.
+
+    That for shorter records is taken if the shortest of these ``durations`` is below that of the training [s], and else that for a wider
+    band if the ``highest`` frequency of the records reaches the end of the band [Hz].
     """
     if model.shorter and durations and SAME_DURATION * min(durations) < min(model.durations):
         return model.shorter

@@ -7,11 +7,12 @@ from importlib.metadata import version
 import numpy as np
 import pytest
 
-from benchmarks.reference_table import both_lengths, identities
+from benchmarks.reference_table import WIDE_BAND, both_lengths, identities, wide_recipe
 from features import feature_table
 from features.baselines import Model
 from features.baselines.records import DEFAULT_GROUPS
 from features.baselines.references import with_energies
+from features.table.band import DEFAULT_BAND
 from gen import generate
 from gen.recipe import read_recipe
 from raceway import kept_models
@@ -123,11 +124,11 @@ def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(run, tiny_corpus,
 def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_path):
     """Other processors may round the signals otherwise by a count or two of the converter."""
     tables, labels = kept_models.shipped_tables(), ["fault", "rig", "specimen", "split", "duration"]
-    recipes = both_lengths(read_recipe("domain_randomised"))
-    assert tables[0].attrs["recipes"] == identities(recipes)
-    for table, recipe in zip(tables, recipes, strict=True):
-        seconds = recipe.recording.duration_s
-        fresh = feature_table(generate(recipe, tmp_path / f"{seconds}", records=4).path)
+    both, wide = both_lengths(read_recipe("domain_randomised")), wide_recipe()
+    assert [table.attrs["recipes"] for table in tables[1:]] == [identities(both), identities([wide])]
+    for place, (table, recipe) in enumerate(zip(tables, (*both, wide), strict=True)):
+        corpus = generate(recipe, tmp_path / f"{place}", records=4).path
+        fresh = feature_table(corpus, band=WIDE_BAND if recipe is wide else DEFAULT_BAND)
         names = fresh["feature"].values[np.isin(fresh["group"].values, with_energies(DEFAULT_GROUPS))]
         assert list(table["feature"].values) == list(names)
         stored, again = (one.set_index(record="recording") for one in (table, fresh))
@@ -136,14 +137,17 @@ def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_p
         np.testing.assert_allclose(stored["features"], again["features"].sel(feature=names), rtol=1e-3, atol=1e-3)
 
 
-def test_a_second_table_trains_the_model_for_shorter_records():
-    """Its scores are on the test split of the first table."""
+def test_further_tables_train_the_models_for_shorter_records_and_for_a_wider_band():
+    """The scores are on the test split of the first table."""
     one, other = (make_table(records=48, seed=seed).assign(split=("record", np.arange(48) % 3)) for seed in (0, 1))
     tables = [one.assign(duration=("record", np.full(48, 2.0))), other.assign(duration=("record", np.full(48, 0.5)))]
-    model, scores = kept_models.train_and_score(tables, "logistic_regression")
+    wide = tables[0].assign_attrs(band_low_hz=300.0, band_high_hz=9000.0)
+    model, scores = kept_models.train_and_score([*tables, wide], "logistic_regression")
     alone, of_first = kept_models.train_and_score(tables[:1], "logistic_regression")
-    assert (model.durations, model.shorter.durations, alone.shorter) == ((2.0, 2.0), (0.5, 0.5), None)
+    assert (model.durations, model.shorter.durations, model.wide.band) == ((2.0, 2.0), (0.5, 0.5), (300.0, 9000.0))
+    assert (alone.shorter, alone.wide) == (None, None)
     assert scores == of_first
+    np.testing.assert_array_equal(model.predict_proba(wide), model.wide.predict_proba(wide))
     np.testing.assert_array_equal(model.predict_proba(tables[1]), model.shorter.predict_proba(tables[1]))
     np.testing.assert_array_equal(model.predict_proba(tables[0]), alone.predict_proba(tables[0]))
 

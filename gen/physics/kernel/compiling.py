@@ -151,7 +151,7 @@ as_lane = cast("Callable[[int], int]", intrinsic(_make_as_lane))
 fma = cast("Callable[[float, float, float], float]", intrinsic(_make_fma))
 fast_divider = cast("Callable[[], bool]", intrinsic(_make_fast_divider))
 _bits = cast("Callable[[float], int]", intrinsic(_make_bits))
-_number = cast("Callable[[int], float]", intrinsic(_make_number))
+_number = cast("Callable[[int | np.int64], float]", intrinsic(_make_number))
 
 
 @njit(**ALLOCATING)

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,11 @@ from hypothesis import strategies as st
 from features.baselines import ESTIMATORS, Model, estimators, predict
 from features.baselines.classifying import SAME_DURATION, suited
 from features.baselines.model_file import TRUSTED, read_model_file
-from features.baselines.models import FORMAT
+from features.baselines.models import FORMAT, suited_to
 from features.table.durations import durations_of
 from gen.support.errors import CorpusError
 from tests.model_files import Archive, make_table, write_models
+from tests.tone_corpora import write_corpus
 
 
 @pytest.fixture(scope="module")
@@ -127,13 +129,13 @@ def test_a_model_larger_than_the_limit_is_refused(files, monkeypatch):
     assert "raceway --limit file_bytes=NUMBER" in refusal(files["extra_trees"])
 
 
-def test_the_model_for_shorter_records_is_in_the_same_file(tmp_path):
-    model = Model("logistic_regression").fit(make_table())
-    model.shorter = Model("logistic_regression", seed=1).fit(make_table(seed=1))
-    model.save(tmp_path / "m")
-    loaded, table = Model.load(tmp_path / "m").shorter, make_table(seed=2)
-    assert loaded.shorter is None
-    np.testing.assert_array_equal(loaded.predict_proba(table), model.shorter.predict_proba(table))
+@pytest.mark.parametrize("part", ["shorter", "wide"])
+def test_models_for_other_records_are_in_the_same_file(part, tmp_path):
+    model, other = (Model("logistic_regression", seed=seed).fit(make_table(seed=seed)) for seed in (0, 1))
+    replace(model, **{part: other}).save(tmp_path / "m")
+    loaded, table = getattr(Model.load(tmp_path / "m"), part), make_table(seed=2)
+    assert (loaded.shorter, loaded.wide) == (None, None)
+    np.testing.assert_array_equal(loaded.predict_proba(table), other.predict_proba(table))
 
 
 def test_a_model_file_holds_no_pickle(files):
@@ -141,13 +143,21 @@ def test_a_model_file_holds_no_pickle(files):
     assert all(name.endswith(".npy") for name in members)
 
 
-@given(st.lists(st.floats(0.01, 100), max_size=4))
-def test_shorter_records_are_for_the_model_of_these(durations):
-    short = Model(durations=(0.5, 0.5))
-    model = Model(durations=(2.0, 2.0), shorter=short)
+@given(st.lists(st.floats(0.01, 100), max_size=4), st.floats(0, 50_000))
+def test_shorter_records_and_those_of_a_wider_band_have_models_of_their_own(durations, highest):
+    short, wide = Model(durations=(0.5, 0.5)), Model(durations=(2.0, 2.0), band=(300.0, 9000.0))
+    model = Model(durations=(2.0, 2.0), shorter=short, wide=wide)
     below = bool(durations) and min(durations) < 2 / SAME_DURATION
-    assert suited(model, durations) is (short if below else model)
-    assert suited(short, durations) is short
+    assert suited(model, durations, highest) is (short if below else wide if highest >= 9000 else model)
+    assert suited(short, durations, highest) is short
+    assert suited(replace(model, wide=None), durations, highest).band == (300.0, 5000.0)
+
+
+@pytest.mark.parametrize(("rate", "band"), [(12_000.0, (300.0, 5000.0)), (20_000.0, (300.0, 9000.0))])
+def test_features_of_a_corpus_are_computed_in_the_widest_band_that_its_rate_allows(rate, band, tmp_path):
+    write_corpus(tmp_path / "c", sample_rate=np.full(48, rate))
+    model = Model(durations=(0.1, 0.1), wide=Model(durations=(0.1, 0.1), band=(300.0, 9000.0)))
+    assert suited_to(model, tmp_path / "c").band == band
 
 
 def test_a_table_tells_its_shortest_and_longest_duration_or_none():
