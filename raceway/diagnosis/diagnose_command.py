@@ -11,7 +11,7 @@ from raceway.console import show
 from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, model_option
 from raceway.console.progress_bar import notice, notice_compilation
 from raceway.diagnosis.tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
-from raceway.importing.reading_options import Reading, check_speed, reading_options, rpm_option
+from raceway.importing.reading_options import Reading, Speeds, check_speed, reading_options, rpm_option
 
 if TYPE_CHECKING:
     from gen.physics.bearing import Bearing
@@ -46,6 +46,13 @@ def _checked_output(context: click.Context, option: click.Parameter, path: Path 
     "Repeat it for alternatives; without it, the whole catalogue is searched.",
 )
 @rpm_option
+@click.option(
+    "--speed-table",
+    "speed_table",
+    type=A_PATH,
+    metavar="FILE.csv",
+    help="Speeds of the recordings of a FOLDER in place of --rpm: a table with the columns file and rpm.",
+)
 @reading_options
 @click.option(
     "--healthy",
@@ -67,7 +74,8 @@ def _checked_output(context: click.Context, option: click.Parameter, path: Path 
 def diagnose(
     recording: Path,
     bearings: tuple[str, ...],
-    speeds: tuple[float, float] | None,
+    speeds: Speeds | None,
+    speed_table: Path | None,
     reading: Reading,
     healthy: tuple[Path, ...],
     model: Path | None,
@@ -88,6 +96,7 @@ def diagnose(
       raceway diagnose volts.csv --channel x,y --unit V --sensitivity 100 --bearing 6308 --rpm 990 --rate 25600
       raceway diagnose pump.csv --healthy new.csv --bearing 6205 --rpm 1772 --rate 12000 --json
       raceway diagnose spring_campaign --channel 1 --bearing 6205 --rpm 1480 -o pages
+      raceway diagnose spring_campaign --channel 1 --bearing 6205 --speed-table speeds.csv
 
     All axes of one sensor are used, such as x, y, z; --channel chooses. Give a speed, a bearing or both. The answer names the pair of
     bearing and speed that explains the lines, and is "unsure" if pairs that cannot be told apart give different answers.
@@ -101,11 +110,14 @@ def diagnose(
     from gen.corpus import make_result_folder
     from raceway.importing.user_folder import read_as_stated, read_recording, readings_of, recordings_in, set_aside
 
-    check_speed(speeds, reading)
-    candidates = _bearings(bearings, speeds)
+    check_speed(speeds, reading, speed_table)
+    candidates = _bearings(bearings, speed_known=speeds is not None or speed_table is not None)
     several = recording.is_dir()
     unusable: dict[Path, str] = {}
-    paths = recordings_in(recording, healthy) if several else [recording]
+    # a table of speeds may lie among the recordings
+    tables = [] if speed_table is None else [speed_table]
+    paths = recordings_in(recording, [*healthy, *tables]) if several else [recording]
+    by_file = _speeds_by_file(speed_table, recording)
     readings = readings_of(paths, reading, unusable if several else None)
     first = next(readings, None)  # before the model, so that whatever is missing is told at once
     if first is None:
@@ -116,7 +128,6 @@ def diagnose(
     doubts = _doubts(speeds) + tuple(note for *_, notes in compared for note in notes)
     for sentence in doubts:
         notice(f"warning: {sentence}")
-    machine = _given(candidates, speeds)
     from gen.support.garbage import keep_garbage
 
     # the libraries of the model hold much that is never freed, and collecting garbage among it takes time
@@ -130,10 +141,12 @@ def diagnose(
     answers = []
     # one recording at a time, read when its turn comes
     for path, recorded, used, of_file in chain((first,), readings):
-        stated = recorded.rpm if speeds is None else None
+        own_speeds = by_file.get(path.name, speeds)
+        of_file += _doubts(by_file.get(path.name))
+        stated = recorded.rpm if own_speeds is None else None
         if stated is not None:
             of_file = (*of_file, f"{path.name}: it states a speed of {stated:g} rpm, which is used.")
-        own = machine if stated is None else _given(candidates, (stated, stated))
+        own = _given(candidates, own_speeds if stated is None else (stated, stated))
         with set_aside(path, unusable if several else None), notice_compilation():
             diagnosis = diagnose_recording(recorded, own, loaded, healthy=references)
         if path in unusable:
@@ -168,21 +181,33 @@ def diagnose(
         show.text("", f"{output / INDEX if several else output}: pictures, evidence and what was assumed.")
 
 
-def _doubts(speeds: tuple[float, float] | None) -> tuple[str, ...]:
+def _speeds_by_file(table: Path | None, folder: Path) -> dict[str, Speeds]:
+    """Speeds of the recordings of a folder by the names of their files; empty without a table."""
+    if table is None:
+        return {}
+    if not folder.is_dir():
+        raise click.UsageError(f"--speed-table is for a FOLDER; give the speed of {folder.name} with --rpm")
+    from raceway.importing.speed_tables import read_speed_table
+    from raceway.importing.user_folder import recordings_in
+
+    return read_speed_table(table, recordings_in(folder, [table]))
+
+
+def _doubts(speeds: Speeds | None) -> tuple[str, ...]:
     """Sentence on a speed that may be in Hz."""
     if speeds is None or speeds[1] >= ONE_TURN:
         return ()
     typed, meant = ("-".join(f"{factor * speed:g}" for speed in dict.fromkeys(speeds)) for factor in (1, 60))
-    return (f"--rpm {typed} is less than one turn a second; if it is Hz, give --rpm {meant}.",)
+    return (f"{typed} rpm is less than one turn a second; if it is Hz, give {meant} rpm.",)
 
 
-def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dict[str, "Bearing"]:
+def _bearings(texts: tuple[str, ...], *, speed_known: bool) -> dict[str, "Bearing"]:
     """Bearings by name: those that are given, or the catalogue."""
     from gen.physics.bearing_text import bearing_from_text, geometry_text
     from gen.physics.catalogue import CATALOGUE
 
     if not texts:
-        if speeds is None:
+        if not speed_known:
             raise click.UsageError("give --bearing, --rpm or both: the lines alone fit many bearings")
         return dict(CATALOGUE)
     bearings = map(bearing_from_text, texts)
@@ -191,7 +216,7 @@ def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dic
     }
 
 
-def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -> "Given":
+def _given(bearings: dict[str, "Bearing"], speeds: Speeds | None) -> "Given":
     from gen.physics.bearing import orders
     from raceway.diagnosis import given_of
 

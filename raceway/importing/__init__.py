@@ -7,6 +7,7 @@ published       published sets, of patterns of paths and tables of labels
 generic         recordings described by a table of labels
 label_tables    tables of labels, and the keys that all rows share
 label_keys      keys of one file of recordings
+speed_tables    table of the speeds of the recordings in a folder
 assumptions     sentences on what labels and units rest on
 resampling      recordings brought to another sample rate
 acceleration    one recording of the user, in m/s^2

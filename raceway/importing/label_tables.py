@@ -52,7 +52,7 @@ def read_table_of_labels(path: Path, common: Mapping[str, Any]) -> list[tuple[st
         raise CorpusError(
             f"{path}: is no table of labels; save one as CSV, such as labels.csv, with a row for each file."
         )
-    (first, names), *lines = _lines(path)
+    (first, names), *lines = lines_of(path, "path, fault and specimen")
     texts: list[_Row] = []
     for number, cells in lines:
         place, named = f"{path}, row {number}", [*names, *[""] * len(cells)]
@@ -138,8 +138,14 @@ def keys_of_yaml(path: Path) -> dict[str, Any]:
     return keys
 
 
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """Lines of a table that are not empty, with their numbers from 1, as spreadsheets count; the first has the keys."""
+def lines_of(path: Path, keys: str) -> list[tuple[int, list[str]]]:
+    """Lines of a table that are not empty, with their numbers from 1, as spreadsheets count; the first has the keys, such as ``keys``.
+
+    Raises
+    ------
+    CorpusError
+        If the file is no text, has no rows or too many, or a key twice.
+    """
     with told_of(path, {}), guarded(path, "CSV"):
         text = text_of(path).decode()
         first, _, rest = text.partition("\n")
@@ -152,7 +158,7 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
         lines = [*islice(filled, limit("recording_files") + 2)]
     check_limit("recording_files", len(lines) - 1, f"{path}: names", CorpusError)
     if len(lines) < 2:
-        message = f"{path}: has no rows; write one with keys such as path, fault and specimen, and below it one for each file."
+        message = f"{path}: has no rows; write one with keys such as {keys}, and below it one for each file."
         raise CorpusError(message)
     number, names = lines[0]
     twice = next((name for name in names if name and names.count(name) > 1), None)

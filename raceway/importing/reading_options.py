@@ -1,6 +1,7 @@
 """Options of commands that say how recordings of the user are read."""
 
 import math
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import click
@@ -26,10 +27,18 @@ class Reading(NamedTuple):
     speed_unit: str | None = None
 
 
-def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
-    """Lowest and highest speed [rpm]; equal for one number."""
-    if text is None:
-        return None
+Speeds = tuple[float, float]
+"""Lowest and highest speed [rpm]; equal for one number."""
+
+
+def speeds_in(text: str) -> Speeds:
+    """Speed, or range of speeds, in a text.
+
+    Raises
+    ------
+    ValueError
+        If it is neither, or out of range.
+    """
     from raceway.importing.speed_course import FASTEST, SLOWEST  # not at the top: help needs nothing of numpy
 
     low, dash, high = text.partition("-")
@@ -38,16 +47,25 @@ def _speeds(_context: click.Context, _option: click.Parameter, text: str | None)
     except ValueError:
         first, last = math.nan, math.nan
     if not SLOWEST <= first <= last <= FASTEST:
-        raise click.BadParameter(
+        raise ValueError(
             f"{text!r:.40} is no speed and no range such as 1400-1900, of {SLOWEST:g} to {FASTEST:,.0f} rpm"
         )
     return first, last
 
 
-def check_speed(speeds: tuple[float, float] | None, reading: Reading) -> None:
+def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> Speeds | None:
+    try:
+        return None if text is None else speeds_in(text)
+    except ValueError as error:
+        raise click.BadParameter(str(error)) from None
+
+
+def check_speed(speeds: Speeds | None, reading: Reading, table: Path | None = None) -> None:
     """Refuse options that tell the speed twice, or the unit of none."""
-    if speeds is not None and reading.speed_column is not None:
-        raise click.UsageError("--rpm and --speed-column both tell the speed; leave one of the two out")
+    options = {"--rpm": speeds, "--speed-column": reading.speed_column, "--speed-table": table}
+    told = [option for option, value in options.items() if value is not None]
+    if len(told) > 1:
+        raise click.UsageError(f"{told[0]} and {told[1]} both tell the speed; leave one of the two out")
     if reading.speed_unit is not None and reading.speed_column is None:
         raise click.UsageError("--speed-unit is that of --speed-column, which is missing; give it, or leave both out")
 

@@ -3,6 +3,7 @@
 A recording of several is read as its file states, where an option contradicts it; one alone is refused.
 """
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -32,7 +33,7 @@ OPTIONS = {
 
 
 def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
-    """Files of recordings in a folder, not below it, except some files.
+    """Files of recordings in a folder, not below it, except some files; numbers in their names are in the order of their values.
 
     Raises
     ------
@@ -41,11 +42,17 @@ def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
     """
     left_out = {path.resolve() for path in without}
     files = (path for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
-    recordings = sorted(path for path in files if is_known(path.suffix) and path.resolve() not in left_out)
+    recordings = [path for path in files if is_known(path.suffix) and path.resolve() not in left_out]
     if not recordings:
         message = f"{folder}: has no recording in it ({', '.join(SUFFIXES)}); give a recording, or the folder that holds them."
         raise CorpusError(message)
-    return recordings
+    return sorted(recordings, key=_place)
+
+
+def _place(path: Path) -> list[tuple[int, str]]:
+    """Key that sorts 2 before 10: numbers by their number of digits and then their digits, beside the text between them."""
+    parts = re.split(r"0*([0-9]+)", path.name)
+    return [(len(part) * (number % 2), part) for number, part in enumerate(parts)] + [(0, path.name)]
 
 
 def readings_of(

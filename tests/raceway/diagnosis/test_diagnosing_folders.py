@@ -4,6 +4,7 @@ import csv
 import html
 import os
 import re
+import tempfile
 from pathlib import Path
 from urllib.parse import unquote, urljoin
 
@@ -13,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from raceway.diagnosis.tables import cell_text
+from raceway.importing.user_folder import recordings_in
 from tests.diagnoses import FS, call, told, write_csv, write_wav
 
 pytestmark = pytest.mark.usefixtures("unpainted")
@@ -135,6 +137,70 @@ def test_a_folder_that_cannot_be_used_is_one_sentence(files, options, sentence, 
     assert (result.exit_code, result.stdout) == (2, "")
     assert sentence in result.stderr
     assert len(result.stderr.strip().splitlines()) == 1
+
+
+@given(st.lists(st.tuples(st.sampled_from(["run", "Run 7 part "]), st.integers(0, 10**20)), unique=True))
+def test_files_are_in_the_order_of_the_numbers_in_their_names(named):
+    with tempfile.TemporaryDirectory() as folder:
+        for name, number in named:
+            Path(folder, f"{name}{number}.csv").touch()
+        Path(folder, "Run.csv").touch()
+        expected = ["Run.csv", *(f"{name}{number}.csv" for name, number in sorted(named))]
+        assert sorted(path.name for path in recordings_in(Path(folder), [])) == sorted(expected)
+        assert [path.name for path in recordings_in(Path(folder), []) if path.name != "Run.csv"] == expected[1:]
+
+
+def test_each_recording_of_a_folder_is_diagnosed_at_its_speed_in_the_table(model, recordings, tmp_path):
+    folder = tmp_path / "campaign"
+    folder.mkdir()
+    (signal, rpm), (_, other) = recordings["outer"], recordings["inner"]
+    for number in (2, 10):
+        write_wav(folder / f"{number}.wav", signal)
+    table = folder / "speeds.csv"
+    table.write_text(f"note;rpm;file\n;{other - 40}-{other + 40};10.wav\nas fitted;{rpm};2.wav\n", encoding="utf-8")
+    options = ("--bearing", "6205", "--model", model)
+    listed = told(folder, "--speed-table", table, *options)
+    assert [Path(each["recording"]).name for each in listed] == ["2.wav", "10.wav"]
+    assert [each["given_rpm"] for each in listed] == [
+        pytest.approx([rpm, rpm]),
+        pytest.approx([other - 40, other + 40]),
+    ]
+    assert listed[0] == told(folder / "2.wav", "--rpm", rpm, *options)
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "sentence"),
+    [
+        ("file,rpm\na.wav,1500\n", (), "speeds.csv: has no row for b.wav; add one for each recording of the folder."),
+        ("file,rpm\n", (), "speeds.csv: has no rows; write one with keys such as file and rpm"),
+        ("file,speed\na.wav,1500\n", (), "row 1: has the columns file, speed; name one file and one rpm."),
+        ("file,rpm\nc.wav,1500\n", (), "row 2, column file: 'c.wav' is no recording of the folder; correct the name."),
+        ("file,rpm\na.wav,1\n\na.wav,1\n", (), "row 4, column file: 'a.wav' is in two rows; remove one."),
+        ("file,rpm\na.wav,fast\n", (), "row 2, column rpm: 'fast' is no speed and no range such as 1400-1900"),
+        ("file,rpm\na.wav,1500\nb.wav\n", (), "row 3, column rpm: '' is no speed"),
+        ("file,rpm\n", ("--rpm", 1500), "--rpm and --speed-table both tell the speed; leave one of the two out"),
+        (None, (), "speeds.csv: could not be read (No such file or directory); check the path."),
+    ],
+)
+def test_a_table_of_speeds_that_does_not_fit_the_folder_is_one_sentence(text, options, sentence, tmp_path):
+    folder, table = tmp_path / "campaign", tmp_path / "speeds.csv"
+    folder.mkdir()
+    for name in ("a.wav", "b.wav"):
+        write_wav(folder / name, np.ones(9))
+    if text is not None:
+        table.write_text(text, encoding="utf-8")
+    result = call(folder, "--bearing", "6205", "--speed-table", table, "--model", "none.skops", *options)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert sentence in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1
+
+
+def test_a_table_of_speeds_needs_a_folder(tmp_path):
+    result = call(write_wav(tmp_path / "a.wav", np.ones(9)), "--speed-table", "s.csv", "--bearing", "6205")
+    assert (result.exit_code, "--speed-table is for a FOLDER; give the speed of a.wav with --rpm" in result.stderr) == (
+        2,
+        True,
+    )
 
 
 @given(st.text())

@@ -1,0 +1,40 @@
+"""Table of the speeds of the recordings in a folder, with the columns ``file`` and ``rpm`` and a row for each file."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from gen.support.errors import CorpusError
+from raceway.importing.label_tables import lines_of
+from raceway.importing.reading_options import Speeds, speeds_in
+
+FILE, RPM = "file", "rpm"
+
+
+def read_speed_table(table: Path, recordings: Iterable[Path]) -> dict[str, Speeds]:
+    """Lowest and highest speed of each recording of a folder, by the name of its file; other columns are left out.
+
+    Raises
+    ------
+    CorpusError
+        If the file is no such table, has a speed that is none, a row without a file or a file twice, or a recording has no row.
+    """
+    (first, names), *lines = lines_of(table, f"{FILE} and {RPM}")
+    if not {FILE, RPM} <= {*names}:
+        raise CorpusError(f"{table}, row {first}: has the columns {', '.join(names)}; name one {FILE} and one {RPM}.")
+    missing = [path.name for path in recordings]
+    speeds: dict[str, Speeds] = {}
+    for number, cells in lines:
+        row = dict(zip(names, cells, strict=False))
+        name = row.get(FILE, "")
+        if name not in missing:
+            flaw = "is in two rows; remove one" if name in speeds else "is no recording of the folder; correct the name"
+            raise CorpusError(f"{table}, row {number}, column {FILE}: {name!r:.60} {flaw}.")
+        try:
+            speeds[name] = speeds_in(row.get(RPM, ""))
+        except ValueError as error:
+            raise CorpusError(f"{table}, row {number}, column {RPM}: {error}.") from None
+        missing.remove(name)
+    if missing:
+        more = f" and {len(missing) - 1:,} more" if len(missing) > 1 else ""
+        raise CorpusError(f"{table}: has no row for {missing[0]}{more}; add one for each recording of the folder.")
+    return speeds
