@@ -14,7 +14,6 @@ from raceway.console.corpus_table import notice_of_unknown, table_of
 from raceway.console.options import (
     A_CORPUS,
     A_MODEL,
-    A_PATH,
     REFERENCE_MODEL,
     Analysis,
     Team,
@@ -55,7 +54,7 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 )
 @click.option(
     "--check",
-    type=A_PATH,
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
     metavar="FILE.csv",
     help="Score the predictions in a file of --submit again, and do nothing else.",
 )

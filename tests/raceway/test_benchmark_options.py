@@ -1,6 +1,7 @@
 """Own classifiers and tracks on the command line."""
 
 import json
+import re
 
 import pytest
 
@@ -90,6 +91,13 @@ def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, t
         same = ("balanced_accuracy", "false_alarms", "records")
         assert [checked[name][figure] for figure in same] == [getattr(scores, figure) for figure in same]
         assert checked[name]["interval"] == list(scores.interval)
+
+
+def test_a_missing_submission_is_told_before_any_feature_is_computed(run, tiny_corpus, tmp_path, monkeypatch):
+    monkeypatch.setattr(benchmark_commands, "table_of", lambda *_: pytest.fail("features were computed"))
+    done = run("benchmark", tiny_corpus, "--check", tmp_path / "rows.csv")
+    assert done.exit_code == 2
+    assert re.search(r"'--check': File '.*rows.csv' does not exist;", done.stderr)
 
 
 @pytest.mark.parametrize(
