@@ -16,7 +16,6 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from features.baselines.calibration import HEALTHY_SHARE
 from features.baselines.classifying import RECORDED, predict, suited
 from features.baselines.models import Model
 from features.baselines.predictions import DAMAGED, UNSURE, Predictions
@@ -35,7 +34,7 @@ from raceway.diagnosis.quality import ENOUGH, Quality, quality_of
 from raceway.diagnosis.result import Diagnosis
 from raceway.diagnosis.search import Given, Pair, find_pairs, mean_spectra, strange_comb
 from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
-from raceway.diagnosis.verdict import judge
+from raceway.diagnosis.verdict import certainly_faulty, judge
 from raceway.diagnosis.wording import (
     answer_in_words,
     candidates,
@@ -189,9 +188,7 @@ def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[R
     whole = predicted.by_recording
     assert whole is not None  # noqa: S101 - only the predictions by recording have none
     probabilities = dict(zip(whole.classes, map(float, whole.probabilities[0]), strict=True))
-    verdict, why = judge(
-        probabilities, whole.threshold, lines, float(whole.distance[0]), impulsive=bool(whole.impulsive[0])
-    )
+    verdict, why = judge(probabilities, whole.threshold, lines, float(whole.distance[0]))
     return Judged(pair, verdict, why, probabilities, whole.threshold, len(predicted.probabilities), lines, spectra)
 
 
@@ -240,11 +237,14 @@ def _conclude(
     elif differing:
         why = different_classes([(each.pair, each.verdict) for each in judged])
         advice = ["Measure the speed during the recording, or give a narrower range."]
-    verdict = UNSURE if why else first.verdict
+    verdict = first.verdict
+    # its kind may be unsure, and a fault certain
     if why:
+        verdict = DAMAGED if certainly_faulty(each.probabilities for each in judged) else UNSURE
+    if verdict == UNSURE:
         answer = f"Unsure ({candidates(first.probabilities)}): {why}"
     elif verdict == DAMAGED:
-        answer = damaged_in_words(first.probabilities, HEALTHY_SHARE)
+        answer = damaged_in_words(first.probabilities, why)
     else:
         answer = answer_in_words(verdict, first.probabilities, first.lines)
         advice = [WATCH] if verdict == HEALTHY and first.lines else []

@@ -2,14 +2,13 @@
 
 A class is answered if the classifier is sure of it and the lines do not tell another:
 
-- A fault needs lines of its own family, because all else is the same at a wrong speed and with a wrong bearing; for balls,
-  those of the cage, which goes round with them, suffice. A class without lines of its own, such as several faults, needs lines
-  of any part.
+- A fault needs lines of its own family, because all else is the same at a wrong speed and with a wrong bearing. Balls often
+  show none: from a probability of .90 on they are answered if no line stands out. Lines of the cage alone are no ball, since slow
+  fluctuations have such lines. A class without lines of its own, such as several faults, needs lines of any part.
 - Lines of the inner race have a sideband at the shaft rate, because it turns through the load zone. The highest such sideband
   of the outer race is lower than its highest line, because it stands still. That of balls is below 15 dB or below those at
   the rate of the cage. Other lines come from another part or another bearing.
-- "Damaged" is answered if no line stands out, all faults together are as probable as an answer must be, and the signal is more
-  impulsive than 99 of 100 healthy records of the training. A strange colour is no reason for it.
+- "Damaged" is answered in place of "unsure" if all faults together have a probability of .97 at each pair of bearing and speed.
 - "Healthy" falls to plain lines of a part: a fundamental and a harmonic, or three harmonics, one of them 15 dB above the
   floor. From a probability of .85 on they must be 25 dB above it, since healthy bearings have faint lines of all parts. It
   also falls to a strange colour, if there is a healthy recording to compare with.
@@ -17,40 +16,39 @@ A class is answered if the classifier is sure of it and the lines do not tell an
   harmonics stand out, one of them 20 dB above the floor: lines as plain as these are an answer of their own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
-from features.baselines.predictions import DAMAGED, UNSURE
+from features.baselines.predictions import UNSURE
 from gen.corpus.fault_classes import HEALTHY, SHAFT, SIDES, fault_class
 from raceway.diagnosis.evidence import Line
-from raceway.diagnosis.wording import by_family, family_in_words, faulty, line_of
+from raceway.diagnosis.wording import by_family, family_in_words, line_of
 
+BALL = "ball"  # class
 PLAIN = 15.0  # dB, level of lines that contradict a class
 OBVIOUS = 25.0  # dB, the same for a class of which the classifier is sure
 ANSWER = 20.0  # dB, level of a family of lines that is answered although the classifier says healthy
 SURE = 0.85  # probability
+WITHOUT_LINES = 0.90  # probability of balls that are answered without a line
+CERTAIN = 0.97  # probability of all faults together, from which an unsure answer is "damaged"
+
+
+def certainly_faulty(probabilities: Iterable[Mapping[str, float]]) -> bool:
+    """Whether a fault, whichever it is, is certain at each pair of bearing and speed; not by a model without the class healthy."""
+    return all(each.get(HEALTHY, 1.0) <= 1 - CERTAIN for each in probabilities)
 
 
 def judge(
-    probabilities: Mapping[str, float],
-    threshold: float,
-    lines: Sequence[Line],
-    distance: float = 0.0,
-    *,
-    impulsive: bool = False,
+    probabilities: Mapping[str, float], threshold: float, lines: Sequence[Line], distance: float = 0.0
 ) -> tuple[str, str]:
-    """Class, "damaged" or "unsure", and for the latter a clause with the reason.
+    """Class or "unsure", and for the latter a clause with the reason.
 
-    ``distance`` is that of the colour from the healthy recordings, as in `features.baselines.colour_distance`, and ``impulsive`` is of
-    `features.baselines.predictions.Predictions`.
+    ``distance`` is that of the colour from the healthy recordings, as in `features.baselines.colour_distance`.
     """
     likely = max(probabilities, key=lambda name: probabilities[name])
-    families = by_family(lines)
+    families, row = by_family(lines), fault_class(likely)
     # plain lines go before a classifier that sees nothing
     if likely == HEALTHY and families and _answers(next(iter(families.values()))):
         return next(iter(families)), ""
-    # a fault is sure, and no line tells its part
-    if impulsive and not families and faulty(probabilities) >= threshold:
-        return DAMAGED, ""
     # many faults change the colour of a machine and show no line
     if likely == HEALTHY and distance > 1:
         return UNSURE, (
@@ -63,19 +61,21 @@ def judge(
     if likely in families:
         foreign = _foreign_sidebands(families[likely])
         return (UNSURE, f"the classifier says {likely}, but {foreign}") if foreign else (likely, "")
-    # lines of the cage alone speak for balls, which go round with it
-    if families.keys() == {fault_class(likely).companion}:
+    # balls often show no line; if the cage shows one, the classifier may rest on that alone
+    if likely == BALL and not families and probabilities[likely] >= WITHOUT_LINES:
+        return likely, ""
+    if likely != BALL and families.keys() == {row.companion}:
         return likely, ""
     # healthy bearings have faint lines of all parts
     if likely == HEALTHY:
         level = OBVIOUS if probabilities[likely] >= SURE else PLAIN
         families = {fault: held for fault, held in families.items() if _plain(held, level)}
-    if not fault_class(likely).is_family and bool(families) != (likely == HEALTHY):
+    if not row.is_family and bool(families) != (likely == HEALTHY):
         return likely, ""
-    if not families:
+    other = next((fault for fault in families if fault != row.companion), None)
+    if other is None:
         return UNSURE, f"the classifier says {likely}, but no {line_of(likely)} line stands out"
-    fault, held = next(each for each in families.items() if each[0] != fault_class(likely).companion)
-    return UNSURE, f"the classifier says {likely}, but {family_in_words(held)}, which tells of {fault}"
+    return UNSURE, f"the classifier says {likely}, but {family_in_words(families[other])}, which tells of {other}"
 
 
 def _foreign_sidebands(lines: Sequence[Line]) -> str:

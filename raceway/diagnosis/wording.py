@@ -37,7 +37,7 @@ def by_family(lines: Sequence[Line]) -> dict[str, list[Line]]:
 
 
 def reasons(verdict: str, lines: Sequence[Line]) -> str:
-    """Why a class is the verdict: its own lines, or for "healthy" that there are none, and the lines of other families."""
+    """Why a class is the verdict: its own lines or that there are none, and the lines of other families."""
     families = by_family(lines)
     own = families.pop(verdict, None)
     others = "; ".join(family_in_words(held) for held in families.values())
@@ -47,7 +47,7 @@ def reasons(verdict: str, lines: Sequence[Line]) -> str:
         return NO_LINE
     if own:
         return family_in_words(own) + (f"; also {others}" if others else "")
-    return others
+    return others or f"although {NO_LINE}"
 
 
 def line_of(fault: str) -> str:
@@ -89,12 +89,9 @@ def answer_in_words(verdict: str, probabilities: Mapping[str, float], lines: Seq
     )
 
 
-def damaged_in_words(probabilities: Mapping[str, float], share: float) -> str:
-    """The same for a fault whose part is not known, in a signal more impulsive than a share of the healthy training records."""
-    return (
-        f"Damaged (probability of a fault {probability_in_words(faulty(probabilities))}): the signal is more impulsive than "
-        f"{100 * share:g} of 100 healthy records of the training, and {NO_LINE}, so that the part is not known"
-    )
+def damaged_in_words(probabilities: Mapping[str, float], why: str) -> str:
+    """The same for a fault whose part is not known, with the reason."""
+    return f"Damaged (probability of a fault {probability_in_words(faulty(probabilities))}), but the part is not known: {why}"
 
 
 def missed_faults(seconds: float, *, compared: bool) -> tuple[int, int]:

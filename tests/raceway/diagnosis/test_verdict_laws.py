@@ -10,7 +10,7 @@ from gen.corpus import FAULTS
 from raceway.diagnosis import Given, Pair
 from raceway.diagnosis.answer import Judged, _conclude, _usable
 from raceway.diagnosis.evidence import Line
-from raceway.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
+from raceway.diagnosis.verdict import ANSWER, CERTAIN, OBVIOUS, PLAIN, SURE, WITHOUT_LINES, certainly_faulty, judge
 from raceway.diagnosis.wording import MISSED, missed_faults
 from raceway.importing.recorded import LONGEST, Recorded
 
@@ -20,7 +20,7 @@ GIVEN = Given({"6205": ORDERS}, (RATE, RATE))
 USED = Recorded({"": np.zeros(200_000)}, 10_000.0)
 
 
-def probabilities(name, likely=0.91):
+def probabilities(name, likely=0.88):
     rest = (1 - likely) / 3
     return {fault: likely if fault == name else rest for fault in FAULTS[:4]}
 
@@ -44,7 +44,6 @@ PLAIN_OUTER = [line("outer", level=OBVIOUS - 1), line("outer", 2)]
         ("outer", [*PLAIN_OUTER, line("outer", level=OBVIOUS - 2, side="shaft")], "outer"),
         ("outer", [*PLAIN_OUTER, line("outer", level=OBVIOUS, side="shaft")], UNSURE),
         ("ball", [], UNSURE),
-        ("ball", [line("cage"), line("cage", 2)], "ball"),
         ("ball", [line("cage"), line("outer", level=10.0)], UNSURE),
         ("ball", [line("outer", level=10.0)], UNSURE),
         ("ball", [line("ball"), line("ball", side="ftf")], "ball"),
@@ -52,8 +51,26 @@ PLAIN_OUTER = [line("outer", level=OBVIOUS - 1), line("outer", 2)]
         ("ball", [line("ball"), line("ball", level=PLAIN - 1, side="shaft")], "ball"),
     ],
 )
-def test_a_fault_needs_lines_of_its_own_with_sidebands_that_fit_and_balls_take_those_of_the_cage(name, lines, expected):
-    assert judge(probabilities(name), 0.5, lines)[0] == expected
+def test_a_fault_needs_lines_of_its_own_with_sidebands_that_fit(name, lines, expected):
+    assert judge(probabilities(name, WITHOUT_LINES - 0.01), 0.5, lines)[0] == expected
+
+
+@pytest.mark.parametrize(
+    ("lines", "sure"),
+    [([], "ball"), ([line("ball")], "ball"), ([line("outer", level=10.0)], UNSURE), (OF_INNER, UNSURE)],
+)
+def test_balls_are_answered_without_lines_if_they_are_probable_and_no_line_tells_another_part(lines, sure):
+    assert judge(probabilities("ball", WITHOUT_LINES), 0.5, lines)[0] == sure
+    assert judge(probabilities("ball", WITHOUT_LINES), WITHOUT_LINES + 0.01, lines)[0] == UNSURE
+    for fault in ("inner", "outer"):
+        assert judge(probabilities(fault, 0.99), 0.5, [])[0] == UNSURE
+
+
+@pytest.mark.parametrize("likely", [0.7, 0.9999])
+def test_lines_of_the_cage_alone_are_no_ball(likely):
+    for lines in ([line("cage")], [line("cage"), line("cage", 2, level=OBVIOUS)]):
+        verdict, why = judge(probabilities("ball", likely), 0.5, lines)
+        assert (verdict, why) == (UNSURE, "the classifier says ball, but no 2 BSF line stands out")
 
 
 @pytest.mark.parametrize(
@@ -73,27 +90,38 @@ def test_healthy_falls_to_plain_lines_and_if_it_is_sure_to_obvious_ones(likely, 
     assert judge(probabilities("healthy", likely), 0.5, lines)[0] == expected
 
 
-FAINT = {"healthy": 0.45, "inner": 0.2, "outer": 0.15, "ball": 0.2}
+@pytest.mark.parametrize("chances", [(0.031,), (0.01, 0.031)])
+@pytest.mark.parametrize("why", [{}, {"elsewhere": True}, {"strange": 4.21}])
+def test_an_unsure_answer_is_damaged_if_a_fault_is_certain_at_every_pair(chances, why):
+    why = {name: (pair(30.0),) if value is True else value for name, value in why.items()}
+    names = (UNSURE, "outer")[: len(chances)]
+
+    def answer(healthy):
+        each = [
+            judged(name, pair(RATE + number))._replace(probabilities=chance(none))
+            for number, (name, none) in enumerate(zip(names, healthy, strict=True))
+        ]
+        return _conclude(USED, GIVEN, each, why.get("elsewhere", ()), why.get("strange"), compared=True)
+
+    doubted, certain = answer(chances), answer([1 - CERTAIN] * len(chances))
+    assert (doubted.verdict, certain.verdict) == (UNSURE, DAMAGED)
+    # the reason of the doubt stays
+    assert certain.sentence.partition(": ")[2] == doubted.sentence.partition(": ")[2]
 
 
-@pytest.mark.parametrize("distance", [0.0, 3.0])
-@pytest.mark.parametrize("chances", [FAINT, *(probabilities(fault) for fault in ("inner", "outer", "ball"))])
-def test_a_fault_without_any_line_is_damaged_if_the_signal_is_impulsive_and_else_unsure(chances, distance):
-    assert judge(chances, 0.5, [], distance, impulsive=True) == (DAMAGED, "")
-    assert judge(chances, 0.5, [], distance)[0] == UNSURE
+def chance(healthy):
+    """Probabilities of which no fault is likelier than another."""
+    return {fault: healthy if fault == "healthy" else (1 - healthy) / 3 for fault in FAULTS[:4]}
 
 
-@pytest.mark.parametrize("fault", ["inner", "outer", "ball"])
-def test_lines_of_any_part_are_never_answered_damaged(fault):
-    for lines in (OF_INNER, PLAIN_OUTER, [line("cage")]):
-        assert judge(probabilities(fault), 0.5, lines, impulsive=True) == judge(probabilities(fault), 0.5, lines)
+def test_a_model_that_knows_no_healthy_bearing_tells_of_no_certain_fault():
+    assert not certainly_faulty([{"inner": 0.5, "outer": 0.5}])
 
 
 def test_several_faults_need_lines_of_some_part():
     chances = {"healthy": 0.05, "compound": 0.95}
     assert judge(chances, 0.5, OF_INNER) == ("compound", "")
     assert judge(chances, 0.5, []) == (UNSURE, "the classifier says compound, but no fault line stands out")
-    assert judge(chances, 0.5, [], impulsive=True) == (DAMAGED, "")
 
 
 COMB = [line("outer", harmonic, level=ANSWER + 1 if harmonic == 2 else 12.0) for harmonic in (1, 2, 3, 5)]
@@ -127,7 +155,7 @@ def judged(name, pair):
         pair,
         name,
         "" if name != UNSURE else "no reason",
-        probabilities("healthy" if name == DAMAGED else name),
+        probabilities(name),
         0.5,
         4,
         [],
@@ -170,14 +198,19 @@ def test_a_comb_that_is_not_explained_makes_every_verdict_unsure_and_names_what_
 
 
 def test_damaged_tells_the_probability_of_any_fault_and_why_no_part_is_named():
-    found = concluded(DAMAGED)
-    assert found.verdict == DAMAGED
-    assert found.sentence.startswith(
-        "Damaged (probability of a fault 0.09): the signal is more impulsive than 99 of 100 healthy"
+    answer = _conclude(
+        USED, GIVEN, [judged(UNSURE, pair(RATE))._replace(probabilities=chance(0.02))], (), None, compared=True
     )
-    assert "no line of inner race, outer race, balls or cage stands 10 dB above the floor" in found.sentence
-    assert "check the bearing designation" in found.advice[0]
-    assert concluded(DAMAGED, "outer", given=GIVEN._replace(rates=(RATE, 2 * RATE))).verdict == UNSURE
+    assert answer.sentence.startswith(
+        "Damaged (probability of a fault 0.98), but the part is not known: no reason; shaft 1,500 rpm"
+    )
+    assert "check the bearing designation" in answer.advice[0]
+
+
+def test_a_ball_without_lines_says_that_there_are_none():
+    assert concluded("ball").sentence.startswith(
+        "Ball fault (probability 0.88): although no line of inner race, outer race, balls or cage stands 10 dB above"
+    )
 
 
 def test_a_long_recording_is_used_from_its_beginning():
