@@ -10,6 +10,7 @@ from raceway.diagnosis.evidence import LEAST_LEVEL, Line
 from raceway.diagnosis.search import STRONG_COMB, Given, Pair
 
 AT_END = 0.002  # distance of a speed from the end of the search, relative
+NAMED = 3  # bearings alike
 MISSED = ((0.5, (15, 86), (1, 288)), (2.0, (12, 86), (0, 288)), (10.0, (10, 86), (0, 288)))
 """Length of recordings [s], and how many faulty ones of how many were called healthy, without and with a healthy recording of the
 machine: of CWRU, MFPT and UESTC, by ``python -m benchmarks.verdicts REAL --missed``."""
@@ -157,7 +158,10 @@ def _place(pair: Pair) -> str:
 
 
 def _bearing(pair: Pair) -> str:
-    return f"{pair.bearing} or alike" if pair.alike else pair.bearing
+    """Name of a bearing and of those alike; of more than three the number of the others."""
+    names = (pair.bearing, *pair.alike)
+    further = len(names) - NAMED
+    return listed(names, "or") if further <= 0 else f"{', '.join(names[:NAMED])} or {further} more"
 
 
 def listed(words: Sequence[str], last: str) -> str:

@@ -94,8 +94,10 @@ def test_the_bearing_is_found_among_alternatives_or_in_the_catalogue(model, tmp_
     found = told(path, *alternatives, "--rpm", RPM, "--model", model)
     assert [(pair["bearing"], pair["lines"]) for pair in found["explanations"]] == [("6205", "bpfo")]
     assert "bearing 6205" in found["sentence"]
-    searched = told(path, "--rpm", RPM, "--model", model)
-    assert "6205" in {name for pair in searched["explanations"] for name in (pair["bearing"], *pair["alike"])}
+    page = tmp_path / "page.html"
+    searched = told(path, "--rpm", RPM, "--model", model, "-o", page)
+    (alike,) = ([pair["bearing"], *pair["alike"]] for pair in searched["explanations"] if "6205" in pair["alike"])
+    assert f">{', '.join(alike)}<" in page.read_text(encoding="utf-8")
 
 
 def write_axes(path, header, *signals):

@@ -185,6 +185,22 @@ def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
     assert "cannot tell apart 6205 at 1,500 rpm (outer) and 6205 at 1,560 rpm (inner)" in found.sentence
 
 
+@pytest.mark.parametrize(
+    ("alike", "named"),
+    [
+        ((), "6004"),
+        (("6205",), "6004 or 6205"),
+        (("6205", "ER-16K"), "6004, 6205 or ER-16K"),
+        (("6205", "ER-16K", "6208", "6310"), "6004, 6205, ER-16K or 2 more"),
+    ],
+)
+def test_the_first_three_of_the_bearings_that_no_line_tells_apart_are_named(alike, named):
+    several = Given(dict.fromkeys(("6004", *alike, "other"), ORDERS), (RATE, RATE))
+    each = [judged("outer", pair(RATE, "6004")._replace(alike=alike))]
+    answer = _conclude(USED, several, each, (), None, compared=True)
+    assert answer.sentence.endswith(f"; bearing {named} as found, shaft 1,500 rpm as labelled.")
+
+
 @pytest.mark.parametrize("name", ["healthy", "outer"])
 def test_a_comb_that_is_not_explained_makes_every_verdict_unsure_and_names_what_would_explain_it(name):
     found = concluded(name, elsewhere=(pair(30.0),))
