@@ -46,6 +46,7 @@ STRONG_COMB = 3.0  # standard deviations of a comb that has to be explained
 SHAFT_BEHIND = CLEAR_MARGIN  # standard deviations by which the shaft may fit another speed better
 SHAFT_TIE = 0.5  # standard deviations by which two speeds fit the shaft alike
 MOST_PAIRS = 4  # that are told apart
+FAR = 0.015  # relative error of a label that is no small error of a measured speed
 SAME_ORDERS = 0.01  # relative; bearings with orders as near as this are one
 STRANGE_ORDERS = (1.5, 10.0)  # in which a comb that belongs to no part is searched
 MAINS = (50.0, 60.0)  # Hz
@@ -175,8 +176,8 @@ def find_pairs(spectra: LevelSpectra, machine: Given) -> tuple[tuple[Pair, ...],
     Those elsewhere explain a strong comb.
 
     With one bearing and one speed, that pair is the answer unless the lines clearly tell another speed within 8 %: in its
-    place if the shaft tells so too, and else beside it. Otherwise all pairs are named that come within 1.5 standard
-    deviations of the best, up to four.
+    place if the shaft tells so too, and clearly so if it is more than 1.5 % away, and else beside it. Otherwise all pairs are
+    named that come within 1.5 standard deviations of the best, up to four.
     """
     grid = _grid(spectra, machine)
     (low, high), rates, evidence = machine.rates, grid.rates, grid.evidence
@@ -198,7 +199,7 @@ def _corrected(grid: _Grid, best: Pair, *, clear: bool) -> list[Pair]:
     """The pair of the label, unless the best one is clear, or the best of all speeds and not only near the label.
 
     Combs of a wrong bearing are found at wrong speeds too. So the best pair stands alone only if its speed fits the
-    harmonics of the shaft as well as the label does.
+    harmonics of the shaft as well as the label does, and far from the label clearly better.
     """
     label, shaft, (evidence,) = grid.given.rates[0], grid.shaft, grid.evidence
     place = int(np.abs(grid.rates - best.rate).argmin())
@@ -210,7 +211,9 @@ def _corrected(grid: _Grid, best: Pair, *, clear: bool) -> list[Pair]:
     at_label = best._replace(rate=label)
     if agrees or not (clear or highest):
         return [at_label]
-    fits = shaft[place] > shaft[grid.near(label) & ~grid.near(best.rate)].max(initial=-np.inf) - SHAFT_TIE
+    # a speed of a wrong bearing can be moved until its orders fit, and the shaft does not follow
+    needed = SHAFT_BEHIND if abs(best.rate / label - 1) > FAR else -SHAFT_TIE
+    fits = shaft[place] > shaft[grid.near(label) & ~grid.near(best.rate)].max(initial=-np.inf) + needed
     return [best] if fits else [at_label, best]
 
 

@@ -55,6 +55,19 @@ def test_a_speed_a_few_per_cent_off_is_corrected_and_explains_the_lines():
     assert elsewhere == ()
 
 
+@pytest.mark.parametrize("error", [-0.05, -0.03, 0.03, 0.05])
+def test_a_speed_far_from_the_label_is_assumed_only_if_the_shaft_clearly_tells_it(error):
+    """Without lines of the shaft a wrong bearing would explain the comb as well, so that the label stays beside it."""
+    label = RATE * (1 + error)
+    told, untold = (
+        found(recording(ORDER["bpfo"], 4, shaft=shaft), Given({"nine": NINE}, (label, label)))[0]
+        for shaft in (0.6, 0.0)
+    )
+    assert [pair.rate for pair in told] == pytest.approx([RATE], rel=0.01)
+    assert untold[0].rate == label
+    assert [pair.rate for pair in untold[1:]] == pytest.approx([RATE] * len(untold[1:]), rel=0.01)
+
+
 @pytest.mark.parametrize("error", [-0.055, -0.04])
 def test_a_comb_of_a_wrong_bearing_does_not_move_a_speed_that_the_shaft_confirms(error):
     """Its order is that of another bearing, so that it fits BPFO at another speed."""
