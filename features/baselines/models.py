@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self, TypeGuard, cast
@@ -122,6 +123,11 @@ class Model(Shown):
     def name(self) -> str:
         """Name of the classifier."""
         return self.classifier if isinstance(self.classifier, str) else maker_name(self.classifier)
+
+    @property
+    def window(self) -> float | None:
+        """Longest of its training records, which longer records are cut into [s]; None if they are not known."""
+        return max(self.durations, default=None)
 
     def _heading(self) -> str:
         trained = "not fitted" if self.estimator is None else f"fitted to {self.records:,} records of {self.corpus}"
@@ -244,9 +250,11 @@ class Model(Shown):
             check_durations(data, reference)
         groups = self.groups if reference is None else with_energies(tuple(self.groups))
         signals = [source for source in (data, reference) if source is not None and _holds_signals(source)]
-        band = Band(*suited_to(self, *signals).band) if signals else DEFAULT_BAND
+        model = suited_to(self, *signals) if signals else self
+        # records longer than those of the training are cut, as recordings that are diagnosed
+        computed = partial(_feature_table, groups=groups, band=Band(*model.band), window=model.window)
         table, healthy = (
-            _feature_table(source, groups, band) if source is not None and _holds_signals(source) else source
+            computed(source) if source is not None and _holds_signals(source) else source
             for source in (data, reference)
         )
         return table, cast("xr.Dataset | None", healthy)
@@ -364,7 +372,10 @@ def _holds_signals(data: Data) -> TypeGuard[Path | str | xr.Dataset]:
 
 
 def _feature_table(
-    corpus: Path | str | xr.Dataset, groups: Sequence[str], band: tuple[float, float] = DEFAULT_BAND
+    corpus: Path | str | xr.Dataset,
+    groups: Sequence[str],
+    band: tuple[float, float] = DEFAULT_BAND,
+    window: float | None = None,
 ) -> xr.Dataset:
     """Feature table of a corpus."""
     unknown = [group for group in groups if group not in ALL_GROUPS]
@@ -374,4 +385,4 @@ def _feature_table(
             f"{', '.join(ALL_GROUPS)}; train the model again."
         )
         raise CorpusError(message)
-    return feature_table(corpus, groups, band=band)
+    return feature_table(corpus, groups, band=band, window=window)

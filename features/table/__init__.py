@@ -7,7 +7,7 @@ module             responsibility
 ================== =================================================================================
 band               band of frequencies that features are computed from [pure]
 channels           channel of a corpus by name or number
-durations          durations of the records of a table [pure]
+durations          durations of records, and the windows that a model takes of longer ones [pure]
 record_batch       records computed together, whitened bands and envelopes that groups share [pure]
 feature_group      the form of a feature group, built-in or of a plug-in [pure]
 envelope_groups    groups of fault lines and of shape, in envelopes of whitened bands [pure]

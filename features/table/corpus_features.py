@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 import xarray as xr
 
-from features.signal.rows import FloatArray
+from features.signal.rows import FloatArray, group_means
 from features.table.band import DEFAULT_BAND, Band, band_attributes, band_of, checked_band
 from features.table.channels import accelerations, channel_blocks, channel_number, joined_channels, orders_of
 from features.table.definitions import GROUPS, feature_coordinates
-from features.table.durations import DURATION
-from features.table.indicators import indicators
+from features.table.durations import DURATION, windows_of
+from features.table.indicators import Orders, indicators
 from features.table.recording_speeds import (
     Speed,
     block_sums,
@@ -53,6 +53,7 @@ def feature_table(
     speed: Speed = "off",
     channel: int | str | Sequence[str] = 0,
     band: tuple[float, float] = DEFAULT_BAND,
+    window: float | None = None,
     workers: int = 1,
     scheduler: "Client | str | None" = None,
     progress: Progress | None = None,
@@ -72,6 +73,9 @@ def feature_table(
         Name of the channel, or its number from 0; or the names of several, such as the axes of one housing.
     band
         Band that lines and shape are computed from [Hz], such as ``(300, 9000)``.
+    window
+        Longest signal that features are computed of [s]: longer records are cut into consecutive windows, and their features are the means
+        over these.
     workers
         Number of processes that compute features; 1 is this one.
     scheduler
@@ -99,7 +103,9 @@ def feature_table(
     band = checked_band(*band)
     # several channels are tables of one channel each, joined along a dimension
     if not isinstance(channel, int | str):
-        each = partial(feature_table, corpus, groups, speed=speed, band=band, workers=workers, scheduler=scheduler)
+        each = partial(
+            feature_table, corpus, groups, speed=speed, band=band, window=window, workers=workers, scheduler=scheduler
+        )
         return joined_channels({name: each(channel=name, progress=progress) for name in channel})
     coordinates = feature_coordinates(groups, band)
     with open_corpus(corpus) as opened:
@@ -111,7 +117,8 @@ def feature_table(
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
         lasts = {"long_name": "duration of the record", "units": "s"}
-        table[DURATION] = "record", opened.sizes["elapsed_time"] / table["sample_rate"].values, lasts
+        seconds = np.fmin(opened.sizes["elapsed_time"] / table["sample_rate"].values, window or np.inf)
+        table[DURATION] = "record", seconds, lasts
     treatment = checked_speed(speed, table)
     starts = np.cumsum([0, *(block.sizes["record"] for block in blocks)])
     # with speeds every block is read twice: once to estimate them, once for the features
@@ -125,7 +132,7 @@ def feature_table(
             with closing(_counted(block_sums, tasks, place, report)) as sums:
                 estimates = recording_speeds(recording, table["shaft_rate"].values, sums)
             table = with_speeds(table, recording, estimates, treatment)
-        compute = partial(block_features, groups=tuple(groups), band=band)
+        compute = partial(block_features, groups=tuple(groups), band=band, window=window)
         tasks = list(zip(blocks, np.split(rates_to_use(table), starts[1:-1]), strict=True))
         # blocks come back in order, so that rows are written where they belong
         with closing(_counted(compute, tasks, place, report)) as blocks_of_values:
@@ -150,12 +157,18 @@ def band_warnings(table: xr.Dataset) -> list[str]:
     ]
 
 
-def block_features(task: tuple[xr.Dataset, FloatArray], groups: Sequence[str], band: Band) -> FloatArray:
+def block_features(
+    task: tuple[xr.Dataset, FloatArray], groups: Sequence[str], band: Band, window: float | None = None
+) -> FloatArray:
     """Features of a block of records at their shaft rates [Hz], shape (record, feature); NaN as in `features.table.indicators`."""
     block, shaft_rate = task
-    return indicators(accelerations(block), float(block["sample_rate"][0]), shaft_rate, orders_of(block), groups, band)[
-        0
-    ]
+    x, fs, orders = accelerations(block), float(block["sample_rate"][0]), orders_of(block)
+    windows = x if window is None else windows_of(x, fs, [window])
+    # the windows of a record are those of one machine
+    record = np.repeat(np.arange(len(x)), len(windows) // len(x))
+    nominal = Orders(*(order[record] for order in orders))
+    values, _ = indicators(windows, fs, shaft_rate[record], nominal, groups, band)
+    return values if len(windows) == len(x) else group_means(values, record)
 
 
 def _counted(

@@ -17,15 +17,6 @@ from features.table.indicators import Orders, indicators
 if TYPE_CHECKING:
     import xarray as xr
 
-WINDOW = 0.5  # s, for a model that does not tell the duration of its training records
-
-
-def windows_of(signal: FloatArray, fs: float, durations: Sequence[float]) -> FloatArray:
-    """Consecutive windows of the longest of some durations [s], shape (time,) to (window, time); a shorter signal is one window."""
-    length = min(round(max(durations, default=WINDOW) * fs), len(signal))
-    count = len(signal) // length
-    return signal[: count * length].reshape(count, length)
-
 
 def recording_table(
     windows: FloatArray,
@@ -62,7 +53,7 @@ def recording_table(
     ValueError
         For a group that does not exist.
     """
-    import xarray as xr  # not at the top: windows need none
+    import xarray as xr  # not at the top: it takes long to load
 
     values, _ = indicators(windows, fs, shaft_rate, orders, groups, band)
     # all windows are of one recording of one bearing

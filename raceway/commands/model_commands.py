@@ -118,6 +118,8 @@ def evaluate(
 ) -> None:
     """Score a model on every record of the corpus in DIR.
 
+    Records longer than those of the training are cut into windows, whose mean features are classified, as raceway diagnose does.
+
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
     scored together, by the mean of their features. The interval is a bootstrap over specimens. A record is answered if
     its largest probability reaches the threshold of the model, and otherwise the answer is "unsure". Recordings of class unknown are not
@@ -144,9 +146,10 @@ def evaluate(
         check_durations(corpus, reference)
     loaded, source = open_model(model)
     corpora = [corpus] if reference is None else [corpus, reference]
-    analysis = Analysis(channel, suited_to(loaded, *corpora).band, tuple(loaded.groups))
-    table = table_of(corpus, speed, team, analysis)
-    healthy = table if reference == corpus else reference and table_of(reference, speed, team, analysis)
+    suited = suited_to(loaded, *corpora)
+    analysis = Analysis(channel, suited.band, tuple(loaded.groups))
+    table = table_of(corpus, speed, team, analysis, suited.window)
+    healthy = table if reference == corpus else reference and table_of(reference, speed, team, analysis, suited.window)
     scores = loaded.score(table, reference=healthy)
     unknown = count_unknown(table)
     notice_of_unknown(corpus, unknown)

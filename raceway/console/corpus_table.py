@@ -20,7 +20,11 @@ def notice_of_unknown(corpus: Path, unknown: int) -> None:
 
 
 def table_of(
-    corpus: Path, speed: "Speed" = "off", team: Team = USUAL, analysis: Analysis = USUAL_ANALYSIS
+    corpus: Path,
+    speed: "Speed" = "off",
+    team: Team = USUAL,
+    analysis: Analysis = USUAL_ANALYSIS,
+    window: float | None = None,
 ) -> "xr.Dataset":
     """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
     from features import feature_table
@@ -31,7 +35,9 @@ def table_of(
 
     options = team.options(read_manifest(corpus).records) | analysis.options()
     with progress("computing features", "parts") as report:
-        table = feature_table(corpus, analysis.with_groups(GROUPS), speed=speed, **options, progress=report)
+        table = feature_table(
+            corpus, analysis.with_groups(GROUPS), speed=speed, window=window, **options, progress=report
+        )
     for sentence in (*band_warnings(table), *speed_warnings(table)):
         notice(f"warning: {sentence}")
     return table

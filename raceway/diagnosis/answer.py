@@ -23,8 +23,9 @@ from features.baselines.references import with_energies
 from features.table.band import Band
 from features.table.channels import joined_channels
 from features.table.definitions import ALL_GROUPS
+from features.table.durations import windows_of
 from features.table.indicators import feature_names
-from features.table.recording_features import recording_table, windows_of
+from features.table.recording_features import recording_table
 from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError

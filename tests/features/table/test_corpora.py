@@ -221,6 +221,22 @@ def test_several_channels_have_the_features_of_each_in_columns_named_by_channel(
         np.testing.assert_array_equal(again[f"{name}_time_rms"].to_numpy(), own.sel(feature="time_rms"))
 
 
+@pytest.mark.parametrize("channel", ["housing", ("housing", "sensor")])
+def test_features_of_long_records_are_the_means_over_their_windows(corpus, channel):
+    window = 0.11
+    table = feature_table(corpus, channel=channel, window=window)
+    length = round(window * FS)
+    with open_corpus(corpus) as opened:
+        cuts = [opened.isel(elapsed_time=slice(start, start + length)).load() for start in (0, length)]
+    halves = [feature_table(cut, channel=channel)["features"] for cut in cuts]
+    np.testing.assert_allclose(table["features"], (halves[0] + halves[1]) / 2, rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(table["duration"], window)
+    # records that are not longer are not changed
+    whole = feature_table(corpus, channel=channel)
+    for longer in (SAMPLES / FS, 9.0):
+        assert feature_table(corpus, channel=channel, window=longer).identical(whole)
+
+
 def test_a_channel_can_be_given_by_its_name(corpus):
     by_name, by_number = feature_table(corpus, ("time",), channel="sensor"), feature_table(corpus, ("time",), channel=1)
     assert by_name.identical(by_number)

@@ -1,16 +1,25 @@
 """``raceway diagnose``: a sentence, a JSON object and a page for good recordings, one sentence for all others."""
 
+import json
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import raceway
+from features.baselines import Model
+from features.baselines.classifying import predict
 from features.signal import velocity_rms
+from features.table.durations import windows_of
+from features.table.indicators import Orders
+from features.table.recording_features import recording_table
+from gen import open_corpus
 from gen.physics.bearing_text import bearing_orders
 from gen.support.errors import CorpusError
-from tests.diagnoses import FS, call, told, write_csv, write_wav
+from raceway.cli import cli
+from tests.diagnoses import FS, call, corpus, told, write_csv, write_wav
 from tests.pulses import impulses_beside_a_shaft
 
 LINE_ORDERS = {"inner": 5.4152, "outer": 3.5848, "ball": 4.7135}
@@ -70,6 +79,21 @@ RPM = 1770.0
 
 def impulses(order):
     return impulses_beside_a_shaft(order, 0, fs=FS, rate=RPM / 60, seconds=3.0)
+
+
+@pytest.mark.parametrize("seconds", [0.5, 1.4])
+def test_records_of_a_corpus_are_cut_for_a_model_as_a_recording_is(seconds, model, tmp_path):
+    loaded, folder = Model.load(model), corpus(tmp_path, seed=3, rigs=1, records=1, duration=seconds)
+    with open_corpus(folder) as opened:
+        pairs = zip(opened["acceleration"].values[:, 0], opened["shaft_rate"].values, strict=True)
+        cut = [
+            recording_table(windows_of(x, FS, loaded.durations), FS, rate, Orders(*bearing_orders("6205")), 0)
+            for x, rate in pairs
+        ]
+    alone = [predict(table, loaded).by_recording.probabilities[0] for table in cut]
+    np.testing.assert_allclose(loaded.predict_proba(folder), alone, rtol=1e-6)
+    scores = json.loads(CliRunner().invoke(cli, ["evaluate", str(folder), "--model", str(model), "--json"]).stdout)
+    assert scores["log_loss"] == pytest.approx(loaded.score(folder).log_loss)
 
 
 @pytest.mark.usefixtures("unpainted")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from features.baselines.predictions import DAMAGED, UNSURE
+from features.table.durations import windows_of
 from features.table.indicators import Orders
-from features.table.recording_features import windows_of
 from gen.corpus import FAULTS
 from raceway.diagnosis import Given, Pair
 from raceway.diagnosis.answer import Judged, _conclude, _usable
