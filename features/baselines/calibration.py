@@ -6,8 +6,6 @@ of the classes of a record does not change.
 
 ``probabilities of records outside the training -> temperature -> threshold``
 
-A signal without a line is called damaged only if it is more impulsive than nearly all healthy records of the training.
-
 .. [1] C. Guo, G. Pleiss, Y. Sun, K. Q. Weinberger, "On calibration of modern neural networks", ICML 2017.
 """
 
@@ -19,8 +17,6 @@ from scipy.special import log_softmax, softmax
 from features.signal.rows import FloatArray, IntArray, group_means
 
 COVERAGE = 0.9  # share of records outside the training that a model answers
-IMPULSIVENESS = "cepstral_impulsiveness"  # feature
-HEALTHY_SHARE = 0.99  # of the healthy training records, that are at most as impulsive as the limit
 SMALLEST = 1e-6  # probabilities below it count as this: a forest can give 0
 TEMPERATURES = (0.2, 5.0)  # lowest and highest: records that are all right would make any probability certain
 
@@ -41,15 +37,12 @@ class Calibration(NamedTuple):
         A record or recording is answered if its largest probability is at least this.
     coverage
         Share of the records outside the training that are answered.
-    impulsive
-        Largest ``IMPULSIVENESS`` of ``HEALTHY_SHARE`` of the healthy training records; None if they have no such feature.
     """
 
     by: Groups
     temperature: float
     threshold: float
     coverage: float
-    impulsive: float | None = None
 
 
 UNCALIBRATED = Calibration(by="nothing", temperature=1.0, threshold=0.0, coverage=1.0)

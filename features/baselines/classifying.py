@@ -9,7 +9,7 @@ import xarray as xr
 from features.baselines.calibration import Calibration
 from features.baselines.colour_distance import Colour
 from features.baselines.estimators import class_probabilities
-from features.baselines.predictions import Predictions, impulsiveness_of, predictions
+from features.baselines.predictions import Predictions, predictions
 from features.baselines.records import FloatArray, feature_rows, title_of
 from features.baselines.references import colour_of, relative_to
 from features.signal.rows import group_means
@@ -127,8 +127,6 @@ def _of_table(table: xr.Dataset, model: Fitted, reference: xr.Dataset | None) ->
     each, whole = (
         np.stack([estimator_probabilities(used, some, title_of(table)) for some in values]) for values in (rows, means)
     )
-    # tells a fault of an unknown part: a recording more impulsive than healthy ones of the training
-    impulsiveness = impulsiveness_of([frame.to_numpy() for frame in means], used.features)
     return predictions(
         each,
         used.classes,
@@ -136,7 +134,6 @@ def _of_table(table: xr.Dataset, model: Fitted, reference: xr.Dataset | None) ->
         used.calibration,
         of_recordings=whole,
         colour=colour,
-        impulsiveness=impulsiveness,
     )
 
 

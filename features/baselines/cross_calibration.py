@@ -6,8 +6,6 @@ from typing import Literal
 import numpy as np
 
 from features.baselines.calibration import (
-    HEALTHY_SHARE,
-    IMPULSIVENESS,
     UNCALIBRATED,
     Calibration,
     fit_calibration,
@@ -16,7 +14,7 @@ from features.baselines.estimators import Estimator
 from features.baselines.fitting import fits
 from features.baselines.names import UNTRAINED
 from features.baselines.own import Maker
-from features.baselines.records import HEALTHY_CODE, Records
+from features.baselines.records import Records
 from features.baselines.tracks import Split, grouped_splits
 from gen.support.executor import Workers
 
@@ -50,16 +48,7 @@ def fit_and_calibrate(
     probabilities = np.zeros((len(truth), len(classes)))
     for (_, test), (_, of_tested) in zip(splits, folds, strict=True):
         probabilities[test] = of_tested
-    return whole, fit_calibration(probabilities, truth, by)._replace(impulsive=_impulsive(records))
-
-
-def _impulsive(records: Records) -> float | None:
-    """Limit of the impulsiveness of healthy records, None without the feature or such records."""
-    if IMPULSIVENESS not in getattr(records.features, "columns", ()):
-        return None
-    values = records.features[IMPULSIVENESS].to_numpy()[records.fault == HEALTHY_CODE]
-    finite = values[np.isfinite(values)]
-    return float(np.quantile(finite, HEALTHY_SHARE)) if finite.size else None
+    return whole, fit_calibration(probabilities, truth, by)
 
 
 def calibration_splits(records: Records, seed: int) -> tuple[Literal["rig", "specimen"], list[Split]] | None:

@@ -6,12 +6,11 @@ A record far from its healthy reference in colour is never answered healthy: man
 line. Its probabilities stay, because states of the machine change the colour too, and tell of no fault.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from features.baselines.calibration import IMPULSIVENESS, Calibration, calibrate, combine
+from features.baselines.calibration import Calibration, calibrate, combine
 from features.baselines.colour_distance import Colour
 from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULTS
@@ -36,8 +35,6 @@ class Predictions:
         Number of the recording of each record, from 0 and without a gap; in ``by_recording``, 0, 1, 2, ....
     distance
         Of the colour from that of the healthy reference, in scatters of healthy recordings, shape (record,); 0 without a reference.
-    impulsive
-        Of recordings, whether they are more impulsive than nearly all healthy records of the training, shape (recording,).
     by_recording
         The same by recording, with the records of each combined; None in itself.
     """
@@ -47,7 +44,6 @@ class Predictions:
     threshold: float
     recording: IntArray
     distance: FloatArray
-    impulsive: np.ndarray
     by_recording: "Predictions | None" = None
 
     @property
@@ -75,7 +71,6 @@ def predictions(
     *,
     of_recordings: FloatArray | None = None,
     colour: Colour | None = None,
-    impulsiveness: FloatArray | None = None,
 ) -> Predictions:
     """Predictions from the probabilities of an estimator, which are calibrated and combined here.
 
@@ -96,33 +91,17 @@ def predictions(
         their records.
     colour
         Change of each record from its healthy reference; None without one.
-    impulsiveness
-        Of each recording, as `impulsiveness_of`; None if it is not known.
     """
     every = np.arange(len(recording))
     records = _over_channels(probabilities, calibration)
     # without features of recordings, their records vote
     whole = combine(records, recording) if of_recordings is None else _over_channels(of_recordings, calibration)
-
-    impulsive = np.zeros(len(whole), np.bool_)
-    if impulsiveness is not None and calibration.impulsive is not None:
-        impulsive = impulsiveness > calibration.impulsive
     far, far_whole = np.zeros(len(records)), np.zeros(len(whole))
     if colour is not None:
         far, far_whole = colour.distances(every), colour.distances(recording)
-    least, calm = calibration.threshold, np.zeros(len(records), np.bool_)
-    recordings = Predictions(classes, whole, least, np.arange(len(whole)), far_whole, impulsive)
-    return Predictions(classes, records, least, recording, far, calm, recordings)
-
-
-def impulsiveness_of(means: Sequence[FloatArray], features: Sequence[str]) -> FloatArray | None:
-    """Impulsiveness of recordings, shape (recording,), from the mean features of each channel, shape (recording, feature).
-
-    It is the mean over windows and channels, as the classifier takes all features; None without the feature.
-    """
-    if IMPULSIVENESS not in features:
-        return None
-    return np.mean([of_channel[:, features.index(IMPULSIVENESS)] for of_channel in means], axis=0)
+    least = calibration.threshold
+    recordings = Predictions(classes, whole, least, np.arange(len(whole)), far_whole)
+    return Predictions(classes, records, least, recording, far, recordings)
 
 
 def _over_channels(probabilities: FloatArray, calibration: Calibration) -> FloatArray:

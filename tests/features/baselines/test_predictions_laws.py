@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from features.baselines import UNSURE, Model, predict
-from features.baselines.calibration import HEALTHY_SHARE, IMPULSIVENESS, UNCALIBRATED
+from features.baselines.calibration import UNCALIBRATED
 from features.baselines.cross_calibration import calibration_splits, fit_and_calibrate
 from features.baselines.records import features_of, labelled_records
 from tests.model_files import make_table
@@ -127,25 +127,3 @@ def test_the_same_channel_twice_tells_no_more_than_once():
     one, other = model.score(table), model.score(channels(table, table))
     assert (other.confusion, other.records) == (one.confusion, one.records)
     assert model.score(channels(windowed(), windowed())).seen == 96
-
-
-def with_impulsiveness(table: xr.Dataset, values: np.ndarray) -> xr.Dataset:
-    """The table with a further feature of its own group."""
-    more = table.isel(feature=[-1]).assign_coords(feature=[IMPULSIVENESS])
-    more = more.assign(features=(("record", "feature"), values[:, None]))
-    return xr.concat([table, more], "feature", data_vars="minimal", coords="minimal", compat="override")
-
-
-def test_recordings_are_impulsive_whose_mean_exceeds_99_of_100_healthy_training_records():
-    train, tested = windowed(), windowed(seed=1)
-    values = np.random.default_rng(2).standard_normal(96)
-    model = Model("logistic_regression").fit(with_impulsiveness(train, values))
-    limit = np.quantile(values[train.fault.values == 0], HEALTHY_SHARE)
-    assert model.calibration.impulsive == pytest.approx(limit)
-    recording = tested.recording.values
-    offsets = np.tile([-9.0, 3.0, 3.0, 3.0], 24)  # one window far from the others counts as in the mean
-    for above in (1e-6, -1e-6):
-        found = predict(with_impulsiveness(tested, limit + offsets + np.where(recording == 5, above, -1.0)), model)
-        assert found.by_recording is not None
-        np.testing.assert_array_equal(found.by_recording.impulsive[found.recording], (above > 0) & (recording == 5))
-    assert not found.impulsive.any()
