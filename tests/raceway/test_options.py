@@ -1,13 +1,12 @@
 """Options refuse values of other types, reach the functions that they set, and keys of the JSON objects have the right values."""
 
 import re
-from types import SimpleNamespace
 
 import click
 import pytest
 from click.types import FloatParamType, IntParamType
 
-from features.table.band import DEFAULT_BAND
+from features.baselines import Model
 from features.table.recording_speeds import SPEEDS
 from gen.support.errors import CorpusError
 from gen.support.executor import cores
@@ -102,7 +101,7 @@ def test_commands_that_compute_features_pass_on_workers_and_scheduler(
     run, given, monkeypatch, tiny_corpus, command, more
 ):
     options = given("features.feature_table")
-    monkeypatch.setattr("features.baselines.Model.load", lambda _: SimpleNamespace(band=DEFAULT_BAND, groups=()))
+    monkeypatch.setattr("features.baselines.Model.load", lambda _: Model(groups=()))
     run(command, tiny_corpus, *more, "--workers", 3, "--scheduler", "tcp://a:1")
     assert (options["workers"], options["scheduler"]) == (3, "tcp://a:1")
     run(command, tiny_corpus, *more)
