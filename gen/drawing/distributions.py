@@ -270,7 +270,7 @@ def _edges(weights: tuple[float, ...]) -> list[float]:
 
 
 KINDS = {kind: model for model in DISTRIBUTIONS for kind in get_args(model.model_fields["kind"].annotation)}
-_TEXT = rf"^({'|'.join(KINDS)})\(.*\)( \* [a-z0-9_]+)?$|^[-+.0-9e]+ \* [a-z0-9_]+$"
+_TEXT = rf"^\s*(({'|'.join(KINDS)})\s*\(.*\)|[-+.0-9eE_]+)\s*(\*\s*[A-Za-z0-9_]+\s*)?$"
 
 
 def _read(value: Any) -> Any:

@@ -22,7 +22,8 @@ keywords      a recipe from keys by their own names
 yaml_text     a recipe as YAML text
 keys          every key with unit, range, default and meaning
 finding       paths and names of recipe files
-reading       a file read into the model, its hash, JSON schema
+reading       a file read into the model, its hash
+editor_schema JSON schema of a recipe, for editors
 ============= ==============================================================
 """
 

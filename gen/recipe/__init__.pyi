@@ -1,3 +1,4 @@
+from .editor_schema import recipe_schema as recipe_schema
 from .faults import Fault as Fault, class_of as class_of
 from .finding import find_recipe as find_recipe, recipe_purpose as recipe_purpose, shipped_recipes as shipped_recipes
 from .keywords import make_recipe as make_recipe
@@ -8,7 +9,6 @@ from .reading import (
     corpus_identity as corpus_identity,
     read_recipe as read_recipe,
     recipe_hash as recipe_hash,
-    recipe_schema as recipe_schema,
 )
 from .sensing import MAX_OVERSAMPLING as MAX_OVERSAMPLING
 from .shares import (

@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AliasChoices, BeforeValidator, Field, StrictInt, field_validator, model_validator
+from pydantic import AliasChoices, BeforeValidator, ConfigDict, Field, StrictInt, field_validator, model_validator
 
 from gen.drawing import Distribution, Draws, Name, Number, Section, within
 from gen.physics.bearing import Bearing
@@ -41,8 +41,22 @@ def _check_rollers(dimensions: Any) -> Any:
     return dimensions
 
 
+def _describe_rollers(schema: dict[str, Any]) -> None:
+    """Add the keys of rollers to the JSON schema of a section, each in place of the same key of balls."""
+    keys = schema["properties"]
+    for key, of_balls in OF_ROLLERS.items():
+        keys[key] = dict(keys[of_balls])
+        schema["required"].remove(of_balls)
+    schema["allOf"] = [
+        {"oneOf": [{"required": [key]}, {"required": [of_balls]}]} for key, of_balls in OF_ROLLERS.items()
+    ]
+    schema["dependentRequired"] = {key: ["roller_length_mm"] for key in OF_ROLLERS}
+
+
 class OwnBearing(Section):
     """A bearing that is not in the catalogue."""
+
+    model_config = ConfigDict(json_schema_extra=_describe_rollers)
 
     n_balls: Annotated[StrictInt, Field(ge=5, le=MAX_BALLS), _COUNT]
     """Number of balls, or of rollers (`n_rollers`); BPFO and BPFI grow with it."""
@@ -89,7 +103,9 @@ class CatalogueBearing(Section):
     entries: dict[Name, OwnBearing] = Field(default={})
     """Further bearings by name, for this recipe only."""
 
-    @field_validator("designations", mode="before")
+    @field_validator(
+        "designations", mode="before", json_schema_input_type=str | Annotated[list[str], Field(min_length=1)]
+    )
     @classmethod
     def _without_suffixes(cls, names: Any) -> Any:
         names = [names] if isinstance(names, str) else names
@@ -133,9 +149,10 @@ class CatalogueBearing(Section):
 class GeometryBearing(Section):
     """A bearing given by its dimensions, drawn per rig."""
 
+    model_config = ConfigDict(json_schema_extra=_describe_rollers)
     drawn_per = "rig"
 
-    kind: Literal["geometry"]
+    kind: Literal["geometry"] = "geometry"
     """Takes a bearing by its dimensions, each of which can vary from rig to rig."""
     designation: Name = "geometry"
     """Name of the bearing in the corpus."""
@@ -220,9 +237,10 @@ def _with_kind(value: Any) -> Any:
     return value
 
 
+_Short = str | int | Annotated[list[str | int], Field(min_length=1)]
 BearingSection = Annotated[
     Annotated[CatalogueBearing | GeometryBearing, Field(discriminator="kind")],
-    BeforeValidator(_with_kind, json_schema_input_type=str | list[str] | CatalogueBearing | GeometryBearing),
+    BeforeValidator(_with_kind, json_schema_input_type=_Short | CatalogueBearing | GeometryBearing),
 ]
 """Designation, list of designations, or dimensions; ``kind`` can be left out."""
 

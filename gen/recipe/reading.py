@@ -81,9 +81,3 @@ def _hash(recipe: Recipe, left_out: set[str]) -> str:
     """SHA-256 of the values of a recipe; a mechanism that it does not have does not count."""
     values = recipe.model_dump(mode="json", exclude=left_out, exclude_none=True)
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
-
-
-def recipe_schema() -> str:
-    """JSON schema of a recipe, for editors."""
-    schema = Recipe.model_json_schema()
-    return json.dumps({"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}, indent=1) + "\n"

@@ -134,7 +134,9 @@ class Sections(Section):
     faults: Annotated[
         tuple[Fault, ...],
         Field(min_length=1),
-        BeforeValidator(fault_entries, json_schema_input_type=tuple[Fault, ...] | FaultList),
+        BeforeValidator(
+            fault_entries, json_schema_input_type=Annotated[tuple[Fault, ...], Field(min_length=1)] | FaultList
+        ),
     ]
     """Faults that specimens can have, one entry each, with weights. `faults: {defaults: ..., entries: ...}` gives all entries some keys."""
     life: LifeSection | None = None

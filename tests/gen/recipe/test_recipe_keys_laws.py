@@ -7,8 +7,8 @@ import re
 import pytest
 
 from gen.recipe import find_recipe, read_recipe, recipe_hash, shipped_recipes
+from gen.recipe.editor_schema import recipe_schema
 from gen.recipe.keys import recipe_keys
-from gen.recipe.reading import recipe_schema
 from gen.support.errors import RecipeError
 from gen.support.units import UNITS
 from gen.support.yaml_files import read_yaml
