@@ -11,6 +11,7 @@ from gen.recipe.operation import Steps, Table
 from gen.recipe.sections import Sections
 from gen.recipe.shares import ranges, share_problems
 from gen.support.limits import check_limit
+from gen.support.rounding import rounded_up
 
 # memory of a record beside its signal, in samples of 12 bytes: 40 kB of drawn values, and 140 bytes per number of a table or trace
 _SAMPLES_OF_A_RECORD, _SAMPLES_OF_A_NUMBER = 4000, 12
@@ -77,7 +78,8 @@ def _faults(recipe: Sections) -> Iterator[str]:
     if recipe.corpus.fault_choice == "by_weight" and rungs[0] == 0 and healthy < at_least * (1 - 1e-9):
         yield (
             f"corpus.rungs: rung 0 makes at least {100 / len(rungs):.3g} % of all records healthy, and the weights of faults ask for "
-            f"{100 * healthy / (healthy + faulty):.3g} %; give kind: healthy a weight of {at_least:.6g} or more, or leave out rung 0."
+            f"{100 * healthy / (healthy + faulty):.3g} %; give kind: healthy a weight of "
+            f"{rounded_up(at_least)} or more, or leave out rung 0."
         )
 
 

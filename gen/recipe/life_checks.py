@@ -13,6 +13,7 @@ from gen.recipe.life import LifeSection
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.sections import Sections
 from gen.recipe.shares import STATIC_RATING, ranges
+from gen.support.rounding import rounded_up
 from gen.support.units import to_si
 
 MOST_STEPS = 200_000
@@ -28,7 +29,7 @@ def life_problems(recipe: Sections) -> Iterator[str]:
     yield from _loads(recipe, recipe.life)
     horizon = _horizon(recipe, recipe.life)
     if horizon * STEPS > MOST_STEPS * recipe.life.history_h.support()[0]:
-        yield f"life.history_h: is too short for {horizon:g} h of snapshots; use {horizon * STEPS / MOST_STEPS:.3g} or more."
+        yield f"life.history_h: is too short for {horizon:g} h of snapshots; use {rounded_up(horizon * STEPS / MOST_STEPS)} or more."
 
 
 def _other_keys(recipe: Sections, life: LifeSection) -> Iterator[str]:

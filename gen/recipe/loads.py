@@ -9,6 +9,7 @@ from gen.physics.bearing import Bearing
 from gen.physics.rating import LEAST_SAFETY, equivalent_load, static_rating
 from gen.recipe.machine import CatalogueBearing, GeometryBearing
 from gen.recipe.operation import OperationSection, ProfileSection, Steps, Table
+from gen.support.rounding import rounded_down
 from gen.support.units import percent_to_share, to_si
 
 Reach = Mapping[str, Mapping[str, Support]]
@@ -29,8 +30,9 @@ def load_problems(
     for key, load in (("load_n", radial), ("axial_load_n", both)):
         if load > limit:
             yield (
-                f"{place}.{key}: gives an equivalent static load of at least {load:.4g} N, and {limit:.4g} N, {1 / LEAST_SAFETY:g} times "
-                f"the static rating of bearing {strongest.designation}, is the limit; lower the load or use a larger bearing."
+                f"{place}.{key}: gives an equivalent static load of at least {load:.4g} N, and {rounded_down(limit)} N, "
+                f"{1 / LEAST_SAFETY:g} times the static rating of bearing {strongest.designation}, "
+                "is the limit; lower the load or use a larger bearing."
             )
 
 

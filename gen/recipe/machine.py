@@ -12,6 +12,7 @@ from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.physics.extent import MAX_BALLS
 from gen.support.errors import RecipeError
+from gen.support.rounding import rounded_down
 from gen.support.units import UNITS, from_si, to_si
 
 _KNOWN = tuple(
@@ -219,7 +220,8 @@ def check_room(n_balls: int, ball_mm: float, pitch_mm: float) -> None:
     largest = min(LARGEST_BALL * pitch_mm, 0.95 * math.pi * pitch_mm / n_balls)
     if ball_mm > largest * (1 + 1e-9):
         raise ValueError(
-            f"{n_balls} of {ball_mm:g} mm do not fit a pitch circle of {pitch_mm:g} mm; keep ball_diameter_mm below {largest:.4g}."
+            f"{n_balls} of {ball_mm:g} mm do not fit a pitch circle of {pitch_mm:g} mm; keep ball_diameter_mm below "
+            f"{rounded_down(largest)}."
         )
 
 

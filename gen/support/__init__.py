@@ -12,6 +12,7 @@ progress       progress of a long call
 display        what an object shows in print and in a notebook
 limits         how much a file from elsewhere may ask for
 units          units of recipes and labels, turned into SI
+rounding       limits in sentences, rounded to the side that is allowed
 yaml_files     recipes and common keys of labels, read within the limits
 key_types      types of keys that people write about their recordings
 sentences      an error sentence for each wrong key or value of these files

@@ -15,6 +15,7 @@ from features.signal.rows import FloatArray
 from features.table.indicators import Orders
 from gen.corpus import FAULTS, SIGNAL, UNKNOWN_CODE, open_corpus
 from gen.support.errors import CorpusError
+from gen.support.rounding import rounded_down
 from raceway.comparing.measures import NAMES, compute_measures, limit_band
 
 BLOCK = 32  # windows read and measured together
@@ -78,7 +79,7 @@ def common_ground(folders: list[Path], top: float, window: float | None) -> Comm
         if not fs >= 2 * top:
             message = (
                 f"{folder}: its sample rate of {fs:g} Hz shows nothing above {fs / 2:g} Hz, and records are compared up "
-                f"to {top:g} Hz; choose an upper frequency of at most {fs / 2:g} Hz."
+                f"to {top:g} Hz; choose an upper frequency of at most {rounded_down(fs / 2, 6)} Hz."
             )
             raise CorpusError(message)
         if window is not None and lengths[-1] < window * (1 - 1e-9):

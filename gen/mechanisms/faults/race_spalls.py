@@ -9,6 +9,7 @@ from gen.mechanisms.faults.bearing_fault import BALL_SPACING, RACES, BearingFaul
 from gen.physics.bearing import Bearing, ball_spacing
 from gen.physics.kernel_input import Spall
 from gen.support.errors import RecipeError
+from gen.support.rounding import rounded_down
 from gen.support.units import from_si, to_si
 
 MAX_SPALLS = 16
@@ -76,7 +77,7 @@ class Spalls(BearingFault):
             if width > widest:
                 raise RecipeError(
                     f"{item}: a spall of {from_si(width, 'mm'):g} mm does not fit the {self.part} radius of "
-                    f"{from_si(radius, 'mm'):.3g} mm; keep width_mm below {from_si(widest, 'mm'):.3g}."
+                    f"{from_si(radius, 'mm'):.3g} mm; keep width_mm below {rounded_down(from_si(widest, 'mm'))}."
                 )
 
     def spalls(self, load_angle: float) -> list[Spall]:
