@@ -12,6 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.choice import per_record
+from gen.corpus.fault_classes import BUILT_IN
 from gen.corpus.schema import DRAWS, SCHEMA, class_names
 from raceway.sharing.copying import Chosen
 
@@ -30,7 +31,10 @@ class Column(NamedTuple):
     role: str
     meaning: str
     flags: Mapping[int, str]
-    """Names of the values that a class variable has in the chosen records, by their codes, ascending; empty otherwise."""
+    """Names of the values of a class variable by their codes, ascending; empty otherwise.
+
+    In a file, the classes of plug-ins that its records have follow the built-in ones, so that names without records are left out here.
+    """
 
     def of(self, records: xr.Dataset) -> NDArray[Any]:
         """Values in some records; the names of its classes if it is a class variable."""
@@ -53,7 +57,8 @@ def _column(chosen: Chosen, name: str, variable: str) -> Column:
     array = chosen.corpora[0][variable].variable
     names = class_names(array.attrs)
     codes = set(chosen.values(variable).tolist()) if names else set()
-    flags = {code: names[code] for code in sorted(names) if code in codes}
+    always = range(len(BUILT_IN)) if variable == "fault" else names
+    flags = {code: names[code] for code in sorted(names) if code in codes or code in always}
     is_text = bool(names) or array.dtype.kind not in "iuf"
     units, role, meaning = (str(array.attrs.get(key, "")) for key in ("units", "role", "long_name"))
     return Column(name, variable, None if is_text else array.dtype, units, role, meaning, flags)

@@ -128,6 +128,7 @@ def _features(chosen: Chosen, columns: list[Column]) -> list[dict[str, Any]]:
 
 
 def _dtype(column: Column) -> Any:
+    # the codes of the hub have no gaps: they are those of netCDF, and "unknown" follows the last class
     if column.flags:
         names = {str(place): plain_text(name) for place, name in enumerate(column.flags.values())}
         return {"class_label": {"names": names}}

@@ -6,14 +6,16 @@ import re
 import subprocess
 import sys
 
+import netCDF4
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from ruamel.yaml import YAML
 
 import raceway
-from gen.corpus import SIGNAL, new_corpus, open_corpus
+from gen.corpus import FAULTS, SIGNAL, new_corpus, open_corpus
 from gen.support.errors import CorpusError
 from raceway import publish
 from raceway.sharing import FORMS
@@ -143,15 +145,27 @@ def test_texts_of_strangers_stay_texts(tmp_path):
         raceway.copy(folder, tmp_path / to, to=to)
         assert all(re.fullmatch(r"[\w./-]+", name) and ".." not in name for name in map(str, files(tmp_path / to)))
     header = (tmp_path / "huggingface/README.md").read_text().split("---\n")[1]
-    from ruamel.yaml import YAML
-
     facts = YAML(typ="safe").load(header)
     assert "license" not in facts
     assert facts["pretty_name"].startswith('a" --- license: mit')
     assert wicked in pq.read_table(tmp_path / "huggingface/data")["bearing"].to_pylist()
 
 
-def test_hugging_face_gets_the_names_of_the_classes_that_are_there(tmp_path):
+def test_a_class_has_the_same_code_in_hugging_face_and_netcdf_whatever_records_are_chosen(counts, tmp_path):
+    raceway.copy(counts, tmp_path / "out", to="huggingface", where="fault in ('healthy', 'outer')")
+    header = (tmp_path / "out/README.md").read_text().split("---\n")[1]
+    features = YAML(typ="safe").load(header)["dataset_info"]["features"]
+    labels = {of["name"]: of["dtype"]["class_label"]["names"] for of in features if "class_label" in str(of)}
+    assert {"fault", "split"} <= labels.keys()
+    raceway.copy(counts, tmp_path / "out.nc", where="fault in ('healthy', 'outer')")
+    with netCDF4.Dataset(tmp_path / "out.nc") as file:
+        for name, classes in labels.items():
+            stored_classes = dict(zip(file[name].flag_values.tolist(), file[name].flag_meanings.split(), strict=True))
+            stored_classes.pop(127, None)
+            assert {int(code): text for code, text in classes.items()} == stored_classes
+
+
+def test_hugging_face_has_unknown_behind_the_classes_where_records_are_unknown(tmp_path):
     part = dataset(0, 3)
     part["fault"] = ("record", np.array([1, 127, 5], np.int8), part["fault"].attrs)
     part["split"] = ("record", np.zeros(3, np.int8), part["split"].attrs)
@@ -159,7 +173,8 @@ def test_hugging_face_gets_the_names_of_the_classes_that_are_there(tmp_path):
     raceway.copy(tmp_path / "c", tmp_path / "out", to="huggingface")
     assert pq.read_table(tmp_path / "out/data")["fault"].to_pylist() == ["inner", "unknown", "compound"]
     card = (tmp_path / "out/README.md").read_text()
-    assert '{"class_label": {"names": {"0": "inner", "1": "compound", "2": "unknown"}}}' in card
+    names = dict(enumerate([*FAULTS[:6], "unknown"]))
+    assert json.dumps({"class_label": {"names": names}}) in card
 
 
 @pytest.mark.parametrize(
