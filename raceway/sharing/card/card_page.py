@@ -82,6 +82,7 @@ def card_text(corpus: xr.Dataset, manifest: Manifest, added: additions.CardAddit
         added=added,
         whole=path.name if single else None,
         file=path.name if single else first.relative_to(path).as_posix(),
+        parts=len(manifest.parts),
         zstd=codec_of(first) == "zstd",
         faulty=listed_flags({code: name for code, name in stored_classes(first).items() if name in FAULTS[1:]}),
         citation=citation(title, manifest),

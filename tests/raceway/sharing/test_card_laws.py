@@ -15,6 +15,7 @@ from raceway.sharing.card.additions import CardAdditions, CardPicture, write_add
 from raceway.sharing.card.card_facts import ranges, rebuilding
 from raceway.sharing.card.card_page import data_card
 from raceway.sharing.publication import read_publication
+from tests.corpora import write_corpus as write_several_parts
 from tests.tone_corpora import write_corpus
 
 
@@ -76,6 +77,16 @@ def test_the_python_programs_of_the_card_read_the_first_record(either, place, mo
     monkeypatch.chdir(either if either.is_dir() else either.parent)
     exec(program, {})  # noqa: S102 - our own page
     assert float(capsys.readouterr().out) == pytest.approx(rms_of_first(either), rel=1e-5)
+
+
+def test_xarray_alone_joins_all_parts_as_the_card_says(tmp_path, monkeypatch):
+    write_several_parts(tmp_path / "c", (3, 4, 2))
+    monkeypatch.chdir(tmp_path / "c")
+    names = {}
+    exec(blocks(data_card(tmp_path / "c"), "python")[1], names)  # noqa: S102 - our own page
+    with open_corpus(tmp_path / "c") as corpus:
+        for name in ("acceleration", "fault", "width"):
+            np.testing.assert_array_equal(names["corpus"][name].values, corpus[name].values)
 
 
 def test_licence_and_creators_are_on_the_card_and_in_the_citation(corpus, tmp_path):
