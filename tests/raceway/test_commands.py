@@ -103,6 +103,13 @@ def test_generate_counts_its_records_and_a_second_call_keeps_them(told, tiny_rec
     assert told("info", tmp_path / "corpus")["overrides"] == {"seed": 9, "records": 20}
 
 
+def test_info_says_of_how_many_parts_a_corpus_has_some(run, told, tiny_recipe, tiny_corpus, tmp_path):
+    told("generate", tiny_recipe, "-o", tmp_path / "first", "--parts", "0-1")
+    assert [told("info", corpus)["parts_of_recipe"] for corpus in (tmp_path / "first", tiny_corpus)] == [4, 4]
+    assert "state       2 of 4 parts of its recipe; raceway copy joins them" in run("info", tmp_path / "first").stdout
+    assert "complete" in run("info", tiny_corpus).stdout
+
+
 def test_a_single_file_is_generated_kept_shown_and_used_like_a_folder(run, told, tiny_recipe, tiny_corpus, tmp_path):
     file = tmp_path / "corpus.nc"
     made = told("generate", tiny_recipe, "-o", file)
@@ -110,7 +117,7 @@ def test_a_single_file_is_generated_kept_shown_and_used_like_a_folder(run, told,
     assert told("generate", tiny_recipe, "-o", file)["kept"] == 4
     assert [path.name for path in tmp_path.iterdir()] == ["corpus.nc"]
     assert told("validate", file) == {"corpus": str(file), "valid": True, "problems": [], "warnings": []}
-    own = {"corpus", "bytes", "parts"}
+    own = {"corpus", "bytes", "parts", "parts_of_recipe"}
     one, other = (told("info", corpus) for corpus in (file, tiny_corpus))
     assert {name: one[name] for name in one.keys() - own} == {name: other[name] for name in other.keys() - own}
     assert "complete" in run("info", file).stdout
