@@ -17,7 +17,6 @@ from raceway.sharing.huggingface import write_huggingface
 from raceway.sharing.parquet_files import write_parquet
 from raceway.sharing.publishing import describe
 
-_NOT_WRITTEN = (".mat", ".wav", ".csv", ".zarr")
 _PART_BYTES = 16_000_000  # of single precision
 
 FORMS: Mapping[str, Callable[[Chosen, Path], None]] = {"huggingface": write_huggingface}
@@ -25,7 +24,8 @@ FORMS: Mapping[str, Callable[[Chosen, Path], None]] = {"huggingface": write_hugg
 SUFFIXES = (".nc", ".parquet")
 """Suffixes of targets of one file; a target without is a folder."""
 _READ_BY_OTHERS = (
-    "NAME.parquet is a table, NAME.nc is read by MATLAB, R, Julia and Octave; docs/sharing.md writes CSV and Zarr"
+    "NAME is a folder, NAME.parquet a table, NAME.nc is read by MATLAB, R, Julia and Octave; "
+    "docs/sharing.md writes CSV and Zarr"
 )
 _NEEDS = {"parquet": "pyarrow", "huggingface": "pyarrow"}
 """Package that a form needs and Raceway does not bring."""
@@ -131,7 +131,8 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
     if to is not None and to not in FORMS:
         raise CorpusError(f"to: there is no form {to!r}; allowed is {', '.join(FORMS)}; {_READ_BY_OTHERS}.")
     suffix = target.suffix if target.suffix in SUFFIXES else ""
-    if target.suffix in _NOT_WRITTEN:
+    # x.h5 would be a folder of that name; corpus_0.5 is one
+    if suffix != target.suffix and target.suffix[1].isalpha():
         raise CorpusError(f"{target}: copies are not written as {target.suffix}; {_READ_BY_OTHERS}.")
     if suffix and to is not None:
         raise CorpusError(f"{target}: {suffix} is one file, and to={to!r} makes a folder; leave one of the two out.")
