@@ -330,15 +330,20 @@ def check_bounds(distribution: Any, bounds: dict[str, Any]) -> Any:
     The values of a share are checked when the whole recipe is read.
     """
     if isinstance(distribution, Listed) and not bounds.get("each"):
-        raise ValueError(
-            "is a list; give one number or distribution, a list is for keys that are drawn for each of several items."
-        )
+        raise ValueError(f"is a list; give one number, or a distribution such as {_instead_of(distribution.values)}.")
     if distribution is None or distribution.share_of is not None or getattr(distribution, "values", True) == ():
         return distribution
     for end in distribution.support():
         if not is_within(end, bounds):
             raise ValueError(f"{end:g} is not in {interval(bounds)}.")
     return distribution
+
+
+def _instead_of(values: tuple[float, ...]) -> "Uniform | Choice":
+    """Distribution that the writer of a list may have meant: a range if it has two ascending numbers, else a choice."""
+    if len(values) == 2 and values[0] < values[1]:
+        return Uniform(kind="uniform", low=values[0], high=values[1])
+    return Choice(kind="choice", values=values or (1.0, 2.0))
 
 
 def is_within(value: float, bounds: dict[str, Any], rounding: float = 0.0) -> bool:

@@ -116,6 +116,10 @@ TABLE = [
     ("shaft_mass_kg: 5", "shaft_mass_kg: 'constant(5, per=rig)'", "machine.shaft_mass_kg: per can be chosen for"),
     ("0.5}", "0.5, operation: {load_n: 1e6}}", "faults[1].operation.load_n: gives an equivalent static load of at"),
     ("0.5}", "0.5, level: {faulty_db: 3}}", "faults[1].level: works with level.kind: snr alone, because a physical"),
+    # a range in brackets is answered with the numbers of the user
+    (RPM, "[1400, 1500]", "operation.shaft_rpm: is a list; give one number, or a distribution such as uniform(1400, 1500)."),
+    (RPM, "[900, 1400, 1500]", "operation.shaft_rpm: is a list; give one number, or a distribution such as choice(900, 1400, 1500)."),
+    (RPM, "[]", "operation.shaft_rpm: is a list; give one number, or a distribution such as choice(1, 2)."),
     # rungs
     ("machine:", "storage: {records_per_part: 1}\ntruth: {undetected: redraw}\nmachine:", "truth.undetected: redraw judges"),
     ("rigs: 2", "rigs: 2, rungs: [0, 1, 0.5]", "corpus.rungs: 0.5 after 1 does not rise; sort them, each once."),

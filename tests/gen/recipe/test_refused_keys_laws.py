@@ -78,7 +78,11 @@ def wrong_values(key):
         return [("wide", "it must be a "), ([1], "it must be a "), (float("nan"), "it must be "), *halves, *outside]
     if RANGE.fullmatch(allowed):
         outside = [(value, f"is not in {allowed}") for value in beside(allowed)]
-        listed = [] if key.key in EACH else [([1, 2], "is a list; give one number or distribution")]
+        listed = (
+            []
+            if key.key in EACH
+            else [([1, 2], "is a list; give one number, or a distribution such as uniform(1, 2).")]
+        )
         return [("wide", QUANTITY), *listed, (True, QUANTITY), (float("nan"), "finite"), *outside]
     return [({"odd": 1}, ""), ([], "")]
 
