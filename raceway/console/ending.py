@@ -45,6 +45,9 @@ def _verdict(error: BaseException) -> tuple[int, str]:
             return INTERRUPTED, "interrupted."
         case click.exceptions.NoArgsIsHelpError():
             return BAD_INPUT, error.format_message()
+        case click.NoSuchOption(option_name=option, ctx=click.Context() as ctx) if option in _of_all_commands(ctx):
+            rest = ctx.command_path.removeprefix("raceway ")
+            return BAD_INPUT, f"{ctx.command_path}: {option} is for all commands; put it between raceway and {rest}."
         case click.UsageError():
             command = error.ctx.command_path if error.ctx else "raceway"
             return BAD_INPUT, f"{command}: {error.format_message().rstrip('.')}; see {command} --help."
@@ -73,6 +76,11 @@ def _verdict(error: BaseException) -> tuple[int, str]:
         case _:
             what = f"{type(error).__name__}: {error}"
             return INTERNAL_ERROR, f"internal error ({what}); please report it with the output of RACEWAY_TRACEBACK=1."
+
+
+def _of_all_commands(context: click.Context) -> list[str]:
+    """Options that stand between ``raceway`` and a command."""
+    return [name for option in context.find_root().command.params for name in option.opts]
 
 
 def _is_foreseen(error: BaseException) -> bool:

@@ -78,6 +78,8 @@ TABLE = [
     ("frob", "raceway: No such command 'frob'; see raceway --help."),
     ("generate {recipe}", "raceway generate: Missing option '-o' / '--output'; see raceway generate --help."),
     ("info", "raceway info: Missing argument 'DIR'"),
+    ("info {corpus} --quiet", "raceway info: --quiet is for all commands; put it between raceway and info."),
+    ("info {corpus} --limit records=5", "raceway info: --limit is for all commands; put it between raceway and info."),
     ("info {corpus} --colour", "raceway info: No such option '--colour'"),
     ("import skf {folder} -o {new}", "raceway import: No such command 'skf'"),
     # where results go
