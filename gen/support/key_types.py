@@ -1,6 +1,7 @@
 """Types of keys that people write about their recordings.
 
-Text from strangers reaches data cards, messages and the names of variables: control characters are refused.
+Text from strangers reaches data cards, messages and the names of variables: control characters are refused, and so are marks that are
+not seen, such as U+202E, behind which a name is read backwards.
 """
 
 import unicodedata
@@ -21,9 +22,9 @@ def as_text(value: Any) -> Any:
 
 
 def _printable(text: str) -> str:
-    """Return text without control characters; ValueError if it has one."""
+    """Return text without control and format characters; ValueError if it has one."""
     for letter in text:
-        if unicodedata.category(letter) in ("Cc", "Cs") and letter not in "\t\n\r":
+        if unicodedata.category(letter) in ("Cc", "Cf", "Cs") and letter not in "\t\n\r":
             raise ValueError(f"{letter!r} is a control character; leave it out.")
     return text
 

@@ -120,6 +120,8 @@ REFUSED = {
     "column path: /etc/passwd leads out of the folder": {"path": "/etc/passwd"},
     "column path: data/../../a.npy leads out of the folder": {"path": "data/../../a.npy"},
     "column specimen: '\\x1b' is a control character": {"specimen": "\x1b[2J"},
+    "column specimen: '\\u202e' is a control character": {"specimen": "b\u202e7"},
+    "column rig: '\\u200b' is a control character": {"rig": "\u200b7"},
     "column specimen: 'b\\nc' has a tab or a line break; write it on one line.": {"specimen": "b\nc"},
     "column title: 6000 characters are too many; give at most 5000.": {"title": "t" * 6000},
     "column column: is not a column; give its number, 0 to 999999,": {"column": "9" * 5000},
