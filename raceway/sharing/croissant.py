@@ -16,6 +16,7 @@ from gen.corpus.index import open_corpus
 from gen.corpus.lazy import stored_classes
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
 from gen.corpus.schema import SIGNAL, class_names, listed_flags
+from gen.support.display import visible
 from raceway.sharing.acdd import content_id, license_address, publication_attributes
 from raceway.sharing.card.card_page import card_folder
 from raceway.sharing.card.citation import citation
@@ -67,7 +68,16 @@ def croissant_problems(path: Path) -> list[str]:
 
 def croissant_text(path: Path) -> str:
     """Text of ``croissant.json`` of a finished corpus."""
-    return json.dumps(croissant(path), indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(_visible(croissant(path)), indent=1, ensure_ascii=False) + "\n"
+
+
+def _visible(content: Any) -> Any:
+    """Content of JSON, whose texts can come from strangers, without characters that are not seen."""
+    if isinstance(content, dict):
+        return {_visible(key): _visible(value) for key, value in content.items()}
+    if isinstance(content, list):
+        return [_visible(value) for value in content]
+    return visible(content) if isinstance(content, str) else content
 
 
 def croissant(path: Path) -> dict[str, Any]:

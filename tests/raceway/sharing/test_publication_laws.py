@@ -1,6 +1,7 @@
 """Laws of publication: who made a corpus and how it may be used changes no part, and a killed change leaves a corpus that can be read."""
 
 import ast
+import json
 
 import netCDF4
 import pytest
@@ -185,6 +186,18 @@ def test_the_example_of_the_page_has_every_fact_of_a_publication():
     example = ast.literal_eval(page.partition('raceway.publish("corpus", ')[2].partition(")\n\n")[0])
     assert set(example) == set(Publication.model_fields)
     read_publication(example)
+
+
+def test_croissant_has_no_marks_that_are_not_seen(tmp_path):
+    part = corpora.dataset(0, 3, channels=("a\u202eb", "c"))
+    with new_corpus(tmp_path / "c", title="balls\u202e and\x1b[2J \u2066rings") as writer:
+        writer.write(part)
+    publish(tmp_path / "c", WHOLE)
+    text = (tmp_path / "c" / "croissant.json").read_text("utf-8")
+    assert json.loads(text)["name"] == "balls and[2J rings"
+    assert "channels of the signal: ab, c." in text
+    assert {letter for letter in text if not letter.isprintable()} == {"\n"}
+    assert croissant_problems(tmp_path / "c") == []
 
 
 def test_a_card_of_another_content_is_removed_and_a_changed_croissant_is_found(copied_folder):
