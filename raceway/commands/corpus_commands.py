@@ -152,7 +152,7 @@ def _range_of(_context: click.Context, _option: click.Parameter, text: str | Non
         return None
     first, dash, last = text.partition("-")
     last = last if dash else first
-    if not (first.isdecimal() and last.isdecimal()):
+    if not (text.isascii() and first.isdecimal() and last.isdecimal()):  # Arabic digits are decimal too
         raise click.BadParameter(f"{text!r} is no range; give the first and the last part, such as 0-4.")
     return range(int(first), int(last) + 1)
 

@@ -69,6 +69,7 @@ REFUSED = [
     ("{recipe} -o {new} --records 0", "records"),
     (f"{{recipe}} -o {{new}} --parts 0-{PARTS}", f"has the parts 0-{PARTS - 1}"),
     ("{recipe} -o {new} --parts 1-", "is no range"),
+    ("{recipe} -o {new} --parts \u0660-\u0661", "is no range"),
     ("{recipe} -o {new}.nc --parts 0-1", "is one file, which has all parts"),
     ("{recipe} -o {new} --workers 0", "0 is not in the range"),
     ("{recipe} -o {new} --scheduler nowhere", "does not answer"),
