@@ -9,6 +9,7 @@ from features.signal.arguments import as_records, ascending, check_positive, lik
 from features.signal.demodulation import amplitude_spectrum, analytic_band
 from features.signal.rows import FloatArray, squared_modulus
 from features.signal.spectra import fourier_coefficients
+from gen.support.rounding import rounded_down
 
 
 def band_envelope_spectrum(
@@ -37,7 +38,7 @@ def band_envelope_spectrum(
     duration = records.shape[1] / fs
     if low >= min(high, fs / 2) or round(low * duration) >= round(min(high, fs / 2) * duration):
         raise ValueError(
-            f"band: {low:g}-{high:g} Hz holds no frequency of these records; give one below {fs / 2:g} Hz."
+            f"band: {low:g}-{high:g} Hz holds no frequency of these records; give one below {rounded_down(fs / 2)} Hz."
         )
     z = analytic_band(fourier_coefficients(records, fs, high), round(low * duration), round(high * duration))
     power = squared_modulus(z)

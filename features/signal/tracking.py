@@ -38,6 +38,7 @@ from scipy.signal import resample, savgol_filter
 from features.signal.arguments import as_records, check_positive, like
 from features.signal.demodulation import running_median
 from features.signal.rows import FloatArray, IntArray, brief
+from gen.support.rounding import rounded_down, rounded_up
 
 HARMONICS = np.c_[1:6]
 WEIGHTS = HARMONICS[:, 0] ** -0.25  # of their evidence: a single line is rather the first harmonic than the second
@@ -92,12 +93,12 @@ def track_speed(x: ArrayLike, fs: float, slowest: float, fastest: float) -> Spee
     duration = records.shape[1] / fs
     if not slowest < fastest or TOP * fastest > fs / 2:
         raise ValueError(
-            f"slowest, fastest: {slowest:g} and {fastest:g} Hz are no range below {fs / 2 / TOP:.4g} Hz, so that "
+            f"slowest, fastest: {slowest:g} and {fastest:g} Hz are no range up to {rounded_down(fs / 2 / TOP)} Hz, so that "
             f"{len(HARMONICS)} harmonics lie below half the sample rate; give two ascending rates."
         )
     if duration < 16 / slowest:
         raise ValueError(
-            f"x: {duration:.3g} s are too short for a course of {slowest:g} Hz; give {16 / slowest:.3g} s or more."
+            f"x: {duration:.3g} s are too short for a course of {slowest:g} Hz; give {rounded_up(16 / slowest)} s or more."
         )
     rate, uncertainty = np.stack([_course(row, fs, slowest, fastest) for row in records], axis=1)
     return SpeedCourse(like(x, rate), like(x, uncertainty))

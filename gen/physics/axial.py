@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from gen.physics.elementary import power
 from gen.physics.rotor import Machine, solve
+from gen.support.rounding import rounded_up
 
 FloatArray = NDArray[np.float64]
 # least axial load, over radial load times the tangent of the contact angle, at which half of the balls are loaded
@@ -45,9 +46,7 @@ def check_axial_load(machine: Machine, axial_load: float, largest_load_share: fl
         message = f"an axial load of {axial_load:g} N needs a contact angle above 0."
         raise ValueError(message)
     if axial_load < least:
-        message = (
-            f"an axial load of {axial_load:.4g} N is too small to hold its rings together; give at least {least:.4g} N."
-        )
+        message = f"an axial load of {axial_load:.4g} N is too small to hold its rings together; give at least {rounded_up(least)} N."
         raise ValueError(message)
 
 

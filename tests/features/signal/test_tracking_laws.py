@@ -1,5 +1,7 @@
 """Laws of the course of the shaft speed: as exact as the noise lets it be, and none where there is no shaft."""
 
+import math
+import re
 from itertools import pairwise, product
 
 import numpy as np
@@ -87,3 +89,15 @@ def test_a_unit_changes_nothing_and_a_recording_played_twice_as_fast_is_of_a_sha
 def test_a_range_of_speeds_that_a_signal_does_not_show_is_refused(slowest, fastest, said):
     with pytest.raises(ValueError, match=said):
         track_speed(run_up("ramp", 0, seconds=10)[1], FS, slowest, fastest)
+
+
+def test_the_length_and_the_speed_that_a_refusal_names_are_accepted():
+    x = run_up("ramp", 0, seconds=5)[1]
+    with pytest.raises(ValueError, match=r"give \S+ s or more") as refused:
+        track_speed(x[: int(2 * FS)], FS, 7, 40)
+    seconds = float(re.search(r"give (\S+) s or more", str(refused.value))[1])
+    assert seconds == pytest.approx(16 / 7, rel=1e-3)
+    track_speed(x[: math.ceil(seconds * FS)], FS, 7, 40)
+    with pytest.raises(ValueError, match="no range up to") as refused:
+        track_speed(x, FS + 1 / 3, 7, FS)
+    track_speed(x, FS + 1 / 3, 7, float(re.search(r"no range up to (\S+) Hz", str(refused.value))[1]))
