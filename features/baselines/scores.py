@@ -258,9 +258,11 @@ def interval_text(interval: Interval | None, decimals: int = 3) -> str:
     """Text of an interval, for people.
 
     >>> interval_text((0.8391, 0.9), 2), interval_text(None)
-    ('0.84 to 0.90', 'not known')
+    ('0.84 to 0.90', 'not known: a class has one specimen')
     """
-    return "not known" if interval is None else " to ".join(f"{end:.{decimals}f}" for end in interval)
+    if interval is None:
+        return "not known: a class has one specimen"
+    return " to ".join(f"{end:.{decimals}f}" for end in interval)
 
 
 def percent_text(share: float) -> str:

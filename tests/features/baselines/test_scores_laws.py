@@ -113,7 +113,7 @@ def test_the_interval_is_not_known_exactly_where_a_class_has_one_specimen(case):
     alone = any(len(np.unique(specimen[fault == c])) == 1 for c in np.unique(fault))
     found = scores_of(fault, predicted, specimen)
     assert (found.interval is None) == alone
-    assert (interval_text(found.interval) == "not known") == alone
+    assert (interval_text(found.interval) == "not known: a class has one specimen") == alone
 
 
 def test_the_interval_leaves_out_two_and_a_half_per_cent_at_each_end(monkeypatch):
