@@ -34,8 +34,8 @@ from gen.corpus.trust import (
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
-MOST_OPEN = 64
-"""Largest number of files that are open for lazy arrays. A process can open 256 or more; an open file holds 1 MB."""
+MOST_OPEN = 24
+"""Largest number of files that are open for lazy arrays. A process can open 256 or more; an open file holds 4 MB."""
 
 
 _BLOCK_RECORDS, _BLOCK_SAMPLES = 256, 10_000_000
