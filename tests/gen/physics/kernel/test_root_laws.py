@@ -14,28 +14,20 @@ from gen.physics.kernel.compiling import ninth_root, root, square_root
 SMALLEST = 2.0**-968  # below it the remainder of the last correction is too small for its last bits
 
 
-@njit
-def roots(x):
-    out = np.empty_like(x)
-    for i in range(len(x)):
-        out[i] = square_root(x[i])
-    return out
+def of_each(root_of):
+    """Function of arrays, compiled as the kernel is, from one of numbers that it inlines."""
+
+    @njit
+    def every(x):
+        out = np.empty_like(x)
+        for i in range(len(x)):
+            out[i] = root_of(x[i])
+        return out
+
+    return every
 
 
-@njit
-def chosen_roots(x):
-    out = np.empty_like(x)
-    for i in range(len(x)):
-        out[i] = root(x[i])
-    return out
-
-
-@njit
-def ninth_roots(x):
-    out = np.empty_like(x)
-    for i in range(len(x)):
-        out[i] = ninth_root(x[i])
-    return out
+roots, chosen_roots, ninth_roots = map(of_each, (square_root, root, ninth_root))
 
 
 def test_the_ninth_root_is_one():
