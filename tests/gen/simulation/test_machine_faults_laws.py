@@ -14,7 +14,7 @@ from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
 from gen.physics.kernel_input import Turning
 from gen.physics.rotor import as_columns, rest
 from tests.lanes import march_lanes
-from tests.reference import knock_scatter
+from tests.reference_motion import knock_scatter
 from tests.strategies import RIG, angles, record
 
 law = settings(max_examples=8)

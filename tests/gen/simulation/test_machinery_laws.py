@@ -14,7 +14,7 @@ from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_fac
 from gen.physics.kernel.batch import input_shape
 from gen.scenarios import draw_scenarios
 from gen.simulation.motion import cosine_sum
-from tests.reference import turned
+from tests.reference_motion import turned
 from tests.responses import input_of, means_of, runs_of
 
 FS = 12_000.0

@@ -9,7 +9,7 @@ from gen.simulation.motion import draw_motion
 from gen.simulation.shaft import angles_of
 from gen.simulation.timeline import timeline
 from gen.support.errors import CorpusError
-from tests.reference import turned
+from tests.reference_motion import turned
 from tests.responses import input_of
 
 COURSES = {

@@ -5,14 +5,26 @@ import math
 import numpy as np
 import pytest
 
+from gen.physics.kernel.decimate import decimation
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import open_integrations, runs_of, simulate
 from gen.support.errors import SimulationError
 from tests.lanes import march_lanes
-from tests.reference import decimation_taps, waviness
+from tests.reference_motion import waviness
 from tests.responses import accelerations_of, failures_of, input_of
 
 FS = 12_000.0
+
+
+def decimation_taps(n_steps: int) -> np.ndarray:
+    """All stages of the decimation as one filter at the rate of the steps, shape (tap,)."""
+    whole, spacing = np.ones(1), 1
+    for taps, factor, kept in decimation(n_steps):
+        if taps.size:
+            spread = np.zeros(kept * spacing + 1)
+            spread[::spacing] = taps[: kept + 1, 0]
+            whole, spacing = np.convolve(whole, spread), spacing * factor
+    return whole
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,8 @@ from gen.simulation.simulate import simulate
 from gen.simulation.steps import COARSEST_STEP, FINE_STEP
 from gen.support.errors import SimulationError
 from tests.lanes import march_lanes
-from tests.reference import contact_stiffness, contacts, slow_motion
+from tests.reference import contact_stiffness, contacts
+from tests.reference_motion import slow_motion
 from tests.responses import input_of
 
 FS = 12_000.0

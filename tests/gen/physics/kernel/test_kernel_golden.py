@@ -11,7 +11,7 @@ from gen.physics.kernel_input import KernelInput, Spall, Turning
 from gen.physics.rotor import Machine
 from tests.lanes import EVERY_ACCELERATION, march_lanes
 from tests.paths import GOLDEN
-from tests.reference import slow_motion
+from tests.reference_motion import slow_motion
 
 GOLDEN = json.loads((GOLDEN / "model.json").read_text())
 START = np.array(GOLDEN["start"])

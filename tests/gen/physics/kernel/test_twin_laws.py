@@ -16,7 +16,8 @@ from gen.physics.kernel.integrate import integrate
 from gen.physics.kernel.layout import N_DYNAMIC
 from gen.physics.kernel_input import Turning, at_rest
 from tests.lanes import march_lanes
-from tests.reference import contact_stiffness, contacts, march_twin, right_hand_side, slow_motion, turned
+from tests.reference import contact_stiffness, contacts, march_twin, right_hand_side
+from tests.reference_motion import slow_motion, turned
 from tests.strategies import RIG, extended_records, record, steady_records, troubled_records, wandering_records
 
 law = settings(max_examples=10)
