@@ -10,7 +10,7 @@ import click
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS
 from raceway.commands.model_commands import warn_of_durations, warn_of_seen
 from raceway.console import show
-from raceway.console.corpus_table import notice_of_unknown, table_of
+from raceway.console.corpus_table import notice_of_unknown, table_of, tables_for
 from raceway.console.options import (
     A_CORPUS,
     A_MODEL,
@@ -188,16 +188,18 @@ def benchmark(
     loaded = {str(path or REFERENCE_MODEL): open_model(path)[0] for path in dict.fromkeys(models)}
     with result_folder(output):
         groups = analysis.with_groups(DEFAULT_GROUPS)
-        of_models = [group for model in loaded.values() for group in model.groups]
-        analysis = analysis._replace(groups=analysis.with_groups(of_models))
         table = table_of(corpus, "off", team, analysis)
         # speeds are checked or corrected on other corpora, whose labels may be wrong
         others = [table_of(test, speed, team, analysis._replace(channel=None)) for test in tests]
-        scored = {name: tuple(model.score(of, seed=seed) for of in (table, *others)) for name, model in loaded.items()}
+        scored = {}
+        # each trained model has a band and a duration of its own
         for name, model in loaded.items():
-            for of, tested in zip(scored[name], (table, *others), strict=True):
-                warn_of_seen(name, of)
-                warn_of_durations(name, model, tested)
+            tested = tables_for(model, [corpus], "off", team, analysis.channel)
+            tested += [of for test in tests for of in tables_for(model, [test], speed, team)]
+            scored[name] = tuple(model.score(of, seed=seed) for of in tested)
+            for of, scores in zip(tested, scored[name], strict=True):
+                warn_of_seen(name, scores)
+                warn_of_durations(name, model, of)
         options = {
             "tracks": "all" if "all" in tracks else tracks,
             "estimators": chosen or None,

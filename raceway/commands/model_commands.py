@@ -7,7 +7,7 @@ import click
 
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR
 from raceway.console import show
-from raceway.console.corpus_table import notice_of_unknown, table_of
+from raceway.console.corpus_table import notice_of_unknown, table_of, tables_for
 from raceway.console.options import (
     A_CORPUS,
     Analysis,
@@ -134,7 +134,6 @@ def evaluate(
       raceway evaluate pump --model model.skops --reference pump
     """
     from features.baselines import count_unknown
-    from features.baselines.models import suited_to
     from features.baselines.reference_choice import check_durations
     from gen import open_corpus
     from raceway.kept_models import open_model
@@ -145,12 +144,11 @@ def evaluate(
     if reference is not None:
         check_durations(corpus, reference)
     loaded, source = open_model(model)
-    corpora = [corpus] if reference is None else [corpus, reference]
-    suited = suited_to(loaded, *corpora)
-    analysis = Analysis(channel, suited.band, tuple(loaded.groups))
-    table = table_of(corpus, speed, team, analysis, suited.window)
-    healthy = table if reference == corpus else reference and table_of(reference, speed, team, analysis, suited.window)
-    scores = loaded.score(table, reference=healthy)
+    corpora = [path for path in dict.fromkeys((corpus, reference)) if path is not None]
+    tables = tables_for(loaded, corpora, speed, team, channel)
+    table = tables[0]
+    # the reference is the tested corpus itself, or the second one
+    scores = loaded.score(table, reference=None if reference is None else tables[-1])
     unknown = count_unknown(table)
     notice_of_unknown(corpus, unknown)
     warn_of_seen("the model", scores)

@@ -1,5 +1,6 @@
 """The feature table of a corpus that a command names, with progress and warnings."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from raceway.console.progress_bar import notice, progress
 if TYPE_CHECKING:
     import xarray as xr
 
+    from features.baselines import Model
     from features.table.recording_speeds import Speed
 
 
@@ -41,3 +43,18 @@ def table_of(
     for sentence in (*band_warnings(table), *speed_warnings(table)):
         notice(f"warning: {sentence}")
     return table
+
+
+def tables_for(
+    model: "Model",
+    corpora: Sequence[Path],
+    speed: "Speed" = "off",
+    team: Team = USUAL,
+    channel: str | tuple[str, ...] | None = None,
+) -> "list[xr.Dataset]":
+    """Feature tables of corpora that are scored together, as a model takes them: in its band, and cut into records as long as its own."""
+    from features.baselines.models import suited_to
+
+    suited = suited_to(model, *corpora)
+    analysis = Analysis(channel, suited.band, tuple(model.groups))
+    return [table_of(corpus, speed, team, analysis, suited.window) for corpus in corpora]
