@@ -11,7 +11,7 @@ libraries. A damaged one is made again. A lock keeps two processes from making i
 
 import hashlib
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from importlib.metadata import version
 from pathlib import Path
@@ -44,12 +44,11 @@ _LIBRARIES = ("scikit-learn", "skops", "numpy", "scipy", "numba")  # whose versi
 
 
 def train_and_score(
-    tables: Sequence["xr.Dataset"], estimator: str, team: Team = USUAL, analysis: Analysis = USUAL_ANALYSIS
+    table: "xr.Dataset", estimator: str, team: Team = USUAL, analysis: Analysis = USUAL_ANALYSIS
 ) -> tuple["Model", "Scores | None"]:
     """Model trained on a feature table without its test split, and its scores on that split, with progress.
 
-    A table without a test split, or with nothing else, is trained on as a whole and not scored. From a second table, of shorter records,
-    the model for these is trained, and from a third one that for a wider band; the scores are those of the first.
+    A table without a test split, or with nothing else, is trained on as a whole and not scored.
 
     Raises
     ------
@@ -59,28 +58,30 @@ def train_and_score(
     from features.baselines import DEFAULT_GROUPS, Model
     from gen.corpus import SPLITS
 
-    def trained(some: "xr.Dataset") -> "tuple[Model, Scores | None]":
-        test = some["split"].values == SPLITS.index("test")
-        # without both kinds of records there is nothing to score
-        whole = not test.any() or test.all()
-        with progress("training", "fits") as report:
-            workers = team.options(len(test))["workers"]
-            model = Model(estimator, groups=analysis.with_groups(DEFAULT_GROUPS))
-            model.fit(some if whole else some.isel(record=~test), workers=workers, progress=report)
-        return model, None if whole else model.score(some.isel(record=test))
-
-    (model, scores), *others = map(trained, tables)
-    model.shorter, model.wide = [*(other for other, _ in others), None, None][:2]
-    return model, scores
+    test = table["split"].values == SPLITS.index("test")
+    # without both kinds of records there is nothing to score
+    whole = not test.any() or test.all()
+    with progress("training", "fits") as report:
+        workers = team.options(len(test))["workers"]
+        model = Model(estimator, groups=analysis.with_groups(DEFAULT_GROUPS))
+        model.fit(table if whole else table.isel(record=~test), workers=workers, progress=report)
+    return model, None if whole else model.score(table.isel(record=test))
 
 
-def shipped_tables() -> "list[xr.Dataset]":
+def train_reference(long: "xr.Dataset", short: "xr.Dataset", wide: "xr.Dataset", estimator: str) -> "Model":
+    """Model of long records, with one for shorter records and one for a wider band, each from its table."""
+    model, shorter, wider = (train_and_score(table, estimator)[0] for table in (long, short, wide))
+    model.shorter, model.wide = shorter, wider
+    return model
+
+
+def shipped_tables() -> "tuple[xr.Dataset, xr.Dataset, xr.Dataset]":
     """Feature tables that ship with Raceway, of records of 2 s, of those of half a second, and of 2 s in a wider band."""
     from features.table.table_files import read_table
 
     shipped = read_table(SHIPPED_TABLE)
     long = shipped[DURATION].values == LONG
-    return [shipped.isel(record=long), shipped.isel(record=~long), read_table(WIDE_TABLE)]
+    return shipped.isel(record=long), shipped.isel(record=~long), read_table(WIDE_TABLE)
 
 
 def open_model(path: Path | None = None) -> tuple["Model", Path]:
@@ -120,7 +121,7 @@ def _kept(path: Path) -> "Model | None":
 
 def _trained(path: Path) -> "Model":
     notice(f"training the reference model; it is kept as {path}.")
-    model, _ = train_and_score(shipped_tables(), DEFAULT_ESTIMATOR)
+    model = train_reference(*shipped_tables(), DEFAULT_ESTIMATOR)
     path.unlink(missing_ok=True)
     model.save(path)
     return model

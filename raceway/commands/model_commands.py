@@ -72,7 +72,7 @@ def train(
 
     table = table_of(corpus, "off", team, analysis)
     notice_of_unknown(corpus, count_unknown(table))
-    model, scores = train_and_score([table], estimator, team, analysis)
+    model, scores = train_and_score(table, estimator, team, analysis)
     model.save(output)
     if as_json:
         names = ("records", "classes", "groups")

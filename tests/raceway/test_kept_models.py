@@ -27,7 +27,7 @@ def trainings(tiny_table, tmp_path, monkeypatch):
     """List that grows with each training; the table of the tiny corpus replaces the shipped one."""
     made = []
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(kept_models, "shipped_tables", lambda: made.append(1) or [tiny_table])
+    monkeypatch.setattr(kept_models, "shipped_tables", lambda: made.append(1) or (tiny_table,) * 3)
     return made
 
 
@@ -90,7 +90,7 @@ def test_evaluate_takes_the_reference_model_by_name_and_by_default(run, tiny_cor
 
 def test_benchmark_scores_trained_models_as_evaluate_does(run, tiny_corpus, tiny_table, trainings, tmp_path):
     path = tmp_path / "own.skops"
-    kept_models.train_and_score([tiny_table], "logistic_regression")[0].save(path)
+    kept_models.train_and_score(tiny_table, "logistic_regression")[0].save(path)
     models = ("--model", "reference", "--model", path)
     line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--estimator", "majority")
     done = run(*line, *models, "--json")
@@ -137,19 +137,18 @@ def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_p
         np.testing.assert_allclose(stored["features"], again["features"].sel(feature=names), rtol=1e-3, atol=1e-3)
 
 
-def test_further_tables_train_the_models_for_shorter_records_and_for_a_wider_band():
-    """The scores are on the test split of the first table."""
-    one, other = (make_table(records=48, seed=seed).assign(split=("record", np.arange(48) % 3)) for seed in (0, 1))
-    tables = [one.assign(duration=("record", np.full(48, 2.0))), other.assign(duration=("record", np.full(48, 0.5)))]
-    wide = tables[0].assign_attrs(band_low_hz=300.0, band_high_hz=9000.0)
-    model, scores = kept_models.train_and_score([*tables, wide], "logistic_regression")
-    alone, of_first = kept_models.train_and_score(tables[:1], "logistic_regression")
+def test_the_reference_model_has_models_for_shorter_records_and_for_a_wider_band():
+    of = [make_table(records=48, seed=seed).assign(split=("record", np.arange(48) % 3)) for seed in (0, 1)]
+    long, short = (
+        one.assign(duration=("record", np.full(48, lasting))) for one, lasting in zip(of, (2.0, 0.5), strict=True)
+    )
+    wide = long.assign_attrs(band_low_hz=300.0, band_high_hz=9000.0)
+    model = kept_models.train_reference(long, short, wide, "logistic_regression")
     assert (model.durations, model.shorter.durations, model.wide.band) == ((2.0, 2.0), (0.5, 0.5), (300.0, 9000.0))
-    assert (alone.shorter, alone.wide) == (None, None)
-    assert scores == of_first
-    np.testing.assert_array_equal(model.predict_proba(wide), model.wide.predict_proba(wide))
-    np.testing.assert_array_equal(model.predict_proba(tables[1]), model.shorter.predict_proba(tables[1]))
-    np.testing.assert_array_equal(model.predict_proba(tables[0]), alone.predict_proba(tables[0]))
+    for table in (long, short, wide):
+        alone, _ = kept_models.train_and_score(table, "logistic_regression")
+        assert (alone.shorter, alone.wide) == (None, None)
+        np.testing.assert_array_equal(model.predict_proba(table), alone.predict_proba(table))
 
 
 @pytest.mark.parametrize(("seconds", "told"), [(0.2, "0.2"), (1.0, "1"), (0.503, ""), (2.0, "")])
