@@ -20,6 +20,7 @@ from gen.support.errors import CorpusError
 from gen.support.units import keys_of
 
 MOST_CHARACTERS = 4000
+_QUOTED = re.compile(r"""('(?:\\.|[^'\\])*'|"(?:\\.|[^"\\])*")""")
 _EXAMPLE = "an example is fault == 'inner' and width_mm > 0.5."
 _ALLOWED = (
     ast.BoolOp, ast.boolop, ast.UnaryOp, ast.unaryop, ast.BinOp, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Compare, ast.Eq, ast.NotEq,
@@ -77,8 +78,10 @@ def records_where(text: str, variables: Variables) -> NDArray[np.intp]:
 
 def _evaluated(line: str, variables: Variables) -> pd.Series:
     """Whether a condition is true for each record, after a check of all that it names."""
-    # & and | bind as "and" and "or", as in every query of pandas; also within quotes, which has no effect on any check
-    tree = ast.parse(line.replace("&", " and ").replace("|", " or "), mode="eval").body
+    # & and | bind as "and" and "or", as in every query of pandas, but for those in quotes
+    parts = _QUOTED.split(line)
+    parts[::2] = [outside.replace("&", " and ").replace("|", " or ") for outside in parts[::2]]
+    tree = ast.parse("".join(parts), mode="eval").body
     columns = label_columns(variables)
     # a condition comes from strangers: names, numbers, texts and comparisons alone
     wrong = next((node for node in ast.walk(tree) if not _is_allowed(node)), None)

@@ -199,6 +199,14 @@ def test_channels_are_chosen_by_name_in_the_order_of_the_corpus():
             chosen_channels(names, none)
 
 
+@pytest.mark.parametrize("text", ["A&B", "R|S", "it's & so", 'a "b" | c'])
+def test_signs_in_quotes_are_part_of_the_text(text):
+    names = [text, text.replace("&", " and ").replace("|", " or "), "x"]
+    data = {"specimen": xr.DataArray(np.array(names, object)), "rig": xr.DataArray(np.arange(3))}
+    assert records_where(f"specimen == {text!r}", data).tolist() == [0]
+    assert records_where(f"specimen != {text!r}&rig < 2|rig == 2", data).tolist() == [1, 2]
+
+
 @given(st.sampled_from(["2", "205", "it", "6205", "", "x"]), st.booleans())
 def test_a_part_of_a_text_chooses_the_records_whose_text_holds_it(part, negated):
     """As Python means it; pandas would look for the part among all texts of the column."""
