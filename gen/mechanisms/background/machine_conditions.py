@@ -1,6 +1,5 @@
 """Conditions that the machine of a rig can have, and how a record is labelled with them."""
 
-import math
 from typing import TYPE_CHECKING, Any
 
 from gen.drawing import Section
@@ -9,14 +8,16 @@ from gen.mechanisms.background.rub import Rub
 from gen.mechanisms.background.shaft_lines import Belt, BentShaft, Misalignment, Unbalance
 from gen.mechanisms.background.source import MachineCondition
 from gen.mechanisms.mechanism import mechanisms_of, section_with, with_plugins
-from gen.support.units import to_si
 
 CONDITIONS: tuple[type[MachineCondition], ...] = with_plugins(
     MachineCondition, (Unbalance, BentShaft, Misalignment, Looseness, Rub, Belt)
 )
 """All conditions, in the order in which their vibrations are added and named."""
 
-_NAMED_FROM = 0.01  # of the static rating of the bearing; weaker forces leave the bearing as it is
+_BALANCED = 6.3e-3  # grade up to which rotors of general machinery count as balanced, ISO 21940-11 [m/s]
+_NAMED_FROM = (
+    0.01  # of the static rating of the bearing; every machine has weaker forces, which light loads do not hide
+)
 
 
 class _Conditions(Section):
@@ -34,17 +35,19 @@ else:
 def conditions_named(recipe: Any, rating: float) -> str:
     """Names of all conditions of the machine of a drawn recipe, joined by +, or `sound`.
 
-    The forces on the shaft that ``machine`` has, that of the unbalance at the highest speed, count from a hundredth of the static
-    ``rating`` of the bearing on [N]: neither depends on the record.
+    What ``machine`` has counts too: an unbalance above the grade G 6.3, forces from a hundredth of the static ``rating`` of the bearing on
+    [N], and any looseness. None depends on the record.
     """
     machine = recipe.machine.si()
-    fastest = to_si(recipe.machine.balance_rpm or 0.0, "rpm")
-    forces = {
-        "unbalance": recipe.machine.unbalance * (2 * math.pi * fastest) ** 2 if fastest else 0.0,
-        "bent_shaft": machine["bow"],
-        "misalignment": machine["misalignment"],
-        "looseness": math.inf if machine["looseness"] > 0 else 0.0,
-    }
     there = {condition.place for condition in mechanisms_of(recipe.machine_conditions)}
-    there |= {name for name, force in forces.items() if force > _NAMED_FROM * rating}
+    there |= {
+        name
+        for name, counts in (
+            ("unbalance", machine["balance"] > _BALANCED * (1 + 1e-9)),
+            ("bent_shaft", machine["bow"] > _NAMED_FROM * rating),
+            ("misalignment", machine["misalignment"] > _NAMED_FROM * rating),
+            ("looseness", machine["looseness"] > 0),
+        )
+        if counts
+    }
     return "+".join(condition.place for condition in CONDITIONS if condition.place in there) or "sound"
