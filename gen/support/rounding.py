@@ -22,4 +22,4 @@ def rounded_down(limit: float, digits: int = 4) -> str:
 
 
 def _rounded(limit: float, digits: int, rounding: str) -> str:
-    return f"{float(Context(prec=digits, rounding=rounding).create_decimal_from_float(float(limit))):.{digits}g}"
+    return f"{float(Context(prec=digits, rounding=rounding).create_decimal(repr(float(limit)))):.{digits}g}"

@@ -4,7 +4,7 @@ import math
 import re
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from gen.recipe import find_recipe, read_recipe
@@ -16,12 +16,16 @@ QUICKSTART = read_yaml(find_recipe("quickstart"), RecipeError)
 
 
 @given(st.floats(-1e15, 1e15), st.integers(1, 9))
+@example(0.1, 4)
+@example(2.3, 4)
 def test_a_printed_limit_is_on_the_allowed_side_and_within_one_digit(limit, digits):
     least, most = float(rounded_up(limit, digits)), float(rounded_down(limit, digits))
     assert most <= limit <= least
     assert least - most <= 1.01 * abs(limit) * 10 ** (1 - digits) + 1e-300
     if most == limit or least == limit:
         assert most == least
+    if float(f"{limit:.{digits}g}") == limit:  # a number of few digits is its own limit
+        assert most == least == limit
 
 
 def limit_in(pattern, recipe):
