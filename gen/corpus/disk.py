@@ -26,7 +26,7 @@ CARD_NAME, CROISSANT_NAME = "README.md", "croissant.json"  # written by ``racewa
 CARD_SUFFIX = ".card"
 """Suffix of the folder of the data card beside a corpus in a single file."""
 Stamp = tuple[int, int, int]
-"""Size, time of the last change, and that of the last change of this time [ns]; a file with a different stamp has changed."""
+"""Size of a file, time of its last change, and that of the last change of what the system knows of it [ns]."""
 
 _ADVICE = dict.fromkeys(
     (0, errno.ENOSPC, errno.EDQUOT, errno.EFBIG), "free some space or choose another folder"
@@ -104,7 +104,8 @@ def system_reason(error: Exception) -> str:
     """Reason of the system for an error, without the numbers and addresses with which HDF5 and netCDF give it; else its first line."""
     code = _code_of(error)
     text = os.strerror(code) if code else str(getattr(error, "strerror", None) or error) or type(error).__name__
-    return re.sub(r": \S+ = [^)]*", "", text.splitlines()[0])
+    first = next(filter(None, map(str.strip, text.splitlines())), type(error).__name__)
+    return re.sub(r": \S+ = [^)]*", "", first) if isinstance(error, OSError) else first
 
 
 def _code_of(error: Exception) -> int:

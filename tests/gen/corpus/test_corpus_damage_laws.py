@@ -110,6 +110,17 @@ def test_a_path_that_no_system_has_is_refused(tmp_path):
     assert_refused(tmp_path / ("x" * 300), r"x: could not be read \(File name too long\)")
 
 
+@pytest.mark.parametrize(
+    "alter", [lambda file: file.chmod(0o600), lambda file: os.link(file, file.with_suffix(".backup"))]
+)
+def test_a_corpus_stays_open_when_its_files_get_other_permissions_or_a_second_name(nine, tmp_path, alter):
+    shutil.copytree(nine, tmp_path / "all")
+    with open_corpus(tmp_path / "all" / "c") as opened:
+        for file in (tmp_path / "all" / "c" / "parts").iterdir():
+            alter(file)
+        assert opened[SIGNAL].values.shape == opened[SIGNAL].shape
+
+
 @pytest.mark.parametrize("name", FILES[:2])
 def test_a_changed_file_whose_time_was_put_back_is_seen_as_changed(nine, tmp_path, name):
     shutil.copytree(nine, tmp_path / "all")
