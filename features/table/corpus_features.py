@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 import xarray as xr
 
+from features.signal.arguments import check_positive
 from features.signal.rows import FloatArray, group_means
 from features.table.band import DEFAULT_BAND, Band, band_attributes, band_of, checked_band
 from features.table.channels import accelerations, channel_blocks, channel_number, joined_channels, orders_of
@@ -98,9 +99,12 @@ def feature_table(
     CorpusError
         If the corpus is unfinished, altered or has no such channel.
     ValueError
-        For a group or a treatment of speeds that does not exist, or a band that is too narrow or out of range.
+        For a group or a treatment of speeds that does not exist, a band that is too narrow or out of range, or a window that is no
+        positive number.
     """
     band = checked_band(*band)
+    if window is not None:
+        check_positive(window=window)
     # several channels are tables of one channel each, joined along a dimension
     if not isinstance(channel, int | str):
         each = partial(
@@ -117,7 +121,9 @@ def feature_table(
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
         lasts = {"long_name": "duration of the record", "units": "s"}
-        seconds = np.fmin(opened.sizes["elapsed_time"] / table["sample_rate"].values, window or np.inf)
+        seconds = np.fmin(
+            opened.sizes["elapsed_time"] / table["sample_rate"].values, np.inf if window is None else window
+        )
         table[DURATION] = "record", seconds, lasts
     treatment = checked_speed(speed, table)
     starts = np.cumsum([0, *(block.sizes["record"] for block in blocks)])

@@ -21,6 +21,6 @@ def durations_of(table: "xr.Dataset") -> tuple[float, ...]:
 
 def windows_of(signal: "FloatArray", fs: float, durations: "Sequence[float]") -> "FloatArray":
     """Consecutive windows of the longest of some durations [s], ([record,] time) to (window, time); a shorter signal is one window."""
-    length = min(round(max(durations, default=WINDOW) * fs), signal.shape[-1])
+    length = max(1, min(round(max(durations, default=WINDOW) * fs), signal.shape[-1]))
     count = signal.shape[-1] // length
     return signal[..., : count * length].reshape(-1, length)

@@ -221,6 +221,12 @@ def test_several_channels_have_the_features_of_each_in_columns_named_by_channel(
         np.testing.assert_array_equal(again[f"{name}_time_rms"].to_numpy(), own.sel(feature="time_rms"))
 
 
+@pytest.mark.parametrize("window", [0, -1, np.nan, np.inf, "x", [0.1]])
+def test_a_window_that_is_no_positive_number_is_refused(corpus, window):
+    with pytest.raises(ValueError, match="window"):
+        feature_table(corpus, window=window)
+
+
 @pytest.mark.parametrize("channel", ["housing", ("housing", "sensor")])
 def test_features_of_long_records_are_the_means_over_their_windows(corpus, channel):
     window = 0.11
