@@ -109,6 +109,11 @@ def _of_table(table: xr.Dataset, model: Fitted, reference: xr.Dataset | None) ->
                 "recordings and records of each other class; leave the reference out, or train on another corpus."
             )
             raise CorpusError(message)
+        if band_of(reference.attrs) != band_of(table.attrs):
+            raise CorpusError(
+                f"{title_of(reference)}: the features of the reference are computed from another band than those of the records; compute "
+                "both with one band."
+            )
         references = channels_of(reference)
         if len(references) != len(tables):
             raise CorpusError(

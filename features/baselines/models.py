@@ -211,7 +211,7 @@ class Model(Shown):
         Parameters
         ----------
         data
-            A feature table, or a corpus to compute features of.
+            A feature table, or a corpus to compute features of: of records longer than those of the training, by windows of that length.
         reference
             A feature table or corpus with healthy records of the tested rigs, which records are compared with. Records whose class is
             unknown count as healthy if there are no others. If it holds the records of ``data``, the first healthy recording of each rig
@@ -249,8 +249,13 @@ class Model(Shown):
         if _holds_signals(data) and reference is not None and _holds_signals(reference):
             check_durations(data, reference)
         groups = self.groups if reference is None else with_energies(tuple(self.groups))
-        signals = [source for source in (data, reference) if source is not None and _holds_signals(source)]
-        model = suited_to(self, *signals) if signals else self
+        sources = [source for source in (data, reference) if source is not None]
+        corpora = [source for source in sources if _holds_signals(source)]
+        tables = [source for source in sources if isinstance(source, xr.Dataset) and not _holds_signals(source)]
+        model = suited_to(self, *corpora) if corpora else self
+        # a corpus is compared with a table in the band of the table
+        if tables:
+            model = suited(self, durations_of(tables[0]), band_of(tables[0].attrs).high)
         # records longer than those of the training are cut, as recordings that are diagnosed
         computed = partial(_feature_table, groups=groups, band=Band(*model.band), window=model.window)
         table, healthy = (

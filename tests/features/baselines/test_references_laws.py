@@ -256,3 +256,11 @@ def test_evaluate_takes_a_corpus_as_reference(tmp_path):
     code, told = run(tmp_path / "nowhere")
     assert code
     assert f"{tmp_path / 'nowhere'}: " in told
+
+
+def test_a_reference_in_another_band_is_refused(model, table):
+    other = table.assign_attrs(band_low_hz=300.0, band_high_hz=9000.0)
+    with pytest.raises(
+        CorpusError, match="computed from another band than those of the records; compute both with one"
+    ):
+        predict(table, model, other)
