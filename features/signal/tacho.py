@@ -68,10 +68,11 @@ def angles_from_tacho(tacho: ArrayLike, pulses_per_turn: int = 1, threshold: flo
         angle[row, first:last] = course(time[first:last])
         for beyond, end in ((slice(0, first), pulses[0]), (slice(last, None), pulses[-1])):
             angle[row, beyond] = course(end) + course(end, 1) * (time[beyond] - end)
-        if max(-angle[row, 0], angle[row, -1] - course(pulses[-1])) > MOST_BEYOND * 2 * np.pi / pulses_per_turn:
-            raise ValueError(
-                f"tacho: record {row} has no pulse before sample {pulses[0]:.0f} and after {pulses[-1]:.0f}; cut those parts off."
-            )
+        ends = {f"before sample {pulses[0]:.0f}": -angle[row, 0]}
+        ends[f"after sample {pulses[-1]:.0f}"] = angle[row, -1] - course(pulses[-1])
+        silent = [place for place, turned in ends.items() if turned > MOST_BEYOND * 2 * np.pi / pulses_per_turn]
+        if silent:
+            raise ValueError(f"tacho: record {row} has no pulse {' and '.join(silent)}; cut off what lies there.")
     return like(tacho, angle)
 
 
