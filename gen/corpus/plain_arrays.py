@@ -67,11 +67,14 @@ def records_of_arrays(
     """
     if isinstance(signals, xr.Dataset):
         raise CorpusError("records: a Dataset has its own sample rate and labels; leave fs and labels out.")
-    if np.ma.isMaskedArray(signals):
+    if any(map(np.ma.isMaskedArray, (signals, *(signals if isinstance(signals, Sequence) else ())))):
         raise CorpusError(
             "records: a masked array has samples that are not known; fill them, or leave its records out."
         )
-    x, rate = np.asarray(signals), np.asarray(fs)
+    try:
+        x, rate = np.asarray(signals), np.asarray(fs)
+    except ValueError:
+        raise CorpusError("records: their signals have different lengths; cut them to one length.") from None
     if x.dtype.kind not in "iuf" or x.ndim not in (2, 3) or not x.size:
         raise CorpusError(f"records: {x.dtype} of shape {x.shape}; give numbers of shape (record, channel, time).")
     stated = rate.dtype.kind in "iuf" and rate.ndim == 0 and rate != 0

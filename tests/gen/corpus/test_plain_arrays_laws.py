@@ -73,6 +73,16 @@ WRONG = {
         {},
         "records: a masked array has samples that are not known",
     ),
+    "masked signals in a list": (
+        {"records": [np.ma.masked_greater(signal, 2) for signal in SIGNALS]},
+        {},
+        "records: a masked array has samples that are not known",
+    ),
+    "signals of different lengths": (
+        {"records": [SIGNALS[0], SIGNALS[1][:-1]]},
+        {},
+        "have different lengths; cut them",
+    ),
     "a bearing that is not known": (
         {},
         {"specimen": [1, np.nan, 2, 2, 3, 3]},
