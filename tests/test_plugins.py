@@ -187,6 +187,24 @@ def test_a_plugin_that_nothing_names_changes_no_byte(installed, tmp_path):
     assert first == second
 
 
+def test_a_source_that_draws_what_its_key_does_not_allow_is_refused(installed, tmp_path):
+    code = """
+from raceway_example import Hiss
+
+class Leak(Hiss):
+    place = "leak"
+
+    def draw(self, of):
+        return super().draw(of).model_copy(update={"level_db": 1000.0})
+"""
+    (tmp_path / "leaking.py").write_text(code)
+    leaking = distribution(tmp_path, "leaking", "1.0", {"raceway.mechanisms": {"leak": "leaking:Leak"}})
+    (tmp_path / "leak.yaml").write_text(RECIPE.replace("hiss:", "leak:"))
+    ((ended, said),) = run(tmp_path, ["generate leak.yaml -o corpus"], installed, leaking)
+    assert ended == 2
+    assert said.startswith("record 0: background.leak.level_db: 1000.0 was drawn, which is not in [-80, 40]")
+
+
 def test_a_plugin_that_cannot_be_loaded_is_named_and_the_others_work(tmp_path):
     broken = distribution(tmp_path, "broken", "1.0", {"raceway.commands": {"lost": "no_such_module:command"}})
     (_, listed), (code, called) = run(tmp_path, ["--help", "lost"], broken)
