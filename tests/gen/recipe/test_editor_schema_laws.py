@@ -14,6 +14,7 @@ from tests.paths import ROOT
 jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is in the extra test")
 SCHEMA = jsonschema.Draft202012Validator(json.loads(recipe_schema()))
 FIRST = read_yaml(find_recipe("quickstart"), RecipeError)
+ANGULAR = {"specimen": {"contact_angle_deg": 15}}
 
 
 def refused(recipe):
@@ -26,7 +27,7 @@ def refused(recipe):
 
 
 def page_recipes():
-    """YAML blocks of all pages, fenced or indented, that are recipes alone or in place of the same keys of a recipe."""
+    """YAML blocks of all pages, fenced or indented, that are recipes or parts of one, in place of the same keys of a recipe."""
     for page in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("recipes/*.md")]):
         text = page.read_text(encoding="utf-8")
         fenced = re.findall(r"```[^\n]*\n(?:%%writefile[^\n]*\n)?(.*?)```", text, re.DOTALL)
@@ -36,9 +37,9 @@ def page_recipes():
             except RecipeError:  # another language
                 continue
             if isinstance(keys, dict) and keys and keys.keys() <= Recipe.model_fields.keys():
-                recipe = FIRST | keys
-                if not refused(recipe):
-                    yield pytest.param(recipe, id=f"{page.relative_to(ROOT)}-{place}")
+                # a page may show some keys of an operation alone, such as an axial load, which needs a contact angle
+                operation = {"operation": FIRST["operation"] | keys.get("operation", {})}
+                yield pytest.param(FIRST | ANGULAR | keys | operation, id=f"{page.relative_to(ROOT)}-{place}")
 
 
 PAGES = list(page_recipes())
