@@ -83,6 +83,6 @@ def make_table(recipe: Recipe, band: Band = DEFAULT_BAND) -> xr.Dataset:
 
 
 if __name__ == "__main__":
-    for made, file in zip(reference_tables(), (SHIPPED_TABLE, WIDE_TABLE), strict=True):
+    for table, file in zip(reference_tables(), (SHIPPED_TABLE, WIDE_TABLE), strict=True):
         file.unlink(missing_ok=True)
-        write_table(made, file)
+        write_table(table, file)

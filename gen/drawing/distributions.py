@@ -343,7 +343,7 @@ def _instead_of(values: tuple[float, ...]) -> "Uniform | Choice":
     """Distribution that the writer of a list may have meant: a range if it has two ascending numbers, else a choice."""
     if len(values) == 2 and values[0] < values[1]:
         return Uniform(kind="uniform", low=values[0], high=values[1])
-    return Choice(kind="choice", values=values or (1.0, 2.0))
+    return Choice(kind="choice", values=values if 0 < len(values) <= 6 else (1.0, 2.0))
 
 
 def is_within(value: float, bounds: dict[str, Any], rounding: float = 0.0) -> bool:

@@ -90,9 +90,9 @@ def _others(scenario: Scenario, rig: RigFilters, angles: FloatArray) -> ComplexA
     for source in machine_sources_of(scenario.recipe):
         stream = partial(scenario.stream, source.place)
         for vibration in source.vibrations(angles, rig.fs, stream):
-            if np.shape(vibration) != angles.shape:
+            if np.shape(vibration) != angles.shape or not np.isfinite(vibration).all():
                 raise RacewayError(
-                    f"{source.place}: vibrations() gives shape {np.shape(vibration)} and not {angles.shape}."
+                    f"{source.place}: vibrations() gives shape {np.shape(vibration)}, or no finite numbers; give {angles.shape} of them."
                 )
             spectrum += rig.source_in_channels(vibration)
         source.add_impulses(hits, angles, rig.fs, stream)

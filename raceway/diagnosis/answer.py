@@ -74,7 +74,7 @@ def diagnose_recording(
     ----------
     recording
         At least 0.05 s; of more than 60 s the first 60 s are used. Several channels are axes of one housing.
-    given
+    machine
         The bearings it may be of, and the lowest and highest shaft rate. One bearing and one speed are believed unless
         the lines clearly tell another speed within 8 %.
     model

@@ -26,8 +26,8 @@ class Bursts(MachineSource):
     order: Distribution = within(0.05, 50, default=1.0)
     """Number of bursts in a turn of the shaft."""
     length_deg: Distribution = within(1, 180, default=30.0)
-    """Standard deviation of a burst about its middle, in degrees from burst to burst: 20 degrees put about three strong orders into the
-    envelope, 8 degrees eight."""
+    """Standard deviation of the amplitude of a burst about its middle, in degrees from burst to burst: 20 degrees put about three strong
+    orders into the envelope, 8 degrees eight."""
 
     def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> list[FloatArray]:
         """Bursts, whose angle belongs to the rig."""

@@ -22,7 +22,7 @@ class MachineSource(BackgroundSource):
     """A source that is computed ahead of the paths, from the angle of the shaft, random numbers, or both: vibrations, impulses, or both.
 
     ``angles`` are those of the shaft [rad], shape (time,), and ``fs`` is the sample rate [Hz]. The ``stream`` of the rig gives phases that
-    belong to it, that of the record what is random in a record.
+    belong to it, that of the record what is random in a record. Each call of ``stream`` begins with the same numbers again.
     """
 
     def vibrations(self, angles: FloatArray, fs: float, stream: Streams) -> Sequence[Vibration]:

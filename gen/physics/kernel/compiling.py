@@ -200,7 +200,7 @@ def square_root(x: float) -> float:
 
 @njit(**INLINE)
 def ninth_root(x: float) -> float:
-    """Ninth root of 0 or of a positive number, to 1e-14 of its value, without a root or a division.
+    """Ninth root of 0 or of a number from 1e-300 on, to 1e-14 of its value, without a root or a division.
 
     A ninth of the exponent gives ``y = x**(-1/9)`` to 3 %. With ``e = 1 - x y**9``, two steps multiply it by the series of
     ``(1 - e)**(-1/9)``.
