@@ -67,7 +67,7 @@ def records_of_arrays(
     """
     if isinstance(signals, xr.Dataset):
         raise CorpusError("records: a Dataset has its own sample rate and labels; leave fs and labels out.")
-    if any(map(np.ma.isMaskedArray, (signals, *(signals if isinstance(signals, Sequence) else ())))):
+    if any(map(np.ma.is_masked, (signals, *(signals if isinstance(signals, list | tuple) else ())))):
         raise CorpusError(
             "records: a masked array has samples that are not known; fill them, or leave its records out."
         )
@@ -95,12 +95,14 @@ def records_of_arrays(
     for key in labels.keys():  # noqa: SIM118 - of a DataFrame too
         if key not in keys:
             raise CorpusError(f"labels: there is no column {key}{nearest(f'{key}', [*keys])}")
-        (name, factor), values = keys[key], np.asarray(labels[key])
-        if values.shape not in ((), (len(x),)):
-            raise CorpusError(f"labels: {key} has shape {values.shape}, not one value for each of {len(x)} records.")
+        (name, factor), values = keys[key], _values(labels[key])
+        nested = values.dtype.kind == "O" and any(map(np.ndim, values.flat))
+        if nested or values.shape not in ((), (len(x),)):
+            shape = f"{values.shape}{' of lists' * nested}"
+            raise CorpusError(f"labels: {key} has shape {shape}, not one value for each of {len(x)} records.")
         # a missing quantity is NaN in a corpus too, but a missing name would be a name
         missing = variables[name].dtype != "f8" and pd.isna(values).any()
-        if missing or np.ma.isMaskedArray(labels[key]):
+        if missing or np.ma.is_masked(labels[key]):
             raise CorpusError(
                 f"labels: {key} is masked or lacks values; give one for each record, or leave the column out."
             )
@@ -118,6 +120,14 @@ def records_of_arrays(
     channels = tuple(f"channel_{number}" for number in range(1, signal.shape[1] + 1))
     attributes = {"title": "Vibration records", "history": "written from arrays"}
     return make_dataset(signal, float(rate), channels, columns, attributes=attributes)
+
+
+def _values(of_records: ArrayLike) -> NDArray[Any]:
+    """Values of a label; lists of different lengths among them as they are."""
+    try:
+        return np.asarray(of_records)
+    except ValueError:
+        return np.asarray(of_records, object)
 
 
 def _column(name: str, values: NDArray[Any], factor: float, dtype: str) -> NDArray[Any]:

@@ -88,6 +88,11 @@ WRONG = {
         {"specimen": [1, np.nan, 2, 2, 3, 3]},
         "labels: specimen is masked or lacks values; give one",
     ),
+    "bearings in lists": (
+        {},
+        {"specimen": [[1], [1, 2], [2], [2], [3], [3]]},
+        "specimen has shape (6,) of lists, not one value for each",
+    ),
     "a bearing without a name": (
         {},
         {"specimen": ["a", None, *"bbcc"]},
