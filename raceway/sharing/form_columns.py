@@ -33,7 +33,7 @@ class Column(NamedTuple):
     flags: Mapping[int, str]
     """Names of the values of a class variable by their codes, ascending; empty otherwise.
 
-    In a file, the classes of plug-ins that its records have follow the built-in ones, so that names without records are left out here.
+    Of the classes of bearings, those of plug-ins are here only if records have them, as in a file.
     """
 
     def of(self, records: xr.Dataset) -> NDArray[Any]:
@@ -56,9 +56,9 @@ def columns_of(chosen: Chosen) -> list[Column]:
 def _column(chosen: Chosen, name: str, variable: str) -> Column:
     array = chosen.corpora[0][variable].variable
     names = class_names(array.attrs)
-    codes = set(chosen.values(variable).tolist()) if names else set()
-    always = range(len(BUILT_IN)) if variable == "fault" else names
-    flags = {code: names[code] for code in sorted(names) if code in codes or code in always}
+    # other class variables have no names of plug-ins
+    codes = {*range(len(BUILT_IN)), *chosen.values(variable).tolist()} if variable == "fault" else names.keys()
+    flags = {code: names[code] for code in sorted(names) if code in codes}
     is_text = bool(names) or array.dtype.kind not in "iuf"
     units, role, meaning = (str(array.attrs.get(key, "")) for key in ("units", "role", "long_name"))
     return Column(name, variable, None if is_text else array.dtype, units, role, meaning, flags)
