@@ -88,9 +88,9 @@ def feature_table(
     -------
     Dataset
         ``features (record, feature)``, or ``(channel, record, feature)`` of several channels, coordinates ``feature`` (names),
-        ``group``, ``units`` and ``long_name`` (meanings), the ``duration`` of each record [s], all variables of the records except
-        ``draws``, which is larger than the rest of the table, and the attributes of the corpus with the ``channel``, band and
-        ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_estimate`` and
+        ``group``, ``units`` and ``long_name`` (meanings), the ``duration`` of each record, or of its windows [s], all variables of the
+        records except ``draws``, which is larger than the rest of the table, and the attributes of the corpus with the ``channel``, band
+        and ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_estimate`` and
         ``shaft_rate_uncertainty`` [Hz], ``shaft_rate_evidence`` (0: not clear) and, as an attribute, the number of
         ``recordings_with_other_speed``.
 
@@ -120,7 +120,7 @@ def feature_table(
         # labels are read at once, signals block by block
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
-        lasts = {"long_name": "duration of the record", "units": "s"}
+        lasts = {"long_name": "duration of the signal that features are computed of", "units": "s"}
         seconds = np.fmin(
             opened.sizes["elapsed_time"] / table["sample_rate"].values, np.inf if window is None else window
         )

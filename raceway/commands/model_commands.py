@@ -182,7 +182,7 @@ def warn_of_seen(model: str, scores: "Scores") -> None:
 
 
 def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
-    """Warn of records that are shorter or longer than those of the training."""
+    """Warn of records of another duration than those of the training, or of longer ones in a table that was not made for the model."""
     from features.baselines.classifying import SAME_DURATION, suited
     from features.table.band import band_of
     from features.table.durations import durations_of

@@ -2,9 +2,9 @@
 
 ``recording -> quality -> pairs of bearing and speed -> of each: features -> prediction, band spectra -> evidence -> verdict``
 
-Bearing and speed are searched within what is given. The verdict is that of the classifier if the lines agree with it, and
-"unsure" if they do not, if pairs that cannot be told apart give different classes, if no pair explains a strong comb, or if
-the signal tells nothing. Evidence is measured in the signal alone, whatever the verdict.
+Bearing and speed are searched within what is given. The verdict is that of the classifier if the lines agree with it. No part
+is named if they do not, if pairs that cannot be told apart give different classes, if no pair explains a strong comb, or if the
+signal tells nothing: then it is "unsure", or "damaged" where a fault is certain. Evidence is measured in the signal alone.
 """
 
 from __future__ import annotations
@@ -225,7 +225,7 @@ def _conclude(
     *,
     compared: bool,
 ) -> Diagnosis:
-    """Diagnosis at the first pair, "unsure" if others give another class or if a strong comb is not explained."""
+    """Diagnosis at the first pair; no part is named if others give another class or if a strong comb is not explained."""
     first = judged[0]
     differing = len({each.verdict for each in judged}) > 1
     why, advice = first.why, ["Measure the speed during the recording, and check the bearing designation."]

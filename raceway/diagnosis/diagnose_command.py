@@ -99,7 +99,7 @@ def diagnose(
       raceway diagnose spring_campaign --channel 1 --bearing 6205 --speed-table speeds.csv
 
     All axes of one sensor are used, such as x, y, z; --channel chooses. Give a speed, a bearing or both. The answer names the pair of
-    bearing and speed that explains the lines, and is "unsure" if pairs that cannot be told apart give different answers.
+    bearing and speed that explains the lines, and names no part if pairs that cannot be told apart give different answers.
 
     --json prints verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic, band), levels and explanations
     (bearing, alike, shaft_rpm, uncertainty_rpm, lines, as_given), and further facts.
