@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from sklearn.dummy import DummyClassifier
 from sklearn.neighbors import KNeighborsClassifier
 
 from gen.corpus import FAULTS
@@ -109,7 +110,7 @@ def test_alarms_and_delays_are_those_that_one_counts_by_hand():
 
 
 def test_a_snapshot_of_unknown_stage_is_neither_healthy_nor_faulty():
-    """Loud ones of unknown stage would raise the threshold, and teach that loud is healthy."""
+    """Loud ones of unknown stage would raise the threshold."""
     louder = table(5).copy(deep=True)
     unknown = louder["age"].values < 50 * HOUR
     louder["features"].values[unknown, 0] = 40.0
@@ -118,6 +119,25 @@ def test_a_snapshot_of_unknown_stage_is_neither_healthy_nor_faulty():
     warned, without = (warn_early(of, table(6), **options) for of in (louder, louder.isel(record=~unknown)))
     assert warned.drop(columns="allowed").equals(without.drop(columns="allowed"))
     assert (warned.missed == 0).all()
+
+
+def test_no_classifier_learns_from_snapshots_of_unknown_stage():
+    fitted_to = []
+
+    class Recorder(DummyClassifier):
+        def fit(self, X, y):
+            fitted_to.append(X["raw_kurtosis"])
+            return super().fit(X, y)
+
+    first = TRAINED["features"].values[:, 0] == 1  # of each bearing
+    for stage, learnt in (
+        (TRAINED["stage"], [1, 1, 2]),
+        (TRAINED["stage"].where(xr.DataArray(~first, dims="record"), 3), [0, 0, 0]),
+    ):
+        fitted_to.clear()
+        warn_early(TRAINED.assign(stage=stage), TRIED, estimator=Recorder)
+        # a fit for each bearing that is held out for the threshold, and one to both
+        assert [int((values == 1).sum()) for values in fitted_to] == learnt
 
 
 @pytest.mark.parametrize(
