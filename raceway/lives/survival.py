@@ -71,4 +71,7 @@ def weibull(entry: FloatArray, end: FloatArray, failed: BoolArray) -> tuple[floa
 
 def weibull_median_left(slope: float, scale: float, age: FloatArray) -> FloatArray:
     """Time in which half of the bearings of some ages fail."""
-    return scale * ((age / scale) ** slope + np.log(2)) ** (1 / slope) - age
+    # by logarithms, since powers of a steep slope overflow
+    with np.errstate(divide="ignore"):
+        hazard = slope * np.log(age / scale)
+    return np.maximum(scale * np.exp(np.logaddexp(hazard, np.log(np.log(2))) / slope) - age, 0.0)

@@ -7,7 +7,7 @@ import xarray as xr
 from gen.corpus.schema import identity
 from gen.support.errors import CorpusError
 from raceway.lives.prognosis import age_and_features, lives_of, score_lives, scores_of
-from raceway.lives.survival import kaplan_meier, weibull
+from raceway.lives.survival import kaplan_meier, weibull, weibull_median_left
 
 CADENCE = 10.0
 
@@ -138,6 +138,19 @@ def test_the_weibull_fit_finds_the_distribution_of_censored_lives(late):
     slope, scale = weibull(*drawn(np.random.default_rng(2), 20_000, late))
     assert slope == pytest.approx(SLOPE, rel=0.03)
     assert scale == pytest.approx(SCALE, rel=0.03)
+
+
+def test_half_of_the_bearings_of_an_age_live_for_the_median_of_a_weibull_distribution():
+    age = np.array([0.0, 100.0, 1000.0, 5000.0])
+    left = weibull_median_left(SLOPE, SCALE, age)
+    np.testing.assert_allclose(((age + left) / SCALE) ** SLOPE - (age / SCALE) ** SLOPE, np.log(2), rtol=1e-9)
+
+
+def test_a_fit_to_one_life_leaves_no_time_beyond_it():
+    """Its slope is as steep as numbers allow."""
+    slope, scale = weibull(np.zeros(1), np.array([SCALE]), np.ones(1, bool))
+    left = weibull_median_left(slope, scale, np.array([0.0, 0.5, 1.0, 2.0]) * SCALE)
+    np.testing.assert_allclose(left, np.array([1.0, 0.5, 0.0, 0.0]) * SCALE, atol=1e-6)
 
 
 def test_bearings_of_one_name_are_told_apart():
