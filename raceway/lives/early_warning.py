@@ -89,8 +89,8 @@ def warn_early(
     Raises
     ------
     CorpusError
-        If a table has no lives, it is not known when a spall can be seen, the tables have a bearing in common or other features, or no
-        snapshot before spalls or of visible ones is there to train or test on.
+        If a table has no lives, it is not known when a spall can be seen, the tables have a bearing in common or other features, a
+        training has one bearing, or no snapshot before spalls or of visible ones is there to train or test on.
     """
     if not 0 <= alarms_per_1000_h < np.inf:
         raise CorpusError(f"alarms_per_1000_h: {alarms_per_1000_h:g} is not a finite number from 0; use 1 or so.")
@@ -104,10 +104,13 @@ def warn_early(
     else:
         splits = bearing_folds(watched.bearing, folds)
         pairs = [(watched.some(train), watched.some(test)) for train, test in splits]
+    # each bearing of a training gets its numbers from a fit to others
+    if min(len(np.unique(train.bearing)) for train, _ in pairs) < 2:
+        raise CorpusError("a training has one bearing; use more bearings.")
     if not all(train.intact.any() for train, _ in pairs):
-        raise CorpusError("early warning: a training has no snapshot before spalls begin; use more bearings.")
+        raise CorpusError("a training has no snapshot before spalls begin; use more bearings.")
     if not any((test.age >= test.seen_from).any() for _, test in pairs):
-        raise CorpusError("early warning: no tested bearing has a spall that can be seen; test more bearings.")
+        raise CorpusError("no tested bearing has a spall that can be seen; test more bearings.")
     allowed = [alarms_per_1000_h * _hours(train) / 1000 for train, _ in pairs]
     rows = {}
     for name, detector in detectors.items():
@@ -165,7 +168,7 @@ def _of_classifier(estimator: str | Maker, seed: int) -> Detector:
         """Probability of a fault in snapshots of others."""
         lives = fitted_to.some(np.flatnonzero(fitted_to.fault != UNKNOWN_CODE))
         if len(np.unique(lives.fault)) < 2:
-            raise CorpusError("early warning: a training has no two classes to tell apart; use more bearings.")
+            raise CorpusError("a training has no two classes to tell apart; use more bearings.")
         fitted = make_estimator(estimator, seed).fit(lives.features, lives.fault)
         sound = fitted.classes_ == FAULTS.index(HEALTHY)
         return 1 - class_probabilities(fitted, others.features)[:, sound].sum(axis=1)
@@ -173,7 +176,7 @@ def _of_classifier(estimator: str | Maker, seed: int) -> Detector:
     def detect(train: Watched, test: Watched) -> tuple[FloatArray, FloatArray]:
         # no bearing of the training has numbers from a fit to itself
         held_out = np.empty(len(train.age))
-        for rest, own in bearing_folds(train.bearing, max(2, min(_HELD_OUT, len(np.unique(train.bearing))))):
+        for rest, own in bearing_folds(train.bearing, min(_HELD_OUT, len(np.unique(train.bearing)))):
             held_out[own] = numbers_of(train.some(rest), train.some(own))
         return held_out, numbers_of(train, test)
 

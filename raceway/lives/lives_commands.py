@@ -86,10 +86,11 @@ def prognose(
     try:
         warned = warn_early(table, other, alarms_per_1000_h=rate, folds=folds)
     except CorpusError as error:
+        sentence = f"no early warning: {error}"
         # who asks for a rate wants early warning
         if false_alarms is not None:
-            raise
-        notice(f"{error}")
+            raise CorpusError(sentence) from None
+        notice(f"warning: {sentence}")
     if as_json:
         warnings = {} if warned is None else {"early_warning": warned.to_dict("index")}
         show.as_json({"lives": scores.to_dict("index")} | warnings)

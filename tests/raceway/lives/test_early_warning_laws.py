@@ -147,6 +147,8 @@ def test_no_classifier_learns_from_snapshots_of_unknown_stage():
         (TRAINED, TRIED.assign(first_detectable_time=np.nan * TRIED["age"]), {}, "the table of the tested bearings: knows of no spall"),
         (TRAINED.drop_vars("stage"), None, {}, "the feature table: has no lives"),
         (TRAINED, TRIED.drop_vars("stage"), {}, "the table of the tested bearings: has no lives"),
+        (TRAINED, None, {"folds": 2}, "^a training has one bearing; use more bearings"),
+        (TRAINED.isel(record=slice(10)), TRIED, {}, "^a training has one bearing; use more bearings"),
         (TRAINED.assign(stage=TRAINED["stage"] + 1), TRIED, {}, "has no snapshot before spalls begin"),
         (TRAINED.assign(fault=0 * TRAINED["fault"]), TRIED, {}, "has no two classes to tell apart"),
         (TRAINED, TRIED.isel(record=TRIED["age"].values < 5 * HOUR), {}, "no tested bearing has a spall that can be seen"),

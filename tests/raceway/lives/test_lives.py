@@ -57,10 +57,22 @@ def test_without_twins_early_warning_is_left_out_but_not_for_those_who_ask_for_i
         "knows of no spall when it can first be seen; early warning needs simulated lives with truth.twins: true.\n"
     )
     shown = run("prognose", tmp_path / "c", "--folds", 2)
-    assert shown.stderr.endswith(f"the feature table: {sentence}")
+    assert shown.stderr.endswith(f"\nwarning: no early warning: the feature table: {sentence}")
     assert "early warning" not in shown.stdout
     refused = run("prognose", tmp_path / "c", "--false-alarms", 1)
     assert (refused.exit_code, refused.stderr) == (2, f"{tmp_path / 'c'}: {sentence}")
+
+
+@pytest.mark.usefixtures("tables_once")
+@pytest.mark.parametrize(("options", "code", "begun"), [((), 0, "warning: "), (("--false-alarms", 1), 2, "")])
+def test_a_reason_against_early_warning_says_what_is_missing(run, lives, monkeypatch, options, code, begun):
+    def refuse(*_, **__):
+        raise CorpusError("a training has one bearing; use more bearings.")
+
+    monkeypatch.setattr("raceway.lives.early_warning.warn_early", refuse)
+    shown = run("prognose", lives, "--folds", 2, *options)
+    assert shown.exit_code == code
+    assert shown.stderr.splitlines()[-1] == f"{begun}no early warning: a training has one bearing; use more bearings."
 
 
 @pytest.mark.parametrize("options", [(), ("--test",)])
