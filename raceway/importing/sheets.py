@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+import struct
 import zipfile
 from collections.abc import Iterator
 from datetime import date, datetime
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gen.support.limits import check_limit
 from raceway.importing.numerals import is_number
@@ -24,11 +26,12 @@ _MOST_ROWS = 1_048_576
 _OLD_BYTES = 7_300_000  # of an old Excel file whose head lists all of its tables of sectors
 _CHUNK = 4_000_000  # bytes
 _OLD_SHAPE = (65_536, 256)  # rows and columns of an old Excel file
-# record of the shape of a sheet, whose first bytes are also those of a cell in row 512 after the head of its record
-_OLD_DIMENSIONS = re.compile(
-    rb"(?<![\x01\x03-\x06\x7e\xbd\xbe\xd6\xfd][\x00\x02\x04].\x00)\x00\x02(?:\x0e\x00.{4}(.{4})..(..)|\x0a\x00..(..)..(..))",
-    re.DOTALL,
-)
+_PLACE, _SHAPE, _END = (
+    0x85,
+    0x200,
+    0x0A,
+)  # records of an old Excel file: place of a sheet, its shape, and the end of a part
+_MINI = 4096  # bytes; a shorter stream lies in sectors of 64 bytes, which are parts of the stream of the first entry
 
 
 def read_sheet(path: Path, sheet: str | None) -> NumberTable:
@@ -89,7 +92,10 @@ def _check_size(path: Path) -> int:
 
 
 def _check_old_excel(path: Path) -> None:
-    """Refuse an old Excel file with a ring of sectors or the shape of a larger sheet, for which the library takes memory until it ends."""
+    """Refuse an old Excel file with a ring of sectors or the shape of a larger sheet, for which the library takes memory until it ends.
+
+    Source: Microsoft, [MS-CFB] of sectors and directories, and [MS-XLS] of records.
+    """
     with path.open("rb") as stream:
         content = stream.read(_OLD_BYTES)
     if not content.startswith(b"\xd0\xcf\x11\xe0"):
@@ -110,12 +116,50 @@ def _check_old_excel(path: Path) -> None:
         place = place[place]
     if np.any(place < end) or counts.max() > len(content) // size or head[17] < len(content):
         raise UnusableError("is damaged, or an old Excel file above 6.8 MB; save it as .xlsx")
-    for match in _OLD_DIMENSIONS.finditer(content):
-        rows, columns = (int.from_bytes(number, "little") for number in match.groups() if number is not None)
-        if rows > _OLD_SHAPE[0] or columns > _OLD_SHAPE[1]:
-            raise UnusableError(
-                f"has a sheet of {rows} rows and {columns} columns, more than an old Excel file can have; save it as .xlsx"
-            )
+    sectors = content[size:]
+    directory = _chain(sectors, following, int(head[12]), size)
+    entries = [directory[start : start + 128] for start in range(0, len(directory), 128)]
+    for entry in entries:
+        if entry[:64].decode("utf-16le", "replace").partition("\0")[0] in ("Workbook", "Book"):
+            start, length = struct.unpack_from("<II", entry, 116)
+            if length >= _MINI:
+                stream = _chain(sectors, following, start, size)
+            else:
+                whole = _chain(sectors, following, *struct.unpack_from("<I", entries[0], 116), size)
+                shorter = np.frombuffer(_chain(sectors, following, int(head[15]), size), "<u4")
+                stream = _chain(whole, shorter, start, 64)
+            _check_shapes(stream)
+
+
+def _chain(sectors: bytes, following: NDArray[np.uint32], start: int, size: int) -> bytes:
+    """Content of the sectors from one on, each of which leads to the one after it, and the last to none."""
+    parts: list[bytes] = []
+    while start < following.size and len(parts) < following.size:
+        parts.append(sectors[start * size :][:size])
+        start = int(following[start])
+    return b"".join(parts)
+
+
+def _check_shapes(stream: bytes) -> None:
+    """Refuse the stream of a workbook in which a sheet states a larger shape than an old Excel file can have."""
+    for place in {int.from_bytes(content[:4], "little") for kind, content in _records(stream, 0) if kind == _PLACE}:
+        for kind, content in _records(stream, place):
+            if kind == _SHAPE and len(content) in (10, 14):
+                first, last, _, columns = struct.unpack_from("<IIHH" if len(content) == 14 else "<4H", content)
+                rows = (last - first) % 2**32 if last and columns else 0  # as the library counts them
+                if rows > _OLD_SHAPE[0] or columns > _OLD_SHAPE[1]:
+                    raise UnusableError(
+                        f"has a sheet of {rows} rows and {columns} columns, more than an old Excel file can have; save it as .xlsx"
+                    )
+
+
+def _records(stream: bytes, place: int) -> Iterator[tuple[int, bytes]]:
+    """Kind and content of each record from a place in the stream of a workbook on, up to the end of that part."""
+    kind = 0
+    while kind != _END and place + 4 <= len(stream):
+        kind, length = struct.unpack_from("<HH", stream, place)
+        yield kind, stream[place + 4 : place + 4 + length]
+        place += 4 + length
 
 
 def _blocks(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterator[bytes]:

@@ -67,35 +67,6 @@ def ods_row(*cells, times=1):
     return f'<table:table-row table:number-rows-repeated="{times}">{"".join(texts)}</table:table-row>'
 
 
-def xls(path, columns=1):
-    xlwt = pytest.importorskip("xlwt", reason="xlwt writes old Excel files for this test alone")
-    pytest.importorskip("python_calamine", reason="python-calamine is in the extra files")
-    book = xlwt.Workbook()
-    sheet = book.add_sheet("Data")
-    for row, cells in enumerate(
-        [("t [s]", *["x [g]"] * columns), *zip(T.tolist(), *[X.tolist()] * columns, strict=True)]
-    ):
-        for column, cell in enumerate(cells):
-            sheet.write(row, column, cell)
-    book.save(str(path))
-
-
-def ring(path):
-    """Old Excel file with a sector that leads to itself, which python-calamine would follow without end."""
-    xls(path)
-    content = bytearray(path.read_bytes())
-    table = 512 * (1 + int.from_bytes(content[76:80], "little"))
-    content[table : table + 4] = bytes(4)
-    path.write_bytes(content)
-
-
-def huge(path):
-    """Old Excel file that states a sheet of four billion rows, for which python-calamine would take memory."""
-    xls(path)
-    head, dimensions, rest = path.read_bytes().rpartition(b"\0\2\x0e\0")
-    path.write_bytes(head + dimensions + rest[:4] + b"\xff" * 4 + rest[8:])
-
-
 def parquet(path):
     pytest.importorskip("pyarrow", reason="pyarrow is in the extra files")
     pd.DataFrame({"t [s]": T, "x [g]": X, "who": "me"}).to_parquet(path)
@@ -118,7 +89,6 @@ READ = {
     "text.uff": (lambda path: uff(path, ("DE", "g", X, {})), G * X),
     "binary.unv": (lambda path: uff(path, ("DE", "m/s^2", X, {}), binary=1), X),
     "sheet.ods": (lambda path: ods(path, SHEET + ods_row("", times=10_000)), G * X),
-    "old.xls": (xls, G * X),
     "frame.parquet": (parquet, G * X),
     "archive.npz": (lambda path: np.savez(path, x=X, fs=FS), X),
     "channels.lvm": (
@@ -137,12 +107,6 @@ def test_values_unit_and_rate_are_those_that_were_written(tmp_path, name):
     signal = read_signal(tmp_path / name, column=column)
     np.testing.assert_allclose(signal.values, expected, rtol=1e-9, atol=1e-10)
     assert signal.fs == FS
-
-
-def test_a_cell_of_an_old_excel_file_is_not_taken_for_the_shape_of_its_sheet(tmp_path):
-    xls(tmp_path / "a.xls", columns=15)
-    assert b"\x0e\0\0\2\x0e\0" in (tmp_path / "a.xls").read_bytes()
-    np.testing.assert_allclose(read_signal(tmp_path / "a.xls", column=14).values, G * X)
 
 
 def test_scales_of_tdms_channels_are_applied(tmp_path):
@@ -166,8 +130,6 @@ REFUSED = {
     "damaged.npz": (lambda path: path.write_bytes(b"PK\3\4" + bytes(40)), "is truncated, damaged or not a NumPy file"),
     "pickle.npz": (lambda path: np.savez(path, x=np.array([{}], dtype=object)), "is truncated, damaged or not a NumPy file"),
     "two.npz": (lambda path: np.savez(path, de=X, fe=Y), "holds de, fe, more than one variable with 100 numbers or more; name one with"),
-    "ring.xls": (ring, "is damaged, or an old Excel file above 6.8 MB; save it as .xlsx."),
-    "huge.xls": (huge, "has a sheet of 4294967295 rows and 2 columns, more than an old Excel file can have; save it as .xlsx."),
     "line_break.tdms": (lambda path: tdms(path, ("p\nq", "Pa", X)), "states column 0 p?q in Pa in its header"),
     "repeated.ods": (lambda path: ods(path, ods_row(*[0.5] * 100, times=1_000_000)), "has a sheet of 100000000 cells, which takes"),
 }  # fmt: skip
