@@ -1,5 +1,6 @@
 """Arguments and options that several commands share; the place for the result is checked before any work is done."""
 
+import math
 from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
@@ -156,6 +157,13 @@ def names(_context: click.Context, _option: click.Parameter, text: str | None) -
     if not all(words):
         raise click.BadParameter(f"{text!r} has an empty name; separate names by one comma")
     return words
+
+
+def finite(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
+    """Finite number, since nan passes every range and inf those without an upper end."""
+    if value is not None and not math.isfinite(value):
+        raise click.BadParameter(f"{value} is not a finite number")
+    return value
 
 
 channels_option: Decorator = click.option(

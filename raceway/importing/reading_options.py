@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import click
 
-from raceway.console.options import Decorator, gathered, names
+from raceway.console.options import Decorator, finite, gathered, names
 
 UNITS = ("g", "mg", "m/s2", "mm/s2", "V", "mV")
 MARKS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
@@ -70,12 +70,6 @@ def check_speed(speeds: Speeds | None, reading: Reading, table: Path | None = No
         raise click.UsageError("--speed-unit is that of --speed-column, which is missing; give it, or leave both out")
 
 
-def _a_number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
-    if value is not None and math.isnan(value):  # it passes every range
-        raise click.BadParameter("nan is not a number")
-    return value
-
-
 def mark_of(_context: click.Context, _option: click.Parameter, name: str | None) -> str | None:
     """Mark between columns by its name."""
     return MARKS.get(name or "")
@@ -91,7 +85,7 @@ rpm_option: Decorator = click.option(
 _rate: Decorator = click.option(
     "--rate",
     type=click.FloatRange(1, 1e8),
-    callback=_a_number,
+    callback=finite,
     metavar="HZ",
     help="Sample rate, unless the file states it in one of the forms of docs/importing.md.",
 )
@@ -104,7 +98,7 @@ _unit: Decorator = click.option(
 _sensitivity: Decorator = click.option(
     "--sensitivity",
     type=click.FloatRange(1e-6, 1e6),
-    callback=_a_number,
+    callback=finite,
     metavar="MV_PER_G",
     help="Of the sensor [mV per g], if the values are voltages.",
 )

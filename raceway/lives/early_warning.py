@@ -7,6 +7,7 @@ which is known by the twin of the record, the same machine without the spall: no
 """
 
 from collections.abc import Callable
+from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
@@ -92,8 +93,8 @@ def warn_early(
         If a table has no lives, it is not known when a spall can be seen, the tables have a bearing in common or other features, a
         training has one bearing, or no snapshot before spalls or of visible ones is there to train or test on.
     """
-    if not 0 <= alarms_per_1000_h < np.inf:
-        raise CorpusError(f"alarms_per_1000_h: {alarms_per_1000_h:g} is not a finite number from 0; use 1 or so.")
+    if not isinstance(alarms_per_1000_h, Real) or not 0 <= alarms_per_1000_h < np.inf:
+        raise CorpusError(f"alarms_per_1000_h: {alarms_per_1000_h!s:.60} is not a finite number from 0; use 1 or so.")
     watched = _watched(table, "the feature table")
     detectors: dict[str, Detector] = {name: _of_feature(name) for name in FEATURES if name in watched.features}
     name_of_estimator = estimator if isinstance(estimator, str) else maker_name(estimator)

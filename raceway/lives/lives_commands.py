@@ -10,6 +10,7 @@ from raceway.console.options import (
     A_CORPUS,
     Team,
     corpus_argument,
+    finite,
     json_option,
     picture_option,
     worker_options,
@@ -51,6 +52,7 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
 @click.option(
     "--false-alarms",
     type=click.FloatRange(0),
+    callback=finite,
     help="Snapshots above the threshold of a detector in 1,000 h before spalls begin; by default 1.",
 )
 @worker_options

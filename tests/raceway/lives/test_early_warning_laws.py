@@ -155,7 +155,7 @@ def test_no_classifier_learns_from_snapshots_of_unknown_stage():
         (TRAINED, TRIED.assign(feature=["rms"]), {}, "have other features than those of the training"),
         (TRAINED.isel(record=slice(0, None, 2)), TRAINED.isel(record=slice(1, None, 2)), {}, r"among those of the training \(a/0/0\)"),
         *((TRIED, None, {"folds": folds}, "folds: .* is not a whole number from 2 to 4") for folds in (1, 2.5, 5)),
-        *((TRAINED, TRIED, {"alarms_per_1000_h": rate}, "is not a finite number from 0") for rate in (-1, np.nan, np.inf)),
+        *((TRAINED, TRIED, {"alarms_per_1000_h": rate}, "is not a finite number from 0") for rate in (-1, np.nan, np.inf, "1", None)),
     ],
 )  # fmt: skip
 def test_what_gives_no_early_warning_is_refused_in_a_sentence(trained, tested, options, sentence):

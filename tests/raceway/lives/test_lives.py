@@ -75,6 +75,14 @@ def test_a_reason_against_early_warning_says_what_is_missing(run, lives, monkeyp
     assert shown.stderr.splitlines()[-1] == f"{begun}no early warning: a training has one bearing; use more bearings."
 
 
+@pytest.mark.parametrize("rate", ["nan", "inf", "-1"])
+def test_a_rate_of_false_alarms_that_is_none_is_refused_before_any_feature_is_computed(run, lives, monkeypatch, rate):
+    monkeypatch.setattr("raceway.lives.lives_commands.table_of", lambda *_, **__: pytest.fail("features were computed"))
+    result = run("prognose", lives, "--false-alarms", rate)
+    assert result.exit_code == 2
+    assert "--false-alarms" in result.stderr
+
+
 @pytest.mark.parametrize("options", [(), ("--test",)])
 def test_only_lives_are_scored_and_others_are_refused_before_any_feature_is_computed(
     run, lives, tiny_corpus, monkeypatch, options
