@@ -1,6 +1,7 @@
 """Command that diagnoses a recording of the user, or each of a folder."""
 
 import os
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -117,7 +118,7 @@ def diagnose(
     # a table of speeds may lie among the recordings
     tables = [] if speed_table is None else [speed_table]
     paths = recordings_in(recording, [*healthy, *tables]) if several else [recording]
-    by_file = _speeds_by_file(speed_table, recording)
+    by_file = _speeds_by_file(speed_table, recording, paths, healthy)
     readings = readings_of(paths, reading, unusable if several else None)
     first = next(readings, None)  # before the model, so that whatever is missing is told at once
     if first is None:
@@ -181,16 +182,17 @@ def diagnose(
         show.text("", f"{output / INDEX if several else output}: pictures, evidence and what was assumed.")
 
 
-def _speeds_by_file(table: Path | None, folder: Path) -> dict[str, Speeds]:
+def _speeds_by_file(
+    table: Path | None, folder: Path, recordings: Sequence[Path], healthy: Sequence[Path]
+) -> dict[str, Speeds]:
     """Speeds of the recordings of a folder by the names of their files; empty without a table."""
     if table is None:
         return {}
     if not folder.is_dir():
         raise click.UsageError(f"--speed-table is for a FOLDER; give the speed of {folder.name} with --rpm")
     from raceway.importing.speed_tables import read_speed_table
-    from raceway.importing.user_folder import recordings_in
 
-    return read_speed_table(table, recordings_in(folder, [table]))
+    return read_speed_table(table, recordings, healthy)
 
 
 def _doubts(speeds: Speeds | None) -> tuple[str, ...]:

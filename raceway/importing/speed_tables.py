@@ -10,8 +10,10 @@ from raceway.importing.reading_options import Speeds, speeds_in
 FILE, RPM = "file", "rpm"
 
 
-def read_speed_table(table: Path, recordings: Iterable[Path]) -> dict[str, Speeds]:
+def read_speed_table(table: Path, recordings: Iterable[Path], others: Iterable[Path]) -> dict[str, Speeds]:
     """Lowest and highest speed of each recording of a folder, by the name of its file; other columns are left out.
+
+    ``others`` are files that may have a row and need none.
 
     Raises
     ------
@@ -21,20 +23,20 @@ def read_speed_table(table: Path, recordings: Iterable[Path]) -> dict[str, Speed
     (first, names), *lines = lines_of(table, f"{FILE} and {RPM}")
     if not {FILE, RPM} <= {*names}:
         raise CorpusError(f"{table}, row {first}: has the columns {', '.join(names)}; name one {FILE} and one {RPM}.")
-    missing = [path.name for path in recordings]
+    needed = [path.name for path in recordings]
+    allowed = {*needed, *(path.name for path in others)}
     speeds: dict[str, Speeds] = {}
     for number, cells in lines:
         row = dict(zip(names, cells, strict=False))
         name = row.get(FILE, "")
-        if name not in missing:
+        if name in speeds or name not in allowed:
             flaw = "is in two rows; remove one" if name in speeds else "is no recording of the folder; correct the name"
             raise CorpusError(f"{table}, row {number}, column {FILE}: {name!r:.60} {flaw}.")
         try:
             speeds[name] = speeds_in(row.get(RPM, ""))
         except ValueError as error:
             raise CorpusError(f"{table}, row {number}, column {RPM}: {error}.") from None
-        missing.remove(name)
-    if missing:
+    if missing := [name for name in needed if name not in speeds]:
         more = f" and {len(missing) - 1:,} more" if len(missing) > 1 else ""
         raise CorpusError(f"{table}: has no row for {missing[0]}{more}; add one for each recording of the folder.")
     return speeds

@@ -168,6 +168,18 @@ def test_each_recording_of_a_folder_is_diagnosed_at_its_speed_in_the_table(model
     assert listed[0] == told(folder / "2.wav", "--rpm", rpm, *options)
 
 
+@pytest.mark.parametrize("row", ["", "new.wav,1500\n"])
+def test_a_healthy_recording_of_the_folder_may_have_a_speed_in_the_table_and_needs_none(
+    row, model, recordings, tmp_path
+):
+    for fault, name in (("outer", "worn.wav"), ("healthy", "new.wav")):
+        write_wav(tmp_path / name, recordings[fault][0])
+    table = tmp_path / "speeds.csv"
+    table.write_text(f"file,rpm\n{row}worn.wav,{recordings['outer'][1]}\n", encoding="utf-8")
+    options = ("--bearing", "6205", "--speed-table", table, "--healthy", tmp_path / "new.wav", "--model", model)
+    assert [Path(each["recording"]).name for each in told(tmp_path, *options)] == ["worn.wav"]
+
+
 @pytest.mark.parametrize(
     ("text", "options", "sentence"),
     [
@@ -176,6 +188,11 @@ def test_each_recording_of_a_folder_is_diagnosed_at_its_speed_in_the_table(model
         ("file,speed\na.wav,1500\n", (), "row 1: has the columns file, speed; name one file and one rpm."),
         ("file,rpm\nc.wav,1500\n", (), "row 2, column file: 'c.wav' is no recording of the folder; correct the name."),
         ("file,rpm\na.wav,1\n\na.wav,1\n", (), "row 4, column file: 'a.wav' is in two rows; remove one."),
+        (
+            "file,rpm\na.wav,1\nnew.wav,1\nnew.wav,1\n",
+            ("--healthy", "new.wav"),
+            "row 4, column file: 'new.wav' is in two rows",
+        ),
         ("file,rpm\na.wav,fast\n", (), "row 2, column rpm: 'fast' is no speed and no range such as 1400-1900"),
         ("file,rpm\na.wav,1500\nb.wav\n", (), "row 3, column rpm: '' is no speed"),
         ("file,rpm\n", ("--rpm", 1500), "--rpm and --speed-table both tell the speed; leave one of the two out"),
