@@ -72,7 +72,10 @@ def guarded(path: Path, kind: str) -> Iterator[None]:
             yield
     except (UnusableError, MemoryError):
         raise
-    except Exception as error:  # SciPy, h5py and NumPy raise a dozen unrelated types on damaged bytes
+    except BaseException as error:  # SciPy, h5py and NumPy raise a dozen unrelated types on damaged bytes
+        # a panic of a library in Rust is no Exception either, and the class cannot be imported
+        if not isinstance(error, Exception) and type(error).__name__ != "PanicException":
+            raise
         reason = f" ({str(error).splitlines()[0][:120]})" if isinstance(error, _WITH_REASON) and str(error) else ""
         message = f"is truncated, damaged or not a {kind} file{reason}"
         raise UnusableError(message) from error

@@ -2,10 +2,12 @@
 
 import csv
 import io
+import os
 import re
 import struct
 import zipfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import date, datetime
 from pathlib import Path
 from typing import Any
@@ -50,7 +52,7 @@ def read_sheet(path: Path, sheet: str | None) -> NumberTable:
             active = _check_size(path)
         else:  # old Excel files have at most 65,536 rows of 256 columns
             _check_old_excel(path)
-        with library.CalamineWorkbook.from_path(str(path)) as book:
+        with _silent(), library.CalamineWorkbook.from_path(str(path)) as book:
             shown = library.SheetVisibleEnum.Visible, library.SheetTypeEnum.WorkSheet
             visible = [entry.name for entry in book.sheets_metadata if (entry.visible, entry.typ) == shown]
             name, notes = _chosen(book.sheet_names, visible, active, sheet)
@@ -59,6 +61,19 @@ def read_sheet(path: Path, sheet: str | None) -> NumberTable:
         csv.writer(text, delimiter="\t", lineterminator="\n").writerows([_text(cell) for cell in row] for row in rows)
         table = read_table(text.getvalue().encode(), "\t", ".")
         return table._replace(notes=(*notes, *table.notes))
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """No output on the standard error of the process, where a library in Rust writes of its panics for its developers."""
+    stderr = os.dup(2)
+    try:
+        with Path(os.devnull).open("wb") as nowhere:
+            os.dup2(nowhere.fileno(), 2)
+        yield
+    finally:
+        os.dup2(stderr, 2)
+        os.close(stderr)
 
 
 def _check_size(path: Path) -> int:
