@@ -19,7 +19,7 @@ A class is answered if the classifier is sure of it and the lines do not tell an
 from collections.abc import Iterable, Mapping, Sequence
 
 from features.baselines.predictions import UNSURE
-from gen.corpus.fault_classes import HEALTHY, SHAFT, SIDES, fault_class
+from gen.corpus.fault_classes import HEALTHY, SHAFT, SIDES, FaultClass, families, fault_class
 from raceway.diagnosis.evidence import Line
 from raceway.diagnosis.wording import by_family, family_in_words, line_of
 
@@ -58,13 +58,12 @@ def judge(
     if probabilities[likely] < threshold:
         return UNSURE, _doubt(families, threshold)
     # lines and classifier agree, unless the sidebands tell of another part
-    if likely in families:
-        foreign = _foreign_sidebands(families[likely])
+    own = _family_of(row)
+    if own in families:
+        foreign = _foreign_sidebands(families[own], row)
         return (UNSURE, f"the classifier says {likely}, but {foreign}") if foreign else (likely, "")
     # balls often show no line; if the cage shows one, the classifier may rest on that alone
     if likely == BALL and not families and probabilities[likely] >= WITHOUT_LINES:
-        return likely, ""
-    if likely != BALL and families.keys() == {row.companion}:
         return likely, ""
     # healthy bearings have faint lines of all parts
     if likely == HEALTHY:
@@ -78,9 +77,13 @@ def judge(
     return UNSURE, f"the classifier says {likely}, but {family_in_words(families[other])}, which tells of {other}"
 
 
-def _foreign_sidebands(lines: Sequence[Line]) -> str:
-    """Clause on sidebands at the shaft rate, or their absence, that tell of another part; empty if they fit the family."""
-    row = fault_class(lines[0].fault)
+def _family_of(row: FaultClass) -> str:
+    """Class under which the lines of a class are found: the first one with its fundamental line."""
+    return next((first.name for first in families() if row.is_family and first.lines[0] == row.lines[0]), row.name)
+
+
+def _foreign_sidebands(lines: Sequence[Line], row: FaultClass) -> str:
+    """Clause on sidebands at the shaft rate, or their absence, that tell of another part; empty if they fit the class."""
     highest = {side: max((line.level for line in lines if line.side == side), default=0.0) for side in ("", *SIDES)}
     shaft = highest[SHAFT.base]
     if row.beside == "needed" and not shaft:
@@ -101,7 +104,7 @@ def _answers(lines: Sequence[Line]) -> bool:
     """Whether the lines of a family are plain enough to be an answer without the classifier."""
     harmonics = {line.harmonic for line in lines if not line.side}
     plain = 1 in harmonics and len(harmonics) >= 4 and max(line.level for line in lines if not line.side) >= ANSWER
-    return plain and not _foreign_sidebands(lines)
+    return plain and not _foreign_sidebands(lines, fault_class(lines[0].fault))
 
 
 def _doubt(families: Mapping[str, Sequence[Line]], threshold: float) -> str:

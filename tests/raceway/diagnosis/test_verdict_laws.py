@@ -6,7 +6,8 @@ import pytest
 from features.baselines.predictions import DAMAGED, UNSURE
 from features.table.durations import windows_of
 from features.table.indicators import Orders
-from gen.corpus import FAULTS
+from gen.corpus import FAULTS, fault_classes
+from gen.corpus.fault_classes import FaultClass, harmonics
 from raceway.diagnosis import Given, Pair
 from raceway.diagnosis.answer import Judged, _conclude, _usable
 from raceway.diagnosis.evidence import Line
@@ -122,6 +123,41 @@ def test_several_faults_need_lines_of_some_part():
     chances = {"healthy": 0.05, "compound": 0.95}
     assert judge(chances, 0.5, OF_INNER) == ("compound", "")
     assert judge(chances, 0.5, []) == (UNSURE, "the classifier says compound, but no fault line stands out")
+
+
+@pytest.fixture
+def dented(monkeypatch):
+    """Class of a plug-in by its row."""
+
+    def install(**row):
+        monkeypatch.setattr(fault_classes, "plugin", lambda *_: FaultClass("dented", **row))
+        return {"healthy": 0.12, "dented": 0.88}
+
+    fault_classes.fault_class.cache_clear()
+    yield install
+    fault_classes.fault_class.cache_clear()
+
+
+@pytest.mark.parametrize("companion", ["", "outer"])
+def test_a_class_with_the_fundamental_of_a_built_in_one_is_answered_by_its_lines(dented, companion):
+    chances = dented(lines=harmonics("bpfo", 1, 2), companion=companion)
+    assert judge(chances, 0.5, PLAIN_OUTER) == ("dented", "")
+    assert judge(chances, 0.5, [*OF_INNER, *PLAIN_OUTER]) == ("dented", "")
+    assert judge(chances, 0.5, []) == (UNSURE, "the classifier says dented, but no BPFO line stands out")
+    assert judge(chances, 0.5, OF_INNER)[0] == UNSURE
+
+
+def test_the_sidebands_of_a_class_are_those_that_its_row_asks_for(dented):
+    sides = [*PLAIN_OUTER, line("outer", level=OBVIOUS, side="shaft")]
+    for beside, lines, expected in (("", sides, "dented"), ("lower", sides, UNSURE), ("needed", PLAIN_OUTER, UNSURE)):
+        fault_classes.fault_class.cache_clear()
+        assert judge(dented(lines=harmonics("bpfo", 1), beside=beside), 0.5, lines)[0] == expected
+
+
+def test_lines_of_a_companion_alone_answer_no_class_with_other_lines(dented):
+    chances = dented(lines=harmonics("bpfi", 2, 4), companion="outer")
+    assert judge(chances, 0.5, PLAIN_OUTER) == (UNSURE, "the classifier says dented, but no 2 BPFI line stands out")
+    assert judge(chances, 0.5, [*PLAIN_OUTER, line("dented")]) == ("dented", "")
 
 
 COMB = [line("outer", harmonic, level=ANSWER + 1 if harmonic == 2 else 12.0) for harmonic in (1, 2, 3, 5)]
