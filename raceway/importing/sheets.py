@@ -28,11 +28,8 @@ _MOST_ROWS = 1_048_576
 _OLD_BYTES = 7_300_000  # of an old Excel file whose head lists all of its tables of sectors
 _CHUNK = 4_000_000  # bytes
 _OLD_SHAPE = (65_536, 256)  # rows and columns of an old Excel file
-_PLACE, _SHAPE, _END = (
-    0x85,
-    0x200,
-    0x0A,
-)  # records of an old Excel file: place of a sheet, its shape, and the end of a part
+# records of an old Excel file: place of a sheet, its shape, and the end of a part
+_PLACE, _SHAPE, _END = 0x85, 0x200, 0x0A
 _MINI = 4096  # bytes; a shorter stream lies in sectors of 64 bytes, which are parts of the stream of the first entry
 
 

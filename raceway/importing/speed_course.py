@@ -33,9 +33,14 @@ def at_equal_angles(
         If the unit is not known or another one is stated, or the course is none of a shaft that turns all the time.
     """
     from features.signal.orders import CROSSINGS, angles_from_speed, resample_to_angle
-    from features.signal.tacho import angles_from_tacho
 
     factor, pulses = _unit(wanted, stated)
+    for values, what in ((signal, "samples"), (course, "speeds")):
+        wrong = np.flatnonzero(~np.isfinite(values))
+        if wrong.size:
+            count = f"{wrong.size} {what} of {values.size}"
+            message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again, or correct its unit"
+            raise UnusableError(message)
     if course.size != signal.size:
         raise UnusableError(f"has {course.size} speeds and {signal.size} samples; export one for each sample")
     if signal.size <= 2 * CROSSINGS:
@@ -51,16 +56,14 @@ def at_equal_angles(
         raise UnusableError(
             f"has a speed of {rpm[wrong[0]]:.6g} rpm {where}; cut the recording there, or correct its unit"
         )
-    try:
-        turns = (angles_from_speed(course * factor, fs) if factor else angles_from_tacho(course, pulses)) / (2 * np.pi)
-        mean = (turns[-1] - turns[0]) * fs / (course.size - 1)
-        # two samples in each turn of a wheel that turns as much faster as the sample rate asks
-        even = resample_to_angle(signal - signal[0], turns * (np.pi * fs / mean), 2)
-    except ValueError as error:
-        # the advice there is about the arguments of a function
-        reason = str(error).partition(";")[0].rpartition("record 0 ")[2]
-        message = f"has no tacho that can be used: it {reason}; cut out what has no even pulses, or correct the pulses in a turn"
-        raise UnusableError(message, "speed_unit") from None
+    turns = (_angles_of(course, pulses) if pulses else angles_from_speed(course * factor, fs)) / (2 * np.pi)
+    # a very slow turn is lost in the rounding of many fast ones
+    back = np.flatnonzero(np.diff(turns) <= 4 * np.spacing(np.abs(turns).max()))
+    if back.size:
+        raise UnusableError(f"has a shaft that does not turn on after sample {back[0] + 1}; cut the recording there")
+    mean = (turns[-1] - turns[0]) * fs / (course.size - 1)
+    # two samples in each turn of a wheel that turns as much faster as the sample rate asks
+    even = resample_to_angle(signal - signal[0], turns * (np.pi * fs / mean), 2)
     if pulses:
         # a pulse is off by a part of a sample, which counts less in a whole turn than between two pulses
         whole = np.interp(np.arange(np.ceil(turns[0]), turns[-1]), turns, np.arange(turns.size))
@@ -76,6 +79,19 @@ def at_equal_angles(
         told += "; so wide a range smears resonances over bands of frequencies: trust its orders alone, or cut it into shorter ones"
     # without its offset a constant signal stays one, and is told as such
     return np.asarray(even[end:-end] + signal[0], dtype=np.float64), mean_rpm, told
+
+
+def _angles_of(tacho: FloatArray, pulses: int) -> FloatArray:
+    """Angle of the shaft at each sample [rad], shape (time,), from a tacho of some pulses in a turn."""
+    from features.signal.tacho import angles_from_tacho
+
+    try:
+        return angles_from_tacho(tacho, pulses)
+    except ValueError as error:
+        # the advice there is about the arguments of a function
+        reason = str(error).removeprefix("tacho: record 0 ").partition(";")[0]
+        message = f"has no tacho that can be used: it {reason}; cut out what has no even pulses, or correct the pulses in a turn"
+        raise UnusableError(message, "speed_unit") from None
 
 
 def _unit(wanted: str | None, stated: str) -> tuple[float, int]:

@@ -170,6 +170,26 @@ def test_a_course_that_is_shorter_than_its_signal_is_refused(tmp_path):
         read_signal(tmp_path / "a.mat", variable="x", rate=FS, speed_column="speed", speed_unit="Hz")
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+@pytest.mark.parametrize("unit", ["rpm", "1"])
+@pytest.mark.parametrize("which", ["samples", "speeds"])
+def test_values_that_are_not_finite_are_told_of_the_signal_or_the_speed_that_has_them(value, unit, which):
+    broken = np.where(np.arange(N) == 99, value, X + 1500)
+    signal, course = (broken, X + 1500) if which == "samples" else (X, broken)
+    with pytest.raises(
+        UnusableError, match=f"has 1 {which} of 640 that are not finite numbers, the first is number 100; export"
+    ):
+        at_equal_angles(signal, FS, course, unit)
+
+
+def test_an_angle_that_does_not_rise_is_refused():
+    # a turn of 1e-9 is rounded away beside a million of them
+    course = np.full(200_000, 1e7)
+    course[-100_000:] = 1e-3
+    with pytest.raises(UnusableError, match=r"does not turn on after sample \d+; cut the recording there"):
+        at_equal_angles(np.sin(np.arange(course.size)), FS, course, "rpm")
+
+
 WITHOUT = {  # file, its keys, part of the sentence
     "only column": ("x.npy", {"speed_column": 0}, "has its speed and its signal in column 0; choose another with speed_column."),
     "long number": ("two.npy", {"column": 0, "speed_column": "9" * 5000}, f"no numbers in {'9' * 60}; choose one with speed_column."),
