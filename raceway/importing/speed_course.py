@@ -86,7 +86,7 @@ def _angles_of(tacho: FloatArray, pulses: int) -> FloatArray:
     from features.signal.tacho import angles_from_tacho
 
     try:
-        return angles_from_tacho(tacho, pulses)
+        return np.asarray(angles_from_tacho(tacho, pulses), dtype=np.float64)
     except ValueError as error:
         # the advice there is about the arguments of a function
         reason = str(error).removeprefix("tacho: record 0 ").partition(";")[0]
