@@ -4,6 +4,7 @@ A file is read only if skops or this module trusts each type in it, so no code o
 load only models of people you trust.
 """
 
+import io
 import warnings
 import zipfile
 from collections.abc import Mapping
@@ -40,20 +41,25 @@ def read_model_file(path: Path) -> Any:
     if not path.is_file():
         reason = "not a file" if path.exists() else "no such file"
         raise CorpusError(f"{path}: {reason}; give a model made with raceway train.")
-    # before skops takes memory for it
+    # before memory is taken for it
     check_limit("file_bytes", path.stat().st_size, f"{path}: has", CorpusError)
+    return unpack(path.read_bytes(), path)
+
+
+def unpack(packed: bytes, path: Path | str) -> Any:
+    """Objects of an archive; ``path`` is the file that it comes from, and the errors are those of a file."""
     try:
         with warnings.catch_warnings():
             # objects of another scikit-learn may load and predict something else
             warnings.simplefilter("error", InconsistentVersionWarning)
-            with zipfile.ZipFile(path) as archive:
+            with zipfile.ZipFile(io.BytesIO(packed)) as archive:
                 unpacked = sum(member.file_size for member in archive.infolist())
             check_limit("file_bytes", unpacked, f"{path}: unpacked has", CorpusError)
-            return skops.io.load(path, trusted=TRUSTED)
+            return skops.io.loads(packed, trusted=TRUSTED)
     except CorpusError:
         raise
     except UntrustedTypesFoundException as error:
-        foreign = sorted(set(skops.io.get_untrusted_types(file=path)) - set(TRUSTED))
+        foreign = sorted(set(skops.io.get_untrusted_types(data=packed)) - set(TRUSTED))
         raise CorpusError(
             f"{path}: holds {', '.join(foreign)}, which no model of raceway contains; give a model made with raceway train."
         ) from error
@@ -67,6 +73,11 @@ def read_model_file(path: Path) -> Any:
         raise CorpusError(f"{path}: not a readable model ({reason}); train it again with raceway train.") from error
 
 
+def pack(content: Mapping[str, Any]) -> bytes:
+    """Archive of the content of a model."""
+    return skops.io.dumps(dict(content), compression=zipfile.ZIP_DEFLATED)
+
+
 def write_model_file(content: Mapping[str, Any], path: Path) -> None:
     """Write a model file, whole or not at all."""
-    write_durably(skops.io.dumps(dict(content), compression=zipfile.ZIP_DEFLATED), path)
+    write_durably(pack(content), path)

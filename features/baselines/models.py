@@ -21,6 +21,7 @@ from features.baselines.calibration import UNCALIBRATED, Calibration
 from features.baselines.classifying import RECORDED, predict, suited
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import Estimator, relative_name
+from features.baselines.model_parts import Packed, Part
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, UNTRAINED
 from features.baselines.own import Maker, maker_name
 from features.baselines.predictions import fault_names
@@ -51,7 +52,7 @@ from gen.support.executor import Workers, connected
 from gen.support.plugins import missing_distributions, plugin_versions
 from gen.support.progress import Progress, counter
 
-FORMAT = 9
+FORMAT = 10
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 _TRAINING = ("corpus", "records", "seed", "digests", "versions")
 _STORED = ("estimator", "name", "classes", "features", "groups", "band", "durations", *_TRAINING, "calibration")
@@ -115,9 +116,9 @@ class Model(Shown):
     digests: NDArray[np.uint64] = field(default_factory=lambda: np.empty(0, np.uint64))
     versions: Mapping[str, str] = field(default_factory=dict)
     calibration: Calibration = UNCALIBRATED
-    relative: Model | None = None
-    shorter: Model | None = None
-    wide: Model | None = None
+    relative: Part = Part()  # noqa: RUF009
+    shorter: Part = Part()  # noqa: RUF009
+    wide: Part = Part()  # noqa: RUF009
 
     @property
     def name(self) -> str:
@@ -190,8 +191,8 @@ class Model(Shown):
             )
             self.relative = None
             if paired is not None:
-                self.relative = Model(relative_name(self.name), groups=(RELATIVE,), seed=self.seed)
-                _fit(self.relative, paired, place, done)
+                relative = self.relative = Model(relative_name(self.name), groups=(RELATIVE,), seed=self.seed)
+                _fit(relative, paired, place, done)
         done(fits)
         return self
 
@@ -303,12 +304,13 @@ class Model(Shown):
         content = read_model_file(Path(path))
         if not isinstance(content, dict) or content.pop("raceway_model", None) != FORMAT:
             raise CorpusError(f"{path}: not a model of this version of raceway; train it again with raceway train.")
-        return cls._of(path, content)
+        return cls.of_content(path, content)
 
     @classmethod
-    def _of(cls, path: Path | str, content: Mapping[str, Any]) -> Self:
-        """Model of the fields in a model file."""
-        if not isinstance(content, Mapping) or set(content) != {*_STORED, *_PARTS}:
+    def of_content(cls, path: Path | str, content: Mapping[str, Any]) -> Self:
+        """Model of the fields in a model file; CorpusError if they are none."""
+        stored = isinstance(content, Mapping) and set(content) == {*_STORED, *_PARTS}
+        if not stored or any(not isinstance(content[name], bytes | None) for name in _PARTS):
             raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
         missing = missing_distributions(content["versions"]) or [c for c in content["classes"] if c not in FAULTS]
         if missing:
@@ -316,7 +318,7 @@ class Model(Shown):
                 f"{path}: was trained with {', '.join(missing)}, which is not here; install the plug-in, or train it again."
             )
         own = {name: value for name, value in content.items() if name != "name"}
-        parts = {name: None if own[name] is None else cls._of(path, own[name]) for name in _PARTS}
+        parts: Any = {name: own[name] and Packed(own[name], path) for name in _PARTS}
         return cls(content["name"], **{**own, **parts, "calibration": Calibration(**content["calibration"])})
 
 
@@ -346,8 +348,10 @@ def _fit(model: Model, data: xr.Dataset | Waveforms, workers: Workers, done: Cal
 
 
 def _content(model: Model) -> dict[str, Any]:
-    """Fields of a model file."""
-    parts = {name: None if (part := getattr(model, name)) is None else _content(part) for name in _PARTS}
+    """Fields of a model file; its parts are archives of their own."""
+    from features.baselines.model_file import pack
+
+    parts = {name: None if (part := getattr(model, name)) is None else pack(_content(part)) for name in _PARTS}
     return {name: getattr(model, name) for name in _STORED} | {"calibration": model.calibration._asdict()} | parts
 
 

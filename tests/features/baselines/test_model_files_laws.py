@@ -117,6 +117,23 @@ def test_a_part_that_is_no_model_is_refused(files, tmp_path, part, value):
     assert "not a complete model" in refusal(tmp_path / "m")
 
 
+@pytest.mark.parametrize(
+    ("packed", "sentence"),
+    [
+        (b"PK", "not a readable model"),
+        (skops.io.dumps({"name": "svm"}), "not a complete model"),
+        (skops.io.dumps({"name": Path()}), "holds pathlib.PosixPath, which no model of raceway contains"),
+    ],
+)
+def test_a_damaged_part_is_refused_when_it_is_used(files, tmp_path, packed, sentence):
+    content = read_model_file(files["svm"]) | {"wide": packed}
+    (tmp_path / "m").write_bytes(skops.io.dumps(content))
+    model = Model.load(tmp_path / "m")
+    assert model.shorter is None
+    with pytest.raises(CorpusError, match=f"m: {sentence}"):
+        _ = model.wide
+
+
 def test_a_model_of_another_version_of_scikit_learn_is_refused(files, tmp_path):
     archive = Archive(files["svm"])
     for place in archive.places("_sklearn_version"):

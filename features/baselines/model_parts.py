@@ -1,0 +1,37 @@
+"""Models within a model: each is read from its file when it is first used, since it takes a fifth of a second."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from features.baselines.models import Model
+
+
+class Packed(NamedTuple):
+    """A model as it stands in a file."""
+
+    content: bytes
+    path: Path | str
+
+
+class Part:
+    """Field of a model that holds another one, or None."""
+
+    def __set_name__(self, owner: type[Model], name: str) -> None:
+        self.name = name
+
+    def __get__(self, model: Model | None, owner: type[Model]) -> Model | None:
+        if model is None:  # a dataclass asks for the default of its field
+            return None
+        part = model.__dict__[self.name]
+        if isinstance(part, Packed):
+            from features.baselines.model_file import unpack  # skops takes a second to load
+
+            part = owner.of_content(part.path, unpack(part.content, part.path))
+            model.__dict__[self.name] = part
+        return part
+
+    def __set__(self, model: Model, part: Model | Packed | None) -> None:
+        model.__dict__[self.name] = part
