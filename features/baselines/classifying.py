@@ -56,9 +56,10 @@ def suited(model: Model, durations: Sequence[float], highest: float) -> Model:
     That for shorter records is taken if the shortest of these ``durations`` is below that of the training [s], and else that for a wider
     band if the ``highest`` frequency of the records reaches the end of the band [Hz].
     """
-    if model.shorter and durations and SAME_DURATION * min(durations) < min(model.durations):
+    # models are asked for last: each is read from its file then
+    if durations and SAME_DURATION * min(durations) < min(model.durations, default=0.0) and model.shorter:
         return model.shorter
-    return model.wide if model.wide and highest >= model.wide.band[1] else model
+    return model.wide if highest > model.band[1] and model.wide and highest >= model.wide.band[1] else model
 
 
 def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset | None = None) -> Predictions:
