@@ -50,6 +50,7 @@ class Recording(NamedTuple):
     true: float
     orders: tuple[float, ...]
     fault: str
+    source: Path = Path()
 
 
 class Trial(NamedTuple):
@@ -83,6 +84,7 @@ def recordings(corpus: Path) -> Iterator[Recording]:
                 true=_true_rate(recording),
                 orders=tuple(float(recording[name]) for name in Orders._fields),
                 fault=FAULTS[int(recording["fault"])],
+                source=Path(str(recording["source"].values).partition("#")[0]),
             )
 
 
@@ -99,7 +101,7 @@ def _true_rate(record: xr.Dataset) -> float:
 
 def trials(recording: Recording) -> Iterator[Trial]:
     """Estimates at the label of the recording, then at labels moved away from the true rate, if it is known."""
-    x, fs, label, true, orders, _ = recording
+    x, fs, label, true, orders, *_ = recording
     yield Trial(label, true, shaft_speed(x, fs, label, orders))
     if np.isfinite(true):
         for error in MOVED:

@@ -136,7 +136,6 @@ TABLES: Mapping[str, Callable[[Results], str]] = {
     "details": _details,
     "teachers": _teachers,
     "confusion-wang": lambda results: _confusion(results, "wang"),
-    "confusion-uestc": lambda results: _confusion(results, "uestc"),
 }
 
 

@@ -2,9 +2,9 @@
 
 ``python -m benchmarks.verdicts REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them; the
 model is the reference model. "Damaged" is the share of faulty recordings whose part is not named, "wrong" that of recordings with another
-fault than the true one, or any on a healthy machine, "damaged" included, and "called healthy" that of faulty ones among all. The second
-table shows, at the right speed and bearing, how often the lines agree with the class that the classifier is sure of. ``--missed`` prints
-instead how many faulty recordings are called healthy by their length, which is `MISSED` of `raceway.diagnosis.wording`.
+fault than the true one, or any on a healthy machine, "damaged" included, and "called healthy" that of faulty ones among all.
+``--missed`` prints instead how many faulty recordings are called healthy by their length, which is `MISSED` of
+`raceway.diagnosis.wording`.
 """
 
 import argparse
@@ -19,7 +19,6 @@ from benchmarks.speed import Recording, real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
 from features.table.indicators import Orders
-from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
@@ -94,15 +93,6 @@ def answer(verdict: str, fault: str) -> str:
     return "called healthy" if verdict == HEALTHY else "wrong"
 
 
-def agreement(diagnosis: Diagnosis) -> tuple[str, str] | None:
-    """Class that the classifier is sure of, and the lines: of this class, of another, or none. None if it is not sure."""
-    likely = max(diagnosis.probabilities, key=lambda name: diagnosis.probabilities[name])
-    families = {line.fault for line in diagnosis.evidence}
-    if diagnosis.probabilities[likely] < diagnosis.threshold:
-        return None
-    return likely, "own" if likely in families else "another's" if families else "none"
-
-
 def rows(title: str, answers: Mapping[str, Counter[str]]) -> Iterator[str]:
     """Rows of a set, or of all together."""
     for condition, counts in answers.items():
@@ -149,7 +139,7 @@ def missed(real: Path, model: Model) -> Iterator[str]:
 
 
 def main() -> None:
-    """Print both tables, or that of the faults that are missed."""
+    """Print the table, or that of the faults that are missed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("real", type=Path)
     parser.add_argument("--missed", action="store_true", help="faulty recordings called healthy, by their length")
@@ -160,7 +150,6 @@ def main() -> None:
         print(*missed(options.real, model), sep="\n")
         return
     together: dict[str, Counter[str]] = {}
-    agreed: Counter[tuple[str, str]] = Counter()
     print(f"| set | given | diagnoses | {' | '.join(f'{name}, %' for name in ANSWERS)} |")
     print("|---|---|---:|---:|---:|---:|---:|")
     with tempfile.TemporaryDirectory() as name:
@@ -169,18 +158,11 @@ def main() -> None:
             for condition, fault, diagnosis in diagnosed(corpus, model):
                 for counts in (answers, together):
                     counts.setdefault(condition, Counter())[answer(diagnosis.verdict, fault)] += 1
-                agrees = agreement(diagnosis) if condition == RIGHT else None
-                agreed.update([agrees] if agrees else [])
             print(*rows(title, answers), sep="\n", flush=True)
     print(*rows("all", together), sep="\n")
     for kind in WITHOUT_FAULT:
         verdicts = (diagnose_recording(*without_fault(kind, seed), model).verdict for seed in range(SEEDS))
         print(*rows("made up", {f"{kind} alone": Counter(answer(verdict, HEALTHY) for verdict in verdicts)}), sep="\n")
-    print("\n| sure of | lines of its own | of another class alone | none |\n|---|---:|---:|---:|")
-    for fault in FAULTS:
-        counts = [agreed[fault, lines] for lines in ("own", "another's", "none")]
-        if any(counts):
-            print(f"| {fault} | {' | '.join(map(str, counts))} |")
 
 
 if __name__ == "__main__":
