@@ -18,13 +18,14 @@ from scipy.fft import irfft
 
 from benchmarks.envelope_bands import NARROWEST, Signal, record_combs
 from benchmarks.speed import real_corpora
-from benchmarks.transfer import BEST, GROUPS, RECIPE, corpora, figures
+from benchmarks.transfer import BEST, GROUPS, RECIPE, corpora_of, figures
 from features import feature_table, signal
 from features.baselines import Model, cross_validate
 from features.signal.lines import Orders, families, single_lines
 from features.signal.spectra import fourier_coefficients
 from features.table.band import DEFAULT_BAND
 from gen.corpus import SIGNAL, open_corpus
+from gen.recipe import read_recipe
 
 FS = 2 * DEFAULT_BAND.high
 HIGHEST = 500.0  # Hz, above every fault line
@@ -105,7 +106,7 @@ def main() -> None:
     rows: dict[str, list[dict[str, Any]]] = {}
     with tempfile.TemporaryDirectory() as name:
         real = {title: tables(corpus) for title, corpus in real_corpora(options.real, Path(name)).items()}
-        for seed, corpus in enumerate(corpora(RECIPE, 0.5, options.seeds, Path(name), 2)):
+        for seed, corpus in enumerate(corpora_of(read_recipe(RECIPE), options.seeds, Path(name), 2)):
             for addition, table in tables(corpus).items():
                 model = Model(BEST, seed=seed).fit(table)
                 scored = {"unseen rigs": figures(cross_validate(table, BEST, track="rig", seed=seed))["window"]}
