@@ -22,6 +22,7 @@ splits            cross-validation on a track, with its two controls
 inspection        permutation importance of features
 cross_calibration calibration on rigs or specimens outside the training
 model_file        the only module that reads and writes archives of skops
+model_parts       models within a model, read when they are used
 classifying       predictions of a fitted model for feature tables and waveforms
 models            training, evaluation, saving, loading
 results           scores of every baseline with controls, and on other corpora

@@ -1,12 +1,9 @@
 """Models within a model: each is read from its file when it is first used, since it takes a fifth of a second."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
-if TYPE_CHECKING:
-    from features.baselines.models import Model
+Held = TypeVar("Held")
 
 
 class Packed(NamedTuple):
@@ -16,13 +13,13 @@ class Packed(NamedTuple):
     path: Path | str
 
 
-class Part:
+class Part(Generic[Held]):
     """Field of a model that holds another one, or None."""
 
-    def __set_name__(self, owner: type[Model], name: str) -> None:
+    def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
 
-    def __get__(self, model: Model | None, owner: type[Model]) -> Model | None:
+    def __get__(self, model: object | None, owner: Any) -> Held | None:
         if model is None:  # a dataclass asks for the default of its field
             return None
         part = model.__dict__[self.name]
@@ -33,5 +30,5 @@ class Part:
             model.__dict__[self.name] = part
         return part
 
-    def __set__(self, model: Model, part: Model | Packed | None) -> None:
+    def __set__(self, model: object, part: Held | Packed | None) -> None:
         model.__dict__[self.name] = part

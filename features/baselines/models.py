@@ -116,9 +116,9 @@ class Model(Shown):
     digests: NDArray[np.uint64] = field(default_factory=lambda: np.empty(0, np.uint64))
     versions: Mapping[str, str] = field(default_factory=dict)
     calibration: Calibration = UNCALIBRATED
-    relative: Part = Part()  # noqa: RUF009
-    shorter: Part = Part()  # noqa: RUF009
-    wide: Part = Part()  # noqa: RUF009
+    relative: Part[Model] = Part()  # noqa: RUF009
+    shorter: Part[Model] = Part()  # noqa: RUF009
+    wide: Part[Model] = Part()  # noqa: RUF009
 
     @property
     def name(self) -> str:
