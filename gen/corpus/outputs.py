@@ -25,11 +25,33 @@ _MARKS = tuple(
 )
 _HEAD, _TAIL = 4096, 65_536  # bytes with the facts of a file; those of PDF are before the list of objects at its end
 _OF_PAGES = (".html", ".json", ".png")
+FILE_SUFFIXES = (
+    *(
+        ".h5",
+        ".hdf5",
+        ".hdf",
+        ".nc4",
+        ".cdf",
+        ".netcdf",
+        ".zarr",
+        ".mat",
+        ".csv",
+        ".tsv",
+        ".txt",
+        ".xlsx",
+        ".npy",
+        ".npz",
+    ),
+    *(".zip", ".tar", ".gz", ".json", ".yaml", ".html"),
+)
+"""Ends of names that promise a file of another kind than a corpus; other names with a dot, such as ``corpus_0.5``, are folders."""
 
 
 def check_place(path: Path) -> None:
-    """Refuse a place that no corpus can have: one in another corpus, a name that netCDF cannot open, and that of an index."""
+    """Refuse a place that no corpus can have: one in another corpus, a name that netCDF cannot open, and that of another kind of file."""
     check_name(path)
+    if path.suffix.lower() in FILE_SUFFIXES:
+        raise CorpusError(f"{path}: no corpus is a {path.suffix} file; name a folder, or a file that ends in .nc.")
     _check_outside(path, path.parent)
     if path.name == INDEX_NAME:
         raise CorpusError(f"{path}: {INDEX_NAME} is the name of the index in a corpus; choose another name.")

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.disk import remove_left_behind_of, whole_folder_or_none, whole_or_not_at_all
 from gen.corpus.new import NewCorpus, new_corpus
-from gen.corpus.outputs import check_new
+from gen.corpus.outputs import FILE_SUFFIXES, check_new
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from raceway.sharing.copying import Chosen, choose
@@ -131,8 +131,7 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
     if to is not None and to not in FORMS:
         raise CorpusError(f"to: there is no form {to!r}; allowed is {', '.join(FORMS)}; {_READ_BY_OTHERS}.")
     suffix = target.suffix if target.suffix in SUFFIXES else ""
-    # x.h5 would be a folder of that name; corpus_0.5 is one
-    if suffix != target.suffix and target.suffix[1].isalpha():
+    if target.suffix.lower() in FILE_SUFFIXES:
         raise CorpusError(f"{target}: copies are not written as {target.suffix}; {_READ_BY_OTHERS}.")
     if suffix and to is not None:
         raise CorpusError(f"{target}: {suffix} is one file, and to={to!r} makes a folder; leave one of the two out.")

@@ -8,6 +8,8 @@ import sys
 import pytest
 
 from gen.corpus import (
+    check_new,
+    check_place,
     new_corpus,
     remove_left_behind_of,
     temporary_beside,
@@ -56,6 +58,16 @@ def test_no_error_names_a_temporary_path(tmp_path):
                 raise kind(f"{temporary / 'part.nc'}: damaged")
             assert ".tmp" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["a.h5", "a.HDF5", "a.zarr", "a.csv"])
+def test_no_corpus_has_the_name_of_another_kind_of_file(tmp_path, name):
+    for check in (check_new, check_place):
+        with pytest.raises(
+            CorpusError, match=f"{name}: no corpus is a .* file; name a folder, or a file that ends in .nc"
+        ):
+            check(tmp_path / name)
+        check(tmp_path / "corpus_0.5.v2")
 
 
 HOLD = (

@@ -191,7 +191,7 @@ def test_hugging_face_has_unknown_behind_the_classes_where_records_are_unknown(t
             None,
             "a.h5: copies are not written as .h5; NAME is a folder, NAME.parquet a table, NAME.nc is read by",
         ),
-        ("a.Old", "huggingface", "not written as .Old; "),
+        ("a.CSV", "huggingface", "not written as .CSV; "),
         ("a.zarr", None, "not written as .zarr; .*docs/sharing.md writes CSV and Zarr"),
         ("a.nc", "huggingface", "nc is one file, and to='huggingface' makes a folder; leave one of the two out"),
         ("a.parquet", None, "parquet: needs pyarrow; pip install pyarrow, or"),
