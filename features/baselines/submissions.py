@@ -5,6 +5,7 @@ corpus, the track, their number and the seed; the file repeats them, so that pre
 """
 
 from collections.abc import Mapping, Sequence
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from gen.corpus import FAULTS, IDENTITY, check_result, write_text_durably
 from gen.support.errors import CorpusError
 
 TESTED = ["record", "identity", "fold"]
+LONGEST_LINE = 4000  # bytes, enough for a hundred classifiers
 
 
 def write_submission(
@@ -82,10 +84,11 @@ def check_submission(
     """
     records = records_of(table, DEFAULT_GROUPS)
     frame = _tested(table, grouped_case(records, track, folds, seed)[1])
+    # the names, and one row more than there are records, which shows a file that is too long
+    content = _first_lines(path, len(frame) + 2)
     try:
-        # one row more than there are records shows a file that is too long
-        submitted = pd.read_csv(path, dtype=str, keep_default_na=False, nrows=len(frame) + 1)
-    except (OSError, ValueError):
+        submitted = pd.read_csv(BytesIO(content), dtype=str, keep_default_na=False)
+    except ValueError:
         raise CorpusError(
             f"{path}: is no table of predictions; give a file with the predictions of a submission."
         ) from None
@@ -101,6 +104,22 @@ def check_submission(
     return {str(name): _scores(tested, submitted[name], f"{path}: {name}", seed) for name in submitted.columns[3:]}
 
 
+def _first_lines(path: Path, count: int) -> bytes:
+    """First lines of a file, which may be a stranger's: no more is read, and none longer than predictions need."""
+    lines: list[bytes] = []
+    try:
+        with path.open("rb") as stream:
+            while len(lines) < count and (line := stream.readline(LONGEST_LINE)):
+                lines.append(line)
+                if len(line) == LONGEST_LINE:
+                    raise CorpusError(
+                        f"{path}: line {len(lines)} has {LONGEST_LINE:,} bytes or more; give a file of fewer classifiers."
+                    )
+    except OSError as error:
+        raise CorpusError(f"{path}: could not be read ({error.strerror}); check the path.") from None
+    return b"".join(lines)
+
+
 def _tested(table: xr.Dataset, splits: Sequence[Split]) -> pd.DataFrame:
     """Number in the corpus, identity and fold of each tested record, by its place among the records of known class."""
     number = np.flatnonzero(table["fault"].values != UNKNOWN_CODE)
@@ -114,7 +133,7 @@ def _tested(table: xr.Dataset, splits: Sequence[Split]) -> pd.DataFrame:
 def _scores(tested: Records, predicted: pd.Series, where: str, seed: int) -> Scores:
     wrong = sorted({*predicted} - {*FAULTS})
     if wrong:
-        raise CorpusError(f"{where}: {wrong[0]!r} is no class; allowed are {', '.join(FAULTS)}.")
+        raise CorpusError(f"{where}: {wrong[0]!r:.60} is no class; allowed are {', '.join(FAULTS)}.")
     codes = np.array([FAULTS.index(name) for name in predicted])
     _, recording = np.unique(tested.recording, return_inverse=True)
     told = predictions(np.eye(len(FAULTS))[codes], fault_names(np.arange(len(FAULTS))), recording, UNCALIBRATED)

@@ -1,7 +1,10 @@
 """Own classifiers and tracks on the command line."""
 
 import json
+import os
 import re
+from contextlib import suppress
+from threading import Thread
 
 import pytest
 
@@ -109,6 +112,7 @@ def test_a_missing_submission_is_told_before_any_feature_is_computed(run, tiny_c
         (lambda text: text + text.splitlines()[-1], "does not have the 48 tested records"),
         (lambda text: "\n".join(line.rsplit(",", 1)[0] for line in text.splitlines()), "has no predictions"),
         (lambda _: "", "is no table of predictions"),
+        (lambda text: text.replace("healthy", "x" * 4000, 1), "has 4,000 bytes or more; give a file of"),
     ],
 )
 def test_a_submission_of_other_records_folds_or_classes_is_refused(run, tiny_corpus, tmp_path, change, sentence):
@@ -118,3 +122,21 @@ def test_a_submission_of_other_records_folds_or_classes_is_refused(run, tiny_cor
     file.write_text(change(file.read_text()))
     done = run("benchmark", tiny_corpus, *protocol, "--check", file)
     assert (done.exit_code, sentence in done.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("row", [b"x,", b"x\n", b"\0"])
+def test_of_an_endless_submission_no_more_is_read_than_tested_records_need(run, tiny_corpus, tmp_path, row):
+    file, taken = tmp_path / "rows.csv", [0]
+    os.mkfifo(file)
+
+    def write():
+        with file.open("wb", buffering=0) as pipe, suppress(BrokenPipeError):
+            for _ in range(1000):
+                taken[0] += pipe.write(row * 5000)
+
+    writer = Thread(target=write, daemon=True)
+    writer.start()
+    done = run("benchmark", tiny_corpus, "--track", "rig", "--folds", "2", "--check", file)
+    writer.join()
+    assert done.exit_code == 2
+    assert taken[0] < 200_000  # the buffer of the pipe among them
