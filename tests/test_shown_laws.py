@@ -3,10 +3,12 @@
 import re
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import gen
 from features.baselines import Model, Scores
-from gen.support.display import Shown
+from gen.support.display import Shown, cell_text
 
 SCORES = Scores(
     0.75, 0.7, 0.8, ("healthy", "inner"), ("healthy", "inner", "ball"), ((4, 0, 0), (1, 2, 1)), 8, (0.6, 0.9)
@@ -34,6 +36,12 @@ def test_facts_without_a_value_are_left_out_and_text_is_no_markup():
     assert str(Titled()).splitlines() == ["A <b> heading", "title    <script>", "records  0"]
     assert "<script>" not in Titled()._repr_html_()
     assert "A &lt;b&gt; heading" in Titled()._repr_html_()
+
+
+@given(st.text() | st.text("=+-@＝＋－＠ \t\r", min_size=1))
+def test_no_cell_of_a_list_begins_a_formula_or_a_line(text):
+    assert not cell_text(text).lstrip().startswith((*"=+-@＝＋－＠",))
+    assert cell_text(text).isprintable()
 
 
 def test_scores_tell_what_each_class_was_taken_for():

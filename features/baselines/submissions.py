@@ -22,6 +22,7 @@ from features.baselines.splits import grouped_case
 from features.baselines.tracks import Split, Track
 from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS, IDENTITY, check_result, write_text_durably
+from gen.support.display import cell_text
 from gen.support.errors import CorpusError
 
 TESTED = ["record", "identity", "fold"]
@@ -126,7 +127,8 @@ def _tested(table: xr.Dataset, splits: Sequence[Split]) -> pd.DataFrame:
     fold = np.full(len(number), -1)
     for place, (_, test) in enumerate(splits):
         fold[test] = place
-    columns = {"record": number, "identity": table[IDENTITY].values[number].astype(str), "fold": fold}
+    identity = [cell_text(str(text)) for text in table[IDENTITY].values[number]]
+    columns = {"record": number, "identity": identity, "fold": fold}
     return pd.DataFrame(columns)[fold >= 0]
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from html import escape
-from unicodedata import category
+from unicodedata import category, normalize
 
 
 class _Visible(dict[int, int | None]):
@@ -24,6 +24,17 @@ def visible(text: str) -> str:
     'ball and outer\n'
     """
     return text.translate(_VISIBLE)
+
+
+def cell_text(text: str) -> str:
+    """Text for one cell of a CSV file: no control characters, and no formula, which a spreadsheet would run.
+
+    >>> cell_text("6205"), cell_text("=1+1"), cell_text("a" + chr(10) + "b")
+    ('6205', "'=1+1", 'a?b')
+    """
+    shown = "".join(letter if letter.isprintable() else "?" for letter in text)
+    # some spreadsheets also take signs of full width
+    return f"'{shown}" if normalize("NFKC", shown).lstrip().startswith(("=", "+", "-", "@")) else shown
 
 
 class Shown:

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import quote
 
+from gen.support.display import cell_text
 from raceway.console import show
 
 INDEX, LIST = "index.html", "diagnoses.csv"
 LIST_KIND = "list of diagnoses"
 NOT_USED = "not used"
 SHOWN_LINES = 2
-_FORMULA = ("=", "+", "-", "@")
 
 
 class DiagnosisRow(NamedTuple):
@@ -102,16 +102,6 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
     # only a list of Raceway is replaced
     check_result(pages / LIST, LIST_KIND)
     write_text_durably(_csv_text(rows), pages / LIST)
-
-
-def cell_text(text: str) -> str:
-    """Text for one cell of a CSV file: no control characters, and no formula, which a spreadsheet would run.
-
-    >>> cell_text("6205"), cell_text("=1+1"), cell_text("a" + chr(10) + "b")
-    ('6205', "'=1+1", 'a?b')
-    """
-    shown = "".join(letter if letter.isprintable() else "?" for letter in text)
-    return f"'{shown}" if shown.lstrip().startswith(_FORMULA) else shown
 
 
 def _csv_text(rows: Sequence[DiagnosisRow]) -> str:

@@ -6,9 +6,10 @@ import re
 from contextlib import suppress
 from threading import Thread
 
+import numpy as np
 import pytest
 
-from features.baselines import TRACKS, cross_validate, load_maker
+from features.baselines import TRACKS, check_submission, cross_validate, load_maker, write_submission
 from raceway.commands import benchmark_commands
 
 pytestmark = pytest.mark.usefixtures("unpainted", "tables_once")
@@ -94,6 +95,15 @@ def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, t
         same = ("balanced_accuracy", "false_alarms", "records")
         assert [checked[name][figure] for figure in same] == [getattr(scores, figure) for figure in same]
         assert checked[name]["interval"] == list(scores.interval)
+
+
+def test_a_submission_of_a_foreign_corpus_begins_no_formula_and_is_scored_again(tiny_table, tmp_path):
+    foreign = tiny_table.assign(identity=("record", np.full(tiny_table.sizes["record"], "=1+1", object)))
+    protocol = {"track": "rig", "folds": 2}
+    write_submission(foreign, {"rule": "envelope_rule"}, tmp_path / "rows.csv", **protocol)
+    cells = re.split("[,\n]", (tmp_path / "rows.csv").read_text())
+    assert not [cell for cell in cells if cell.startswith("=")]
+    assert set(check_submission(foreign, tmp_path / "rows.csv", **protocol)) == {"rule"}
 
 
 def test_a_missing_submission_is_told_before_any_feature_is_computed(run, tiny_corpus, tmp_path, monkeypatch):

@@ -13,7 +13,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from raceway.diagnosis.tables import cell_text
 from raceway.importing.user_folder import recordings_in
 from tests.diagnoses import FS, call, told, write_csv, write_wav
 
@@ -218,9 +217,3 @@ def test_a_table_of_speeds_needs_a_folder(tmp_path):
         2,
         True,
     )
-
-
-@given(st.text())
-def test_no_cell_begins_a_formula_or_a_line(text):
-    assert not cell_text(text).lstrip().startswith(("=", "+", "-", "@"))
-    assert cell_text(text).isprintable()
