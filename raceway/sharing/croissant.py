@@ -1,21 +1,25 @@
 """``croissant.json``: files, fields, licence and citation of a corpus as catalogues of data sets read them, in the format Croissant 1.1.
 
 It lists the files with their SHA-256 and every variable with its type and meaning. A field names a file with its variable: readers of
-Croissant find files and fields, and the files themselves are read with a netCDF reader.
+Croissant find files and fields, and the files themselves are read with a netCDF reader. How the records came about is told in the
+words of Croissant RAI 1.0 [1]_.
+
+.. [1] M. Akhtar et al., "Croissant RAI specification", version 1.0, MLCommons, 2024.
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
 from gen.corpus.disk import CROISSANT_NAME, sha256, write_text_durably
+from gen.corpus.fault_classes import FAULTS, HEALTHY
 from gen.corpus.index import open_corpus
 from gen.corpus.lazy import stored_classes
 from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
-from gen.corpus.schema import SIGNAL, class_names, listed_flags
+from gen.corpus.schema import DRAWS, SIGNAL, class_names, listed_flags
 from gen.support.display import visible
 from raceway.sharing.acdd import content_id, license_address, publication_attributes
 from raceway.sharing.card.card_page import card_folder
@@ -99,7 +103,7 @@ def croissant(path: Path) -> dict[str, Any]:
         return {
             "@context": _CONTEXT,
             "@type": "sc:Dataset",
-            "conformsTo": "http://mlcommons.org/croissant/1.1",
+            "conformsTo": ["http://mlcommons.org/croissant/1.1", "http://mlcommons.org/croissant/RAI/1.0"],
             "name": title,
             "description": attributes["summary"],
             "keywords": attributes["keywords"].split(", "),
@@ -108,6 +112,7 @@ def croissant(path: Path) -> dict[str, Any]:
             "version": f"1.0.0+{content_id(manifest)[:8]}",
             "isLiveDataset": False,
             **_publication_facts(publication_of(manifest)),
+            **_origin_facts(corpus, manifest.basis, attributes["processing_level"]),
             "citeAs": citation(title, manifest),
             "distribution": [
                 *(_file(name, file, kinds[file.suffix], hashes.get(name)) for name, file in files.items()),
@@ -143,6 +148,22 @@ def _publication_facts(publication: Publication) -> dict[str, Any]:
         "datePublished": publication.date,
     }
     return {name: value for name, value in stated.items() if value}
+
+
+def _origin_facts(corpus: xr.Dataset, basis: Sequence[str], level: str) -> dict[str, Any]:
+    """How records and labels came about, and what they leave out, as far as the corpus knows it."""
+    simulated = DRAWS in corpus.variables
+    labels = ["Labels of simulated records are the values that were simulated."] if simulated else []
+    limitation = "A score on simulated records is no score on real machines; test on recordings of them, too."
+    healthy = int((corpus["fault"].values == FAULTS.index(HEALTHY)).sum())
+    stated = {
+        "dataCollection": "; ".join(filter(None, (level, corpus.attrs.get("source")))),
+        "hasSyntheticData": simulated,  # younger than RAI 1.0, but asked for by conferences
+        "dataAnnotationProtocol": " ".join([*labels, *basis]),
+        "dataBiases": f"{healthy} of {corpus.sizes['record']} records are healthy, which is not their share in the field.",
+        "dataLimitations": limitation if simulated else "",
+    }
+    return {f"rai:{name}": value for name, value in stated.items() if value}
 
 
 def _files(path: Path) -> list[Path]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gen.corpus.schema import SPLITS
+from gen.corpus.schema import DRAWS, SPLITS
 from raceway.sharing.card.markdown import plain_text
 from raceway.sharing.copying import Chosen
 from raceway.sharing.form_columns import Column, columns_of, plain_names
@@ -65,10 +65,14 @@ def _title(chosen: Chosen) -> str:
 def _header(chosen: Chosen, columns: list[Column], sizes: dict[str, int]) -> str:
     """YAML header; every value below the upper keys is JSON on a line of its own."""
     # JSON is YAML, so that no text of a corpus can become a key
+    simulated = [DRAWS in corpus.variables for corpus in chosen.corpora]
     facts: dict[str, Any] = {
         "pretty_name": _title(chosen),
         **_licence(str(chosen.attributes.get("license", ""))),
-        "tags": ["vibration", "bearing", "fault-diagnosis", "condition-monitoring"],
+        "task_categories": ["tabular-classification"],  # the hub has no category of signals but sound
+        "tags": ["vibration", "bearing", "fault-diagnosis", "condition-monitoring", *["synthetic"] * any(simulated)],
+        # labels of recordings may be a person's
+        **({"annotations_creators": ["machine-generated"], "source_datasets": ["original"]} if all(simulated) else {}),
         "size_categories": [_size_category(sum(sizes.values()))],
     }
     return "\n".join(

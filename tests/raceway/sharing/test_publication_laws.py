@@ -5,16 +5,18 @@ import json
 
 import netCDF4
 import pytest
+from ruamel.yaml import YAML
 
 from gen.corpus import new_corpus, open_corpus, read_manifest, validate_corpus
 from gen.corpus.finishing import finish_corpus
 from gen.generation.corpus import generate
 from gen.support.errors import CorpusError
-from raceway import describe, publish
+from raceway import copy, describe, publish
 from raceway.sharing import croissant_problems
 from raceway.sharing.card.card_page import data_card
+from raceway.sharing.croissant import croissant
 from raceway.sharing.publication import Publication, check_orcid, publication_of, read_publication
-from tests import corpora
+from tests import corpora, tone_corpora
 from tests.paths import ROOT
 from tests.same_corpora import files
 
@@ -198,6 +200,24 @@ def test_croissant_has_no_marks_that_are_not_seen(tmp_path):
     assert "channels of the signal: ab, c." in text
     assert {letter for letter in text if not letter.isprintable()} == {"\n"}
     assert croissant_problems(tmp_path / "c") == []
+
+
+def test_only_corpora_with_simulated_records_are_called_synthetic(nine, tmp_path):
+    tone_corpora.write_corpus(tmp_path / "recorded")
+    told = {}
+    for path in (nine / "c", tmp_path / "recorded"):
+        hub = tmp_path / f"hub of {path.name}"
+        copy(path, hub, to="huggingface")
+        header = (hub / "README.md").read_text().split("---\n")[1]
+        facts = {name.removeprefix("rai:"): value for name, value in croissant(path).items() if name[:4] == "rai:"}
+        told[path.name] = facts, YAML(typ="safe").load(header)
+    (facts, hub), (of_recorded, hub_of_recorded) = told["c"], told["recorded"]
+    assert facts["hasSyntheticData"] is True
+    assert ("synthetic" in hub["tags"], hub["annotations_creators"]) == (True, ["machine-generated"])
+    # labels of recordings may be a person's
+    assert not {"hasSyntheticData", "dataLimitations", "dataAnnotationProtocol"} & of_recorded.keys()
+    assert ("synthetic" in hub_of_recorded["tags"], "annotations_creators" in hub_of_recorded) == (False, False)
+    assert of_recorded["dataBiases"].startswith("12 of 48 records are healthy")
 
 
 def test_a_card_of_another_content_is_removed_and_a_changed_croissant_is_found(copied_folder):
