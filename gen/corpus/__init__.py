@@ -17,6 +17,7 @@ part          one file of records
 lazy          records as a Dataset, read lazily, with a few files open
 manifest      files of a corpus with size and hash, and its facts
 index         opening a corpus
+xarray_engine the same for xarray, by the name of an engine
 finishing     index and manifest of finished parts, or one file of them
 new           a new corpus, part by part
 where         conditions on records: parsed, never run

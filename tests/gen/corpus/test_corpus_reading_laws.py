@@ -5,7 +5,9 @@ import resource
 import shutil
 import threading
 import time
+import tomllib
 from functools import lru_cache
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import h5py
@@ -25,8 +27,10 @@ from gen.corpus import (
     read_manifest,
     validate_corpus,
 )
+from gen.corpus.xarray_engine import CorpusEngine
 from gen.support.errors import CorpusError
 from tests.corpora import physical, write_corpus
+from tests.paths import ROOT
 
 MOST_OPEN, MANY = 8, (3,) * 24
 """Files that are open at a time here, and records of parts; more of them than a process may open."""
@@ -220,3 +224,21 @@ def test_blocks_hold_every_record_once_and_few_at_a_time(tmp_path):
         assert blocks_of(corpus) == [slice(0, 256), slice(256, 512), slice(512, 570)]
         long = xr.Dataset({SIGNAL: corpus[SIGNAL].variable[:5].pad(elapsed_time=(0, 2_000_000))})
         assert blocks_of(long) == [slice(0, 2), slice(2, 4), slice(4, 5)]
+
+
+def test_xarray_opens_a_corpus_by_the_name_of_its_engine_and_only_then(many):
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]["xarray.backends"]
+    engine = EntryPoint("raceway", declared["raceway"], "xarray.backends").load()
+    path, signals = many
+    with xr.open_dataset(path, engine=engine, drop_variables="draws") as opened, open_corpus(path) as corpus:
+        xr.testing.assert_identical(opened, corpus.drop_vars("draws"))
+        np.testing.assert_array_equal(opened[SIGNAL].values, signals)
+    # a file that a stranger sends is opened as before
+    assert not engine().guess_can_open(path)
+
+
+def test_xarray_refuses_an_altered_corpus_by_the_name_of_its_engine(copied_folder):
+    part = copied_folder / "parts" / part_name(0)
+    part.write_bytes(part.read_bytes()[:-1] + b"x")
+    with pytest.raises(CorpusError, match=r"part-00000.nc"):
+        xr.open_dataset(copied_folder, engine=CorpusEngine)
