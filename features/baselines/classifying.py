@@ -62,6 +62,16 @@ def suited(model: Model, durations: Sequence[float], highest: float) -> Model:
     return model.wide if highest > model.band[1] and model.wide and highest >= model.wide.band[1] else model
 
 
+def check_takes_reference(model: Fitted, reference: str) -> None:
+    """Refuse a reference, with whose name the sentence begins, if the model has no part for it."""
+    if model.relative is None:
+        message = (
+            f"{reference}: the model takes no reference, because {model.corpus} has no rig with two healthy "
+            "recordings and records of each other class; leave the reference out, or train on another corpus."
+        )
+        raise CorpusError(message)
+
+
 def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset | None = None) -> Predictions:
     """Predictions of a model for all records of a feature table or waveforms, labelled or not.
 
@@ -104,12 +114,7 @@ def _of_table(table: xr.Dataset, model: Fitted, reference: xr.Dataset | None) ->
     tables, used, colour = channels_of(table), model, None
     # a reference has a model of its own, of features relative to healthy records
     if reference is not None:
-        if model.relative is None:
-            message = (
-                f"{title_of(reference)}: the model takes no reference, because {model.corpus} has no rig with two healthy "
-                "recordings and records of each other class; leave the reference out, or train on another corpus."
-            )
-            raise CorpusError(message)
+        check_takes_reference(model, title_of(reference))
         if band_of(reference.attrs) != band_of(table.attrs):
             raise CorpusError(
                 f"{title_of(reference)}: the features of the reference are computed from another band than those of the records; compute "

@@ -134,6 +134,8 @@ def evaluate(
       raceway evaluate pump --model model.skops --reference pump
     """
     from features.baselines import count_unknown
+    from features.baselines.classifying import check_takes_reference
+    from features.baselines.models import suited_to
     from features.baselines.reference_choice import check_durations
     from gen import open_corpus
     from raceway.kept_models import open_model
@@ -145,6 +147,9 @@ def evaluate(
         check_durations(corpus, reference)
     loaded, source = open_model(model)
     corpora = [path for path in dict.fromkeys((corpus, reference)) if path is not None]
+    # before the features are computed
+    if reference is not None:
+        check_takes_reference(suited_to(loaded, *corpora), str(reference))
     tables = tables_for(loaded, corpora, speed, team, channel)
     table = tables[0]
     # the reference is the tested corpus itself, or the second one

@@ -17,6 +17,7 @@ from features.table.recording_speeds import recording_numbers
 from gen.corpus import UNKNOWN_CODE, open_corpus
 from gen.support.errors import CorpusError
 from raceway.cli import cli
+from raceway.commands import model_commands
 from tests.tone_corpora import write_corpus
 
 pytestmark = pytest.mark.usefixtures("few_trees")
@@ -240,7 +241,7 @@ def test_a_reference_of_other_durations_is_refused(tmp_path):
         check_durations(tmp_path / "c", short)
 
 
-def test_evaluate_takes_a_corpus_as_reference(tmp_path):
+def test_evaluate_takes_a_corpus_as_reference_and_refuses_one_before_it_computes_features(tmp_path, monkeypatch):
     corpus, path = tmp_path / "c", tmp_path / "m.skops"
     write_corpus(corpus, **{name: np.full(48, order) for name, order in ORDERS._asdict().items()})
     Model("random_forest").fit(corpus).save(path)
@@ -256,6 +257,11 @@ def test_evaluate_takes_a_corpus_as_reference(tmp_path):
     code, told = run(tmp_path / "nowhere")
     assert code
     assert f"{tmp_path / 'nowhere'}: " in told
+    Model("majority").fit(corpus).save(tmp_path / "rule.skops")
+    path = tmp_path / "rule.skops"
+    monkeypatch.setattr(model_commands, "tables_for", lambda *_: pytest.fail("features were computed"))
+    code, told = run(corpus)
+    assert (code, "the model takes no reference, because tones has no rig with two healthy" in told) == (2, True), told
 
 
 def test_a_reference_in_another_band_is_refused(model, table):
