@@ -9,7 +9,7 @@ from .estimators import ESTIMATORS as ESTIMATORS
 from .names import BASELINES as BASELINES, DEFAULT_ESTIMATOR as DEFAULT_ESTIMATOR, TRACKS as TRACKS
 from .classifying import predict as predict
 from .models import Model as Model
-from .own import EstimatorError as EstimatorError, load_maker as load_maker
+from .own import EstimatorError as EstimatorError, load_maker as load_maker, unseeded as unseeded
 from .predictions import UNSURE as UNSURE, Predictions as Predictions
 from .records import DEFAULT_GROUPS as DEFAULT_GROUPS, count_unknown as count_unknown
 from .scores import Scores as Scores, interval_text as interval_text, percent_text as percent_text

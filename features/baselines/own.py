@@ -174,6 +174,13 @@ def new_classifier(maker: Maker, seed: int, name: str) -> Any:
     return classifier
 
 
+def unseeded(maker: Maker, seed: int) -> list[str]:
+    """Parameters ``random_state`` of a classifier, or of parts of it, that are None: two fits may then differ."""
+    classifier = new_classifier(maker, seed, maker_name(maker))
+    parameters = classifier.get_params() if hasattr(classifier, "get_params") else {}
+    return [name for name, value in parameters.items() if name.endswith("random_state") and value is None]
+
+
 def _seed_argument(maker: Callable[..., Any], seed: int) -> dict[str, int]:
     try:
         parameters = inspect.signature(maker).parameters

@@ -25,7 +25,7 @@ from raceway.console.options import (
     training_options,
     worker_options,
 )
-from raceway.console.progress_bar import progress
+from raceway.console.progress_bar import notice, progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -158,7 +158,7 @@ def benchmark(
         raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
     if analysis.groups and output is None:
         raise click.UsageError("--group is for -o OUTDIR")
-    from features.baselines import DEFAULT_GROUPS, check_submission, load_maker, write_submission
+    from features.baselines import DEFAULT_GROUPS, check_submission, load_maker, unseeded, write_submission
     from features.baselines import benchmark as run
     from gen.corpus import result_folder
     from raceway.kept_models import open_model
@@ -166,6 +166,12 @@ def benchmark(
 
     spelled = dict.fromkeys(baseline for name in estimators for baseline in (BASELINES if name == "all" else (name,)))
     chosen = {name: load_maker(name) if ":" in name else name for name in spelled}
+    for name, maker in chosen.items():
+        if not isinstance(maker, str) and (parameters := unseeded(maker, seed)):
+            notice(
+                f"warning: {name}: {', '.join(parameters)} is None, so its scores may change from call to call; set it, or give "
+                "the function that makes the classifier an argument seed."
+            )
     protocol = {"track": tracks[0], "folds": folds, "seed": seed}
     # the check of a submission, or a submission, in place of a report
     if check is not None:

@@ -16,6 +16,7 @@ pytestmark = pytest.mark.usefixtures("unpainted", "tables_once")
 
 MINE = """
 import numpy as np
+from sklearn.ensemble import RandomForestClassifier
 from sklearn.impute import SimpleImputer
 from sklearn.naive_bayes import GaussianNB
 from sklearn.pipeline import make_pipeline
@@ -24,6 +25,14 @@ from sklearn.preprocessing import FunctionTransformer
 
 def make():
     return make_pipeline(SimpleImputer(keep_empty_features=True), GaussianNB())
+
+
+def forest():
+    return make_pipeline(SimpleImputer(keep_empty_features=True), RandomForestClassifier(5))
+
+
+def seeded_forest(seed):
+    return forest().set_params(randomforestclassifier__random_state=seed)
 
 
 def of_signals():
@@ -81,6 +90,22 @@ def test_options_that_cannot_be_used_are_refused_before_any_feature_is_computed(
     result = run("benchmark", tiny_corpus, "-o", tmp_path / "report", *options)
     assert result.exit_code != 0
     assert sentence in str(result.exception) + result.output
+
+
+def test_a_classifier_that_draws_anew_in_each_call_is_warned_of_and_a_seeded_one_is_repeated(
+    run, tiny_corpus, tmp_path, mine
+):
+    assert mine
+    file = tmp_path / "rows.csv"
+    warning = "own_module:forest: randomforestclassifier__random_state is None, so its scores may change"
+    for name, warned, same in (("forest", True, False), ("seeded_forest", False, True)):
+        written = []
+        for _ in range(2):
+            line = ("benchmark", tiny_corpus, "--folds", 2, "--estimator", f"own_module:{name}", "--submit", file)
+            assert (warning in run(*line).stderr) == warned
+            written.append(file.read_text())
+            file.unlink()
+        assert (written[0] == written[1]) == same
 
 
 def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, tiny_corpus, tiny_table, tmp_path, mine):
