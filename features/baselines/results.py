@@ -118,6 +118,8 @@ class Results(Shown):
         of balanced accuracy when the values of its features are exchanged among tested records. Empty for waveforms.
     models
         Scores of models that were trained before, on all records of the corpus and then of each of the others, by name.
+    submissions
+        Scores of predictions in a file on the first track, by name of their column.
     """
 
     corpus: Content
@@ -134,6 +136,7 @@ class Results(Shown):
     left_out: dict[str, str] = field(default_factory=dict)
     importance: dict[str, float] = field(default_factory=dict)
     models: dict[str, tuple[Scores, ...]] = field(default_factory=dict)
+    submissions: dict[str, Scores] = field(default_factory=dict)
 
     def _heading(self) -> str:
         return f"Results on {self.corpus.title}: {self.corpus.records:,} records, balanced accuracy over {self.folds} folds by {self.track}"

@@ -56,7 +56,7 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
     "--check",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     metavar="FILE.csv",
-    help="Score the predictions in a file of --submit again, and do nothing else.",
+    help="Score the predictions in a file of --submit again, alone or beside the baselines of -o.",
 )
 @click.option(
     "--test",
@@ -147,15 +147,15 @@ def benchmark(
       raceway benchmark corpus -o report --estimator mine:make --estimator ensemble
       raceway benchmark corpus --test cwru -o report --waveforms --estimator cnn:Classifier
       raceway benchmark corpus --track rig --folds 3 --estimator mine:make --submit mine.csv
-      raceway benchmark corpus --track rig --folds 3 --check mine.csv
+      raceway benchmark corpus --track rig --folds 3 --check mine.csv -o report
     """
     # options that need another one are refused before anything is loaded
     if waveforms and not any(":" in name for name in estimators):
         raise click.UsageError("--waveforms is for --estimator MODULE:NAME")
     if per_turn is not None and not waveforms:
         raise click.UsageError("--per-turn is for --waveforms")
-    if [output, submit, check].count(None) != 2:
-        raise click.UsageError("give one of -o OUTDIR, --submit FILE.csv and --check FILE.csv")
+    if (submit is None) == (output is None and check is None):
+        raise click.UsageError("give -o OUTDIR, --check FILE.csv or both, or --submit FILE.csv")
     if analysis.groups and output is None:
         raise click.UsageError("--group is for -o OUTDIR")
     from features.baselines import DEFAULT_GROUPS, check_submission, load_maker, unseeded, write_submission
@@ -172,16 +172,14 @@ def benchmark(
                 f"warning: {name}: {', '.join(parameters)} is None, so its scores may change from call to call; set it, or give "
                 "the function that makes the classifier an argument seed."
             )
-    protocol = {"track": tracks[0], "folds": folds, "seed": seed}
+    protocol: Any = {"track": next(iter(TRACKS)) if "all" in tracks else tracks[0], "folds": folds, "seed": seed}
     # the check of a submission, or a submission, in place of a report
-    if check is not None:
+    if check is not None and output is None:
         scores = check_submission(table_of(corpus, "off", team, analysis), check, **protocol)
         if as_json:
             show.as_json({name: show.plain(of) for name, of in scores.items()})
         else:
-            show.table(
-                ("classifier", "score", "95 %", "false alarms"), ((name, *_figures(of)) for name, of in scores.items())
-            )
+            _show_submissions(scores)
         return
     if submit is not None:
         chosen = chosen or {DEFAULT_ESTIMATOR: DEFAULT_ESTIMATOR}
@@ -189,12 +187,13 @@ def benchmark(
         write_submission(table_of(corpus, "off", team, analysis), chosen, submit, waveforms=signals, **protocol)
         show.text(f"{submit}: predictions of {', '.join(chosen)}; --check scores them again.")
         return
-    assert output is not None  # noqa: S101 - one of the three is given
+    assert output is not None  # noqa: S101 - neither of the others is given alone
     # a wrong model file is told before the features are computed
     loaded = {str(path or REFERENCE_MODEL): open_model(path)[0] for path in dict.fromkeys(models)}
     with result_folder(output):
         groups = analysis.with_groups(DEFAULT_GROUPS)
         table = table_of(corpus, "off", team, analysis)
+        submitted = {} if check is None else check_submission(table, check, **protocol)
         # speeds are checked or corrected on other corpora, whose labels may be wrong
         others = [table_of(test, speed, team, analysis._replace(channel=None)) for test in tests]
         scored = {}
@@ -217,7 +216,7 @@ def benchmark(
         }
         with progress("scoring", "scores") as report:
             results = run(table, others, **options, folds=folds, seed=seed, progress=report)
-        results = replace(results, models=scored)
+        results = replace(results, models=scored, submissions=submitted)
         # records that no score counts
         for path, content in zip((corpus, *tests), (results.corpus, *results.tests), strict=True):
             notice_of_unknown(path, content.unknown)
@@ -233,6 +232,9 @@ def _show(results: "Results", tests: list[str]) -> None:
     """Show the scores on each track and on other corpora, and those of trained models."""
     show.text(f"Balanced accuracy on {results.corpus.title}, {results.folds} folds by {results.track}:", "")
     _show_baselines(results.baselines, tests)
+    if results.submissions:
+        show.text("")
+        _show_submissions(results.submissions)
     if results.models:
         show.text("")
         rows = ((name, *(f"{of.balanced_accuracy:.3f}" for of in scores)) for name, scores in results.models.items())
@@ -251,6 +253,11 @@ def _show_baselines(baselines: "Mapping[str, Baseline]", tests: list[str]) -> No
         further = (baseline.leaky, baseline.null, *baseline.tests)
         rows.append((name, *_figures(baseline.grouped), *(f"{scores.balanced_accuracy:.3f}" for scores in further)))
     show.table(("baseline", "score", "95 %", "false alarms", "leaky split", "null labels", *tests), rows)
+
+
+def _show_submissions(submitted: "Mapping[str, Scores]") -> None:
+    rows = ((name, *_figures(scores)) for name, scores in submitted.items())
+    show.table(("submitted", "score", "95 %", "false alarms"), rows)
 
 
 def _figures(scores: "Scores") -> list[str]:

@@ -80,6 +80,7 @@ def test_an_own_classifier_of_waveforms_is_scored_beside_baselines_on_features(t
         (("--estimator", "own_none:make"), "own_none:make: cannot be imported (ModuleNotFoundError"),
         (("--waveforms",), "--waveforms is for --estimator MODULE:NAME"),
         (("--estimator", "own_module:make", "--per-turn", 9), "--per-turn is for --waveforms"),
+        (("--submit", "rows.csv"), "give -o OUTDIR, --check FILE.csv or both, or --submit FILE.csv"),
     ],
 )
 def test_options_that_cannot_be_used_are_refused_before_any_feature_is_computed(
@@ -120,6 +121,23 @@ def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, t
         same = ("balanced_accuracy", "false_alarms", "records")
         assert [checked[name][figure] for figure in same] == [getattr(scores, figure) for figure in same]
         assert checked[name]["interval"] == list(scores.interval)
+    # beside the baselines of a report
+    line = (
+        "benchmark",
+        tiny_corpus,
+        *protocol,
+        "--estimator",
+        "envelope_rule",
+        "--check",
+        file,
+        "-o",
+        tmp_path / "report",
+    )
+    reported = told(*line)
+    assert reported["submissions"] == checked
+    page = (tmp_path / "report" / "report.html").read_text()
+    row = f"{mine}, submitted</th><td>{checked[mine]['balanced_accuracy']:.3f}"
+    assert (row in page, "envelope rule</th>" in page) == (True, True)
 
 
 def test_a_submission_of_a_foreign_corpus_begins_no_formula_and_is_scored_again(tiny_table, tmp_path):
