@@ -10,6 +10,7 @@ kept_models   the reference model, trained once and kept per user
 importing     a job: recordings of people in the format of corpora
 comparing     a job: synthetic records against real ones
 lives         a job: remaining life of bearings run to failure
+visibility    a job: the smallest fault that can be seen
 diagnosis     a job: what is wrong with a recording
 sharing       a job: corpora copied, described and published
 reports       a job: pages and pictures of corpora and scores

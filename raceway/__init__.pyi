@@ -5,3 +5,4 @@ from .lives.early_warning import warn_early as warn_early
 from .lives.prognosis import score_lives as score_lives
 from .reports.maps import plot as plot
 from .sharing import copy as copy, describe as describe, publish as publish
+from .visibility import limit as limit

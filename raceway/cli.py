@@ -26,6 +26,7 @@ from raceway.importing import import_commands
 from raceway.lives import lives_commands
 from raceway.reports import explore_command
 from raceway.sharing import card_command, copy_command
+from raceway.visibility import limit_command
 
 GROUPS: Mapping[str, tuple[click.Command, ...]] = {
     "Make corpora": (
@@ -43,6 +44,7 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         plot_commands.plot,
         explore_command.explore,
         lives_commands.life,
+        limit_command.limit,
         compare_command.compare,
     ),
     "Learn from them": (

@@ -38,6 +38,19 @@ EVERYTHING = {
     "faults": EVERY_FAULT,
 }
 
+# spalls from too narrow to be seen in records of 0.2 s to plain ones, 400 records
+LADDER = {
+    "seed": 77,
+    "corpus": {"rigs": 50, "specimens_per_rig": 8, "records_per_specimen": 1, "split": {"test": 0.25}},
+    "storage.records_per_part": 400,
+    "recording.duration_s": 0.2,
+    "faults": [
+        {"kind": "healthy"},
+        {"kind": "outer", "width_mm": "loguniform(0.05, 1.5)", "angle_deg": "uniform(-40, 40)"},
+    ],
+    "level": {"kind": "physical", "background_m_s2": 2},
+}
+
 # of the twelve bearings some fail and some do not; each life has its spall long before its end
 LIVES = {
     "corpus": {

@@ -63,12 +63,12 @@ class Plan:
     """The sentence about the first record that cannot be simulated."""
 
 
-def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = None) -> Plan:
+def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int | None = None) -> Plan:
     """Draw records of a recipe, and check some of them.
 
     Parameters
     ----------
-    recipe : path or str
+    recipe : path, str or Recipe
         Recipe file, or name of a recipe that ships with Raceway.
     seed, records : int, optional
         Replace the seed and the number of records of the recipe.

@@ -63,7 +63,7 @@ records_option: Decorator = click.option(
     "--records", type=int, metavar="N", help="Make N records: the first ones of the recipe, or more from further rigs."
 )
 
-_workers: Decorator = click.option(
+workers_option: Decorator = click.option(
     "--workers",
     type=click.IntRange(min=1),
     metavar="N",
@@ -107,7 +107,7 @@ class Team(NamedTuple):
 
 
 USUAL = Team()
-worker_options = gathered("team", Team, _workers, _scheduler)
+worker_options = gathered("team", Team, workers_option, _scheduler)
 
 
 class Analysis(NamedTuple):

@@ -10,7 +10,7 @@ from matplotlib.ticker import NullLocator
 
 from features.baselines import Scores
 from features.baselines.detection import Roc, WidthBin
-from gen.support.units import from_si
+from gen.support.units import UNITS, from_si
 from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION
 
 PANEL = (2.6, 2.4)  # inches, of a figure that stands beside others
@@ -21,28 +21,38 @@ DASHED = (0, (4, 3))
 def draw_detection(bins: Sequence[WidthBin], false_alarms: float | None) -> Figure:
     """Share of detected faults by their width, with intervals; and the share of false alarms."""
     figure, axes = _panel()
-    width = [from_si(width_bin.width, "mm") for width_bin in bins]
+    draw_bins(axes, bins, UNITS["mm"].factor, BLUE, INK)
+    set_size_axis(axes, [from_si(width_bin.width, "mm") for width_bin in bins])
+    if false_alarms is not None:
+        _draw_level(axes, "false alarms", false_alarms, VERMILION)
+    axes.set(xlabel="width of the fault [mm]", ylabel="share detected", ylim=(-0.03, 1.05))
+    return figure
+
+
+def draw_bins(axes: Axes, bins: Sequence[WidthBin], unit: float, bars: str, dots: str) -> None:
+    """Share detected in each range of sizes, with its interval, over the size in a unit."""
+    size = [width_bin.width / unit for width_bin in bins]
     axes.vlines(
-        width, [width_bin.low for width_bin in bins], [width_bin.high for width_bin in bins], color=BLUE, linewidth=1.2
+        size, [width_bin.low for width_bin in bins], [width_bin.high for width_bin in bins], color=bars, linewidth=1.2
     )
     # the area of a dot is the number of its records
     axes.scatter(
-        width,
+        size,
         [width_bin.detected for width_bin in bins],
         _areas([width_bin.records for width_bin in bins]),
-        INK,
+        dots,
         linewidth=0,
         zorder=3,
     )
-    if false_alarms is not None:
-        _draw_level(axes, "false alarms", false_alarms, VERMILION)
+
+
+def set_size_axis(axes: Axes, size: Sequence[float]) -> None:
+    """Logarithmic axis of sizes."""
     axes.set_xscale("log")
     # the ticks of a logarithmic axis would stand at powers of ten, which are too few here
-    ticks = np.geomspace(min(width), max(width), 4)
+    ticks = np.geomspace(min(size), max(size), 4)
     axes.set_xticks(ticks, [f"{tick:.2g}" for tick in ticks])
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set(xlabel="width of the fault [mm]", ylabel="share detected", ylim=(-0.03, 1.05))
-    return figure
 
 
 @rc_context(STYLE)

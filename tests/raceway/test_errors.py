@@ -128,6 +128,7 @@ READERS = {
     "explore": "explore {} -o {new}.html", "features": "features {} -o {new}.nc", "train": "train {} -o {new}",
     "evaluate": "evaluate {} --model {model}", "benchmark": "benchmark {} -o {new}", "compare": "compare {} {corpus} -o {new}",
     "copy": "copy {} -o {new}", "card": "card {} --license MIT", "life": "life {} -o {new}.png", "prognose": "prognose {}",
+    "limit": "limit {}",
 }  # fmt: skip
 NO_CORPORA = {
     "nowhere": "nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file.",
@@ -148,7 +149,12 @@ def test_every_command_that_reads_a_corpus_refuses_what_is_none_in_one_sentence(
             continue
         result = run(*READERS[command].replace("{}", f"{{{place}}}").format(**places).split())
         assert (result.exit_code, result.stdout) == (2, ""), result.output
-        if command in ("plot", "train", "replay"):  # take recordings or recipes too, or read no more than a part
+        if command in (
+            "plot",
+            "train",
+            "replay",
+            "limit",
+        ):  # take recordings or recipes too, or read no more than a part
             sentence = places[place].name
         assert sentence in result.stderr
         assert len(result.stderr.splitlines()) == 1

@@ -32,6 +32,7 @@ RESULTS = {
     "plot {corpus} --record 1": "result.png",
     "explore {corpus}": "result.html",
     "life {lives}": "result.png",
+    "limit {sized} --workers 1": "result.png",
     "diagnose {recording} --bearing 6205 --rpm 1500 --rate 12000 --unit g --model {model}": "result.html",
     "replay {corpus} --record 1": "record.nc",
     "benchmark {corpus}": "report",
@@ -49,6 +50,8 @@ def originals(tiny_recipe, tmp_path_factory):
     folder = tmp_path_factory.mktemp("originals")
     corpus = write_pulses(folder / "corpus", records=2, identity=[f"pulses/0/{n}/{n}/-1" for n in range(8)])
     generate(Recipe(small_with(LIVES | {"corpus": LIVES["corpus"] | {"rigs": 1}})), folder / "lives")
+    width = np.append(np.zeros(20), np.geomspace(0.1e-3, 1e-3, 20))
+    write_pulses(folder / "sized", classes=("healthy", "outer"), records=20, duration=0.2, width=width)
     shutil.copy(tiny_recipe, folder / "recipe.yaml")
     Model("majority").fit(corpus).save(folder / "model.skops")
     np.save(folder / "recording.npy", np.random.default_rng(0).standard_normal(12_000))
@@ -65,6 +68,7 @@ def places(originals, tmp_path):
         "raw": "raw",
         "model": "model.skops",
         "lives": "lives",
+        "sized": "sized",
     }
     return {"corpus": tmp_path / "corpus", **{name: tmp_path / file for name, file in names.items()}}
 

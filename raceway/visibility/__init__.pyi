@@ -1,0 +1,1 @@
+from .fault_limits import FaultLimit as FaultLimit, limit as limit
