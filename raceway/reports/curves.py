@@ -12,6 +12,7 @@ from features.baselines import Scores
 from features.baselines.detection import Roc, WidthBin
 from gen.support.units import UNITS, from_si
 from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION
+from raceway.reports.templates import three_digits
 
 PANEL = (2.6, 2.4)  # inches, of a figure that stands beside others
 DASHED = (0, (4, 3))
@@ -51,7 +52,7 @@ def set_size_axis(axes: Axes, size: Sequence[float]) -> None:
     axes.set_xscale("log")
     # the ticks of a logarithmic axis would stand at powers of ten, which are too few here
     ticks = np.geomspace(min(size), max(size), 4)
-    axes.set_xticks(ticks, [f"{tick:.2g}" for tick in ticks])
+    axes.set_xticks(ticks, map(three_digits, ticks))
     axes.xaxis.set_minor_locator(NullLocator())
 
 

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import xarray as xr
@@ -20,8 +19,8 @@ from features.baselines.cross_calibration import calibration_splits
 from features.baselines.detection import WidthBin, detection
 from features.baselines.fitting import fits
 from features.baselines.own import Maker
-from features.baselines.records import DEFAULT_GROUPS, HEALTHY_CODE, records_of, title_of
-from gen.corpus import FAULTS, UNKNOWN_CODE, class_counts, is_single_file, open_corpus
+from features.baselines.records import DEFAULT_GROUPS, HEALTHY_CODE, records_of
+from gen.corpus import FAULTS, UNKNOWN_CODE, class_counts, is_single_file, open_corpus, temporary_folder
 from gen.corpus.fault_classes import HEALTHY
 from gen.corpus.simulated import UNJUDGED
 from gen.drawing.section import plain
@@ -30,6 +29,7 @@ from gen.recipe import Recipe, read_recipe
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from gen.support.units import shown_unit
+from raceway.reports.templates import three_digits
 from raceway.visibility.size_curves import sizes_seen
 
 LEAST = 20  # records of a class
@@ -69,11 +69,11 @@ class FaultLimit:
     seen_90: tuple[float, ...]
 
     def text(self, seen: tuple[float, ...]) -> str:
-        """Size in the unit in which people read it, and its interval, such as ``0.16 mm (0.14 to 0.2)``."""
+        """Size in the unit in which people read it, and its interval, such as ``0.16 mm (0.142 to 0.2)``."""
         unit, factor = shown_unit(self.variable, self.unit)
-        smallest, largest = (f"{end / factor:.2g}" for end in self.extent)
+        smallest, largest = (three_digits(end / factor) for end in self.extent)
         beyond = {0.0: f"< {smallest}", np.inf: f"> {largest}"}
-        size, low, high = (beyond.get(end, f"{end / factor:.2g}") for end in seen)
+        size, low, high = (beyond.get(end, three_digits(end / factor)) for end in seen)
         return f"{size} {unit} ({low} to {high})"
 
 
@@ -114,12 +114,13 @@ def limit(
     if not isinstance(source, xr.Dataset):
         with corpus_of(source, workers=workers, progress=progress) as corpus:
             source = feature_table(corpus, DEFAULT_GROUPS, workers=workers, progress=progress)
-    check_records(source, title_of(source))
+    records = records_of(source, DEFAULT_GROUPS)
+    check_records(source, records.title)
     table = source.isel(record=source["fault"].values != UNKNOWN_CODE)
-    records = records_of(table, DEFAULT_GROUPS)
     cross_validation = calibration_splits(records, seed)
     if cross_validation is None:
         raise CorpusError(f"{records.title}: a class is on one specimen alone; make two or more of each class.")
+    # each record gets its probability from a training without its unit
     by, splits = cross_validation
     folds, suspicion = fits(records.features, records.fault, estimator, splits, seed), np.empty(len(records.fault))
     for (_, tested), (_, probabilities) in zip(splits, folds, strict=True):
@@ -127,13 +128,13 @@ def limit(
     scores = {"classifier": suspicion}
     if "detectable" in table:
         scores = {"twin": table["detectable"].where(table["detectable"] != UNJUDGED).values} | scores
-    limits = list[FaultLimit]()
+    # a curve for each class, size and criterion
+    unit, healthy, limits = getattr(records, by), records.fault == HEALTHY_CODE, list[FaultLimit]()
     for fault, variable in sizes_of(table):
         for criterion, score in scores.items():
             own = (records.fault == FAULTS.index(fault)) & np.isfinite(score)
             size = np.where(own, np.nan_to_num(table[variable].values), 0)
             if size.any():
-                unit, healthy = getattr(records, by), records.fault == HEALTHY_CODE
                 seen, curve, sizes = sizes_seen(size, score, unit, healthy, seed)
                 bins, ends = detection(seen, size, records.specimen), (size[size > 0].min(), size.max())
                 numbers = (tuple(map(float, some)) for some in (ends, curve, *sizes))
@@ -166,8 +167,8 @@ def corpus_of(
     truth = {"truth": {"twins": True, "undetected": "keep"}}
     recipe = Recipe(plain(read_recipe(source, records=records)) | truth)
     check_counts(plan(recipe).classes, str(source))
-    with TemporaryDirectory() as folder:
-        yield generate(recipe, Path(folder) / "corpus", workers=workers, progress=progress).path
+    with temporary_folder() as folder:
+        yield generate(recipe, folder / "corpus", workers=workers, progress=progress).path
 
 
 def check_counts(classes: Mapping[str, int], name: str) -> None:
@@ -186,9 +187,12 @@ def check_records(records: xr.Dataset, name: str) -> None:
     """Refuse records, or their table, that give no limit, with a ``name`` for the sentence."""
     fault = records["fault"].values
     check_counts(class_counts(fault[fault != UNKNOWN_CODE]), name)
-    if any((records.get(tries, np.zeros(1)) > 0).any() for tries in ("fault_tries", "level_tries")):
+    # with faults that were drawn again, or labelled healthy, those that are left are seen more often
+    altered = {"fault_tries": fault, "level_tries": fault, "fault_share": fault == HEALTHY_CODE}
+    if any(column in records and (records[column].values * rows > 0).any() for column, rows in altered.items()):
         raise CorpusError(
-            f"{name}: faults that cannot be seen were drawn again (truth.undetected: redraw); give the recipe in place of the corpus."
+            f"{name}: faults that cannot be seen were drawn again, or labelled healthy (truth.undetected); give the recipe in place of "
+            f"the corpus."
         )
     if not sizes_of(records):
         raise CorpusError(f"{name}: no class has a size that varies; draw it, such as width_mm: loguniform(0.1, 2).")

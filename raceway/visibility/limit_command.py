@@ -42,16 +42,15 @@ def limit(
 
     A row such as
 
-      outer width  twin  0.13 mm (0.12 to 0.14)  0.16 mm (0.15 to 0.17)
+      outer width  twin  0.131 mm (0.122 to 0.141)  0.163 mm (0.152 to 0.174)
 
-    says that spalls of 0.16 mm on the outer race are seen in 90 % of the records, and those of 0.13 mm in half of them. It holds for
+    says that spalls of 0.163 mm on the outer race are seen in 90 % of the records, and those of 0.131 mm in half of them. It holds for
     records of this length: change duration_s of the recipe for others. Draw widths from too faint to plain, such as loguniform(0.05, 2),
     and make 100 or more records of each class, the healthy one too. The corpus of a recipe is not kept, and faults that cannot be seen
     are not drawn again. The picture has the share seen over the size.
     """
+    from features.baselines.records import HEALTHY_CODE
     from features.table.durations import durations_of
-    from gen.corpus import FAULTS
-    from gen.corpus.fault_classes import HEALTHY
     from gen.support.executor import cores
     from raceway.visibility import limit as limits_of
     from raceway.visibility.fault_limits import corpus_of
@@ -63,7 +62,7 @@ def limit(
         corpus_of(source, records=records, workers=workers, progress=report) as corpus,
     ):
         table = table_of(corpus, team=Team(workers), analysis=analysis)
-    limits, healthy = limits_of(table), int((table["fault"] == FAULTS.index(HEALTHY)).sum())
+    limits, healthy = limits_of(table), int((table["fault"] == HEALTHY_CODE).sum())
     if healthy * FALSE_ALARMS < 1:
         notice(
             f"warning: {healthy} healthy records are too few for false alarms of 1 %: the classifier must exceed the highest of them; make "
