@@ -99,14 +99,15 @@ def test_a_classifier_that_draws_anew_in_each_call_is_warned_of_and_a_seeded_one
     assert mine
     file = tmp_path / "rows.csv"
     warning = "own_module:forest: randomforestclassifier__random_state is None, so its scores may change"
-    for name, warned, same in (("forest", True, False), ("seeded_forest", False, True)):
+    for name, warned in (("forest", True), ("seeded_forest", False)):
         written = []
         for _ in range(2):
             line = ("benchmark", tiny_corpus, "--folds", 2, "--estimator", f"own_module:{name}", "--submit", file)
             assert (warning in run(*line).stderr) == warned
             written.append(file.read_text())
             file.unlink()
-        assert (written[0] == written[1]) == same
+        # a forest that draws anew may still say the same
+        assert warned or written[0] == written[1]
 
 
 def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, tiny_corpus, tiny_table, tmp_path, mine):
