@@ -35,7 +35,14 @@ from gen.corpus import (
     writing,
 )
 from gen.corpus.schema import with_file_codes
-from gen.generation.identity import added_classes, failures_of, made_by, other_code, part_file
+from gen.generation.identity import (
+    added_classes,
+    failures_of,
+    made_by,
+    origins_of_backgrounds,
+    other_code,
+    part_file,
+)
 from gen.generation.target import check_parts, check_same, claim, part_numbers, prepare, remove_other_parts
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.display import Shown
@@ -121,6 +128,8 @@ def generate(
         If the scheduler does not answer or has no workers, before anything is written; or if the cluster is lost.
     """
     checked = read_recipe(recipe, seed=seed, records=records)
+    if checked.background.recording is not None:
+        checked.background.recording.cut(checked)
     if type(workers) is not int or workers < 1:
         raise RecipeError(f"workers: {workers!r} is not allowed; use 1 or more.")
     target = Path(target)
@@ -170,6 +179,7 @@ def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
         "title": recipe.title,
         **made_by(recipe),
         "overrides": overrides,
+        "basis": origins_of_backgrounds([recipe]) or None,
     }
 
 

@@ -5,7 +5,7 @@ It loads nothing of the simulator, so that ``generate`` refuses within a second,
 
 import functools
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -85,6 +85,12 @@ def library_versions(*recipes: Recipe) -> dict[str, str]:
 @functools.cache
 def _libraries() -> dict[str, str]:
     return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
+
+
+def origins_of_backgrounds(recipes: Iterable[Recipe]) -> list[str]:
+    """A sentence on each recording that is the background of some recipes."""
+    recorded = (recipe.background.recording for recipe in recipes)
+    return [*dict.fromkeys(recording.origin for recording in recorded if recording is not None)]
 
 
 def added_classes(recipe: Recipe) -> list[str]:

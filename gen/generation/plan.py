@@ -79,6 +79,8 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
         If the recipe cannot be simulated, or none of its records can.
     """
     whole = read_recipe(recipe, seed=seed, records=records)
+    if whole.background.recording is not None:
+        whole.background.recording.cut(whole)
     # parts of the corpus stand for the whole of a large one
     ranges = some_ranges(whole)
     drawn = [scenario for first, stop in ranges for scenario in draw_scenarios(whole, first, stop)]

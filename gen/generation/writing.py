@@ -29,8 +29,10 @@ from gen.corpus import (
 from gen.corpus.numbering import new_numbers
 from gen.corpus.plain_arrays import records_of_arrays
 from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
+from gen.generation.identity import origins_of_backgrounds
 from gen.generation.labels import LABELS
 from gen.measurement.measure import LARGEST_COUNT
+from gen.mechanisms.background.background import BackgroundSection
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
 from gen.recipe.sensing import RecordingSection
 from gen.support.errors import CorpusError
@@ -92,6 +94,7 @@ def write_corpus(
         "title": stored.attrs["title"],
         "recipe": ", ".join(names) or None,
         "versions": json.loads(rows.attrs.get("versions", "{}")),
+        "basis": origins_of_backgrounds(of for of in recipes if of is not None),
     }
     with new_corpus(target, recipe_text=recipe and recipe_text(recipe), **facts) as corpus:
         for block in blocks_of(stored):
@@ -100,11 +103,14 @@ def write_corpus(
 
 
 def _recipe_of(text: str) -> Recipe:
-    """Name and recording of a stored scenario, as a recipe without the other sections, which take ten times as long to read."""
+    """Name, recording and recorded background of a stored scenario: reading the rest takes ten times as long."""
     try:
         stored = json.loads(text)
         if stored.keys() <= Recipe.model_fields.keys():
-            return Recipe.model_construct(name=stored["name"], recording=RecordingSection(**stored["recording"]))
+            recorded = {key: value for key, value in stored.get("background", {}).items() if key == "recording"}
+            background = BackgroundSection.model_validate(recorded)
+            recording = RecordingSection(**stored["recording"])
+            return Recipe.model_construct(name=stored["name"], recording=recording, background=background)
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         pass
     raise CorpusError("stored scenario: is not the recipe of a record; drop the variable draws.")

@@ -40,6 +40,11 @@ def parts_of(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[Parts]:
         others.append(_others(scenario, rig, turned))
     # transforms run side by side
     noises, others = irfft(np.stack(noises), n), np.stack(others)
+    for run, noise in zip(runs, noises, strict=True):
+        recipe, stream = run.scenario.recipe, run.scenario.stream
+        if (recorded := recipe.background.recording) is not None:
+            # what was recorded has passed path and sensor already
+            noise[:, axis.kept] = recorded.segment(recipe, run.scenario.origin.specimen, stream(recorded.place))
     others = irfft(others, n) if others.any() else np.zeros_like(noises)
     parts = list[Parts]()
     for place, (run, rig, turned) in enumerate(zip(runs, rigs, angles, strict=True)):
@@ -60,7 +65,11 @@ def _behind_paths(runs: Sequence[Run], rigs: Sequence[RigFilters]) -> list[NDArr
     for run in runs:
         whole, sound = run.acceleration, run.twin and acceleration_of(run.twin)
         # the twin, and what the fault adds to it
-        signals.append(whole[None] if sound is None else np.stack([sound, whole - sound]))
+        parts = whole[None] if sound is None else np.stack([sound, whole - sound])
+        if run.scenario.recipe.background.recording is not None:
+            # a recording has the vibration of its own healthy bearing
+            parts = np.concatenate([np.zeros_like(parts[:1]), parts[1:]])
+        signals.append(parts)
     # a path without resonances is a factor, and needs no transform
     resonant = [place for place, rig in enumerate(rigs) if rig.direct is None]
     if resonant:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from gen.mechanisms.background.noise import Noise
 from gen.mechanisms.mechanism import mechanisms_of
 from gen.recipe.faults import class_of
 from gen.recipe.life_checks import life_problems
@@ -20,7 +21,16 @@ _SAMPLES_OF_A_RECORD, _SAMPLES_OF_A_NUMBER = 4000, 12
 def check_recipe(recipe: Sections) -> None:
     """ValueError about the first reason for which a recipe cannot be made."""
     _check_sizes(recipe)
-    checks = (_faults, _corpus, _sensing, _sensor_faults, share_problems, _operation, life_problems)
+    checks = (
+        _faults,
+        _corpus,
+        _sensing,
+        _sensor_faults,
+        _recorded_background,
+        share_problems,
+        _operation,
+        life_problems,
+    )
     for problem in (problem for check in checks for problem in check(recipe)):
         raise ValueError(problem)
 
@@ -143,6 +153,23 @@ def _sensing(recipe: Sections) -> Iterator[str]:
         yield f"recording.duration_s: {recipe.n_samples} samples are too few; use at least 16."
     if len({channel.name for channel in channels}) < len(channels):
         yield "recording.channels: two channels have the same name; give each its own."
+
+
+def _recorded_background(recipe: Sections) -> Iterator[str]:
+    recorded = recipe.background.recording
+    if recorded is None:
+        return
+    drawn = sorted(Noise.model_fields.keys() & recipe.background.model_fields_set)
+    # a record that was drawn has every key of its background
+    if drawn and recorded.probability == 1 and recipe.origin is None:
+        yield f"background.{drawn[0]}: has no effect with a recording in place of the noise; leave one of the two out."
+    if not recipe.truth.twins:
+        yield "truth.twins: without them it is not known what a fault adds to background.recording; leave twins: false out."
+    if recipe.n_specimens > recorded.stretches:
+        yield (
+            f"background.recording.stretches: {recorded.stretches} are too few for {recipe.n_specimens} specimens, each of which "
+            "has one of its own; lower corpus.rigs or records, or raise it if the recording is long enough."
+        )
 
 
 def _operation(recipe: Sections) -> Iterator[str]:

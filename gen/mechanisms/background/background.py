@@ -7,12 +7,13 @@ from gen.mechanisms.background.gear_mesh import GearMesh
 from gen.mechanisms.background.impulses import Impulses, Knocks
 from gen.mechanisms.background.machine_conditions import CONDITIONS
 from gen.mechanisms.background.noise import Noise
+from gen.mechanisms.background.recorded_background import RecordedBackground
 from gen.mechanisms.background.shaft_lines import Harmonics
 from gen.mechanisms.background.source import BackgroundSource, MachineCondition, MachineSource
 from gen.mechanisms.background.tones import Tones
 from gen.mechanisms.mechanism import mechanisms_of, section_with, with_plugins
 
-SOURCES: tuple[type[BackgroundSource], ...] = (Tones,)
+SOURCES: tuple[type[BackgroundSource], ...] = (RecordedBackground, Tones)
 """Sources that the measurement adds."""
 _OF_MACHINE = [
     source
