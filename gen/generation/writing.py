@@ -5,6 +5,7 @@ a corpus with this recipe.
 """
 
 import json
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,6 +30,7 @@ from gen.corpus import (
 from gen.corpus.numbering import new_numbers
 from gen.corpus.plain_arrays import records_of_arrays
 from gen.corpus.schema import NAMED, ROLES, records_in_memory, schema_problems
+from gen.corpus.simulated import UNJUDGED
 from gen.generation.identity import origins_of_backgrounds
 from gen.generation.labels import LABELS
 from gen.measurement.measure import LARGEST_COUNT
@@ -40,6 +42,11 @@ from gen.support.errors import CorpusError
 if TYPE_CHECKING:
     import pandas as pd
 
+_OF_THE_SIGNAL = {
+    **dict.fromkeys(("snr", "fault_snr", "fault_share", "background_rms", "gain"), np.nan),
+    "detectable": UNJUDGED,
+}
+"""Truth that holds for the signal of the scenario alone, and its value where that is another one."""
 _NOT_A_COUNT = 0.01  # largest distance of a decoded sample from a count; single precision comes within 0.004
 
 
@@ -58,7 +65,9 @@ def write_corpus(
         One or several records with the variables of the format, in any order: from :func:`gen.record`, :func:`gen.records`,
         :func:`gen.simulate` or :func:`gen.open_corpus`, whole or chosen, changed, or joined with :func:`xarray.concat`. Variables of shape
         (record,) can be added, with the attributes ``long_name`` and ``role``. A record whose signal was filtered, scaled or cut is written
-        without its scenario, so that it cannot be replayed. Signals are stored as float32 unless all are counts of one converter.
+        without its scenario, so that it cannot be replayed, and with NaN for its levels and gains, which a warning tells. Of a recipe
+        whose converter is float32, only a change of the length is noticed. Signals are stored as float32 unless all are counts of one
+        converter.
         Or accelerations [m s-2] of shape (record, time) or (record, channel, time).
     target : path
         New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
@@ -86,6 +95,7 @@ def write_corpus(
     draws = rows[DRAWS].values.astype(str) if DRAWS in rows else np.full(rows.sizes["record"], "")
     recipes = [_recipe_of(text) if text else None for text in draws]
     signal, full_scale, unchanged = _signal(rows[SIGNAL].values, recipes)
+    rows, told = _without_old_truth(rows, (draws != "") & ~unchanged)
     stored = _stored(rows, np.where(unchanged, draws, ""), signal, full_scale)
     # only all records of one recipe make a corpus of that recipe
     recipe = _whole_recipe(rows) if unchanged.all() else None
@@ -95,6 +105,7 @@ def write_corpus(
         "recipe": ", ".join(names) or None,
         "versions": json.loads(rows.attrs.get("versions", "{}")),
         "basis": origins_of_backgrounds(of for of in recipes if of is not None),
+        "warnings": told,
     }
     with new_corpus(target, recipe_text=recipe and recipe_text(recipe), **facts) as corpus:
         for block in blocks_of(stored):
@@ -141,6 +152,20 @@ def _counts(values: NDArray[np.floating], full_scale: float | None) -> NDArray[n
     if not np.abs(exact - counts).max() <= _NOT_A_COUNT or np.abs(counts).max() > LARGEST_COUNT:
         return None
     return counts.astype(np.int16)
+
+
+def _without_old_truth(rows: xr.Dataset, changed: NDArray[np.bool_]) -> tuple[xr.Dataset, list[str]]:
+    """Records without the truth that a changed signal no longer has, and a sentence on it, which is a warning too."""
+    old = [name for name in _OF_THE_SIGNAL if name in rows]
+    if not changed.any() or not old:
+        return rows, []
+    unknown = {name: rows[name].where(~changed, _OF_THE_SIGNAL[name]).astype(rows[name].dtype) for name in old}
+    sentence = (
+        f"The signals of {np.count_nonzero(changed)} of {len(changed)} records were changed after their simulation, so that "
+        f"{', '.join(old)} of these are unknown."
+    )
+    warnings.warn(sentence, stacklevel=3)
+    return rows.assign(unknown), [sentence]
 
 
 def _whole_recipe(rows: xr.Dataset) -> Recipe | None:

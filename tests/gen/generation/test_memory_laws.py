@@ -1,12 +1,14 @@
 """Laws of records made in memory and of the corpora written from them: the same records as from a recipe, whole, and made again from it."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 import xarray as xr
 
 import gen
 import raceway
-from gen.corpus import SIGNAL
+from gen.corpus import SIGNAL, read_manifest
 from gen.support.errors import CorpusError, RecipeError, SimulationError
 
 SHORT = {"waviness_nm": 20, "sample_rate_hz": 12000, "duration_s": 0.1, "settle_s": 0.06, "seed": 5}
@@ -99,7 +101,9 @@ def test_every_record_of_a_dataset_that_was_cut_or_joined_is_replayed(ladder, tm
 )
 def test_a_record_that_was_changed_is_written_without_its_scenario(ladder, tmp_path, changed, stored, replayable):
     dataset = changed(ladder)
-    directory = gen.write_corpus(dataset, tmp_path / "corpus")
+    is_changed = "draws" in dataset and replayable < dataset.sizes["record"]
+    with pytest.warns(UserWarning, match="are unknown") if is_changed else nullcontext():
+        directory = gen.write_corpus(dataset, tmp_path / "corpus")
     assert gen.validate_corpus(directory) == []
     assert (directory / "recipe.yaml").exists() == (replayable == 6)
     with gen.open_corpus(directory) as corpus:
@@ -112,6 +116,19 @@ def test_a_record_that_was_changed_is_written_without_its_scenario(ladder, tmp_p
     for record in np.flatnonzero(~with_scenario)[-1:]:
         with pytest.raises(CorpusError, match=f"record {record} has no scenario"):
             gen.replay(directory, record)
+
+
+def test_a_changed_record_loses_the_truth_of_its_old_signal_and_no_other(ladder, tmp_path):
+    changed = ladder.fault.values != 1
+    half = ladder.assign(acceleration=ladder[SIGNAL].where(~xr.DataArray(changed, dims="record"), 0.1))
+    lost = {**dict.fromkeys(("snr", "fault_snr", "fault_share", "background_rms", "gain"), np.nan), "detectable": 2}
+    with pytest.warns(UserWarning, match=f"of 3 of 6 records were changed .* that {', '.join(lost)} of these are"):
+        directory = gen.write_corpus(half, tmp_path / "corpus")
+    assert ["were changed after their simulation" in told for told in read_manifest(directory).warnings] == [True]
+    with gen.open_corpus(directory) as corpus:
+        for name in ("n_spalls", "width", "true_shaft_rate", "clipped", *lost):
+            expected = np.where(changed & (name in lost), lost.get(name), ladder[name])
+            np.testing.assert_array_equal(corpus[name].values.astype(float), expected.astype(float), name)
 
 
 @pytest.mark.parametrize(
