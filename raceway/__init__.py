@@ -8,6 +8,7 @@ module        responsibility
 console       options, results, progress, errors
 kept_models   the reference model, trained once and kept per user
 importing     a job: recordings of people in the format of corpora
+imitating     a job: a recipe of a machine from a healthy recording of it
 comparing     a job: synthetic records against real ones
 lives         a job: remaining life of bearings run to failure
 visibility    a job: the smallest fault that can be seen

@@ -1,5 +1,6 @@
 from .console.progress_bar import show_progress as show_progress
 from .diagnosis import diagnose as diagnose
+from .imitating import imitate as imitate
 from .kept_models import reference_model as reference_model
 from .lives.early_warning import warn_early as warn_early
 from .lives.prognosis import score_lives as score_lives

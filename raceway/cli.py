@@ -22,6 +22,7 @@ from raceway.console.ending import BAD_INPUT, NoReader, exit_code
 from raceway.console.interruption import listen_for_signals
 from raceway.console.plugin_commands import PluginGroup, keep_examples
 from raceway.diagnosis import diagnose_command
+from raceway.imitating import imitate_command
 from raceway.importing import import_commands
 from raceway.lives import lives_commands
 from raceway.reports import explore_command
@@ -33,6 +34,7 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         corpus_commands.recipes,
         corpus_commands.plan,
         corpus_commands.generate,
+        imitate_command.imitate,
         import_commands.import_,
         copy_command.copy,
         card_command.card,

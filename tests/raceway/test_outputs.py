@@ -38,6 +38,7 @@ RESULTS = {
     "benchmark {corpus}": "report",
     "compare {corpus} {corpus}": "report",
     "generate {recipe}": "new",
+    "imitate {recording} --bearing 6205 --rpm 1500 --rate 12000 --unit g": "result.yaml",
     "import generic {raw}": "new",
     **{f"import {name} {{raw}}": "new" for name in published_sets()},
     "copy {corpus}": "new",
@@ -181,7 +182,8 @@ def test_no_corpus_has_a_place_in_another_nor_the_name_of_an_index(places, tmp_p
     assert files(tmp_path) == before
 
 
-FILES = [line for line, name in RESULTS.items() if "." in name and "replay" not in line]
+# imitate writes three files, none of which may exist
+FILES = [line for line, name in RESULTS.items() if "." in name and not line.startswith(("replay", "imitate"))]
 
 
 @pytest.mark.parametrize("line", FILES)

@@ -1,0 +1,1 @@
+from .imitation import Imitation as Imitation, imitate as imitate
