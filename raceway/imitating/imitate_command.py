@@ -1,6 +1,7 @@
 """Command that writes a recipe of a machine from recordings of it with a healthy bearing."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -29,14 +30,7 @@ from raceway.importing.reading_options import Reading, Speeds, reading_options, 
 )
 @json_option
 def imitate(
-    recordings: tuple[Path, ...],
-    bearing: str,
-    speeds: Speeds | None,
-    load_n: float | None,
-    synthetic: bool,
-    reading: Reading,
-    output: Path,
-    as_json: bool,
+    recordings: tuple[Path, ...], output: Path, speeds: Speeds | None, reading: Reading, as_json: bool, **machine: Any
 ) -> None:
     """Write a recipe of a machine from healthy recordings.
 
@@ -53,15 +47,7 @@ def imitate(
     from raceway.imitating import imitate as run
 
     with notice_compilation():
-        done = run(
-            recordings,
-            output,
-            bearing=bearing,
-            rpm=speeds,
-            load_n=load_n,
-            synthetic=synthetic,
-            **reading._asdict(),
-        )
+        done = run(recordings, output, rpm=speeds, **machine, **reading._asdict())
     for sentence in done.warnings:
         notice(f"warning: {sentence}")
     if as_json:

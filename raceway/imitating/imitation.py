@@ -146,7 +146,7 @@ def _duration(recordings: Sequence[Recorded], rpm: float) -> float:
     least = math.ceil(10 * TURNS / rpm_to_hertz(rpm)) / 10
     duration = max(1.0 if shortest.duration >= LONG else 0.5, least)
     if shortest.duration < 2 * duration:
-        message = f"lasts {shortest.duration:.3g} s, less than two records of {duration:g} s; record {LONG:g} s or more"
+        message = f"lasts {shortest.duration:.3g} s, less than two records of {duration:g} s; record {20 * duration:g} s or more"
         raise CorpusError(f"{shortest.name}: {message}.")
     return duration
 
