@@ -75,6 +75,9 @@ async function drawRecord(row) {
   drawWaterfall(arrays, fault, nominal);
 }
 
+// Number with four digits, or with all before the point.
+const brief = (value) => (Math.abs(value) < 1000 ? +value.toPrecision(4) : Math.round(value));
+
 // Values of the record in the units that people read, with the stored values beside them.
 async function tellLabels(row) {
   for (const { name, unit, numeric, shown_unit: shownUnit, factor } of about.quantities) {
@@ -83,9 +86,9 @@ async function tellLabels(row) {
     const value = (await valuesOf(name))[row];
     if (row !== current) return;
     const known = !Number.isNaN(value);
-    cell.textContent = !known ? "–" : numeric ? +(value / factor).toPrecision(5) : value;
+    cell.textContent = !known ? "–" : numeric ? brief(value / factor) : value;
     cell.nextElementSibling.textContent = shownUnit;
-    cell.parentElement.querySelector("small").textContent = known && unit !== shownUnit ? `${value} ${unit}` : "";
+    cell.parentElement.querySelector("small").textContent = known && unit !== shownUnit ? `${brief(value)} ${unit}` : "";
   }
 }
 
@@ -227,9 +230,11 @@ function makeLabels() {
     addHtml(details, "summary", { textContent: `${role} (${rows.length})` });
     details.addEventListener("toggle", () => tellLabels(current));
     const table = addHtml(details, "table");
-    for (const { name, meaning } of rows) {
-      const row = Object.assign(table.insertRow(), { title: meaning });
-      addHtml(row, "th", { textContent: name, scope: "row" });
+    for (const { name, meaning, numeric } of rows) {
+      const row = Object.assign(table.insertRow(), { title: meaning, className: numeric ? "" : "text" });
+      const head = addHtml(row, "th", { scope: "row" });
+      // a long name is parted between its words
+      for (const word of name.split(/(?<=_)/)) head.append(word, document.createElement("wbr"));
       row.insertCell().id = `value_${name}`;
       row.insertCell();
       addHtml(row.insertCell(), "small");

@@ -152,3 +152,33 @@ def test_the_page_works_in_a_browser_by_keys_at_any_width(page, corpus, tmp_path
         opened.until("document.querySelector('#scatter svg').viewBox.baseVal.width < 500")
         assert opened.value("document.documentElement.scrollWidth <= innerWidth")
         assert opened.errors == []
+
+
+BROKEN = """
+    [...document.querySelectorAll("#labels tr:not(.text) td")].filter((cell) => {
+        const text = (cell.querySelector("small") ?? cell).firstChild;
+        const range = document.createRange();
+        if (text) range.selectNodeContents(text);
+        return text && range.getClientRects().length > 1;
+    }).map((cell) => cell.textContent)
+"""
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium")
+def test_no_number_and_no_unit_is_broken_at_any_width(page, tmp_path):
+    with browser(tmp_path / "profile") as opened:
+        for width in (1400, 1200, 1000, 500, 360):
+            opened.look(width)
+            opened.open(page)
+            opened.until("document.querySelectorAll('.plots svg').length === 4")
+            opened.value("document.querySelectorAll('#labels details').forEach((group) => { group.open = true; })")
+            opened.until(
+                "[...document.querySelectorAll('#labels tr td:first-of-type')].every((cell) => cell.textContent)"
+            )
+            assert opened.value(BROKEN) == [], width
+            assert opened.value("document.documentElement.scrollWidth <= innerWidth"), width
+        cells = opened.value(
+            "[...document.querySelectorAll('#labels tr:not(.text) td')].map((cell) => cell.textContent)"
+        )
+        digits = [re.sub(r"^-?0\.0*|[^\d]", "", cell) for cell in cells if "." in cell]
+        assert max(map(len, digits)) == 4
