@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 BRIGHTEST_DB = 20.0  # level drawn black in an order map, above the median
 COLUMNS = 340  # of a map
+EMPTY = 1e-4  # of the highest amplitude of a window: the filter of resampling leaves less beyond half the sample rate
 FAINTEST = 1e-12  # of an amplitude
 NEAR_ZERO = 12  # first cyclic frequencies, at which any signal is coherent with itself
 ONE_FALSE_ALARM = 0.01  # expected in a whole map of coherence of noise
@@ -88,8 +89,9 @@ def _draw_bands(axes: Axes, tree: BandTree, score: FloatArray) -> None:
 
 
 def level_over_median(amplitude: FloatArray) -> FloatArray:
-    """Level of spectra over the median of each [dB], shape (window, order)."""
-    median = np.median(amplitude, axis=1, keepdims=True)
+    """Level of spectra over the median of each [dB], shape (window, order); orders beyond the sample rate of the recording do not count."""
+    held = np.where(amplitude >= EMPTY * amplitude.max(axis=1, keepdims=True), amplitude, np.nan)
+    median = np.nanmedian(held, axis=1, keepdims=True)
     return 20 * np.log10(np.maximum(amplitude, FAINTEST) / np.maximum(median, FAINTEST))
 
 

@@ -46,3 +46,15 @@ def test_the_coherence_of_an_impact_train_is_darkest_at_its_rate(records):
     edges = mesh.get_coordinates()[0, :, 0]
     darkest = edges[np.argmax(shade.max(axis=0))]
     assert darkest == pytest.approx(RATE * round(darkest / RATE), abs=2 * (edges[2] - edges[1]))
+
+
+def test_an_order_map_of_noise_is_as_dark_however_many_samples_a_turn_has():
+    fs, rate = 1000.0, 10.0
+    noise = np.random.default_rng(2).standard_normal((1, 10_000))
+    angle = 2 * np.pi * rate * np.arange(10_000)[None] / fs
+    for per_turn in (60, 128, 512, 1024):
+        resampled = signal.order_map(signal.resample_to_angle(noise, angle, per_turn), per_turn)
+        axes = raceway.plot(resampled, Figure().subplots())
+        # half the sample rate is at order 50
+        level = np.asarray(axes.collections[0].get_array())[:, resampled.orders[1:] < 28]
+        assert np.median(level) == pytest.approx(0, abs=1.5), per_turn
