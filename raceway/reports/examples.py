@@ -44,7 +44,7 @@ def draw_overview(corpus: xr.Dataset) -> Figure:
     for (waveform, envelope), shown in zip(figure.subplots(len(drawn), 2, squeeze=False), drawn, strict=True):
         draw_waveform(waveform, shown)
         draw_envelope_spectrum(envelope, shown)
-        waveform.set_title(shown.title, color=FAULT_COLOURS[shown.fault], fontweight="bold")
+        waveform.set_title(shown.title, color=FAULT_COLOURS[shown.fault], fontweight="bold", parse_math=False)
         envelope.set_title("")
     return figure
 

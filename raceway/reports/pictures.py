@@ -134,11 +134,18 @@ def write_picture(figure: Figure, path: Path) -> None:
     write_durably(picture(figure, FORMATS[suffix]), path)
 
 
+class Drawing(Figure):
+    """A figure that a notebook shows, also one that does not use pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        return picture(self, "png")
+
+
 @rc_context(STYLE)
 def draw_record(shown: DrawnRecord, under: DrawnRecord | None = None) -> Figure:
     """Waveform, power spectral density, and squared envelope spectrum with the fault lines, one above the other."""
-    figure = Figure(figsize=(WIDTH, 5.8), layout="constrained")
-    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=FAULT_COLOURS[shown.fault])
+    figure = Drawing(figsize=(WIDTH, 5.8), layout="constrained")
+    write_title(figure, shown)
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
     for draw, axes in ((draw_waveform, waveform), (draw_density, density), (draw_envelope_spectrum, envelope)):
         draw(axes, shown, under)
@@ -146,6 +153,12 @@ def draw_record(shown: DrawnRecord, under: DrawnRecord | None = None) -> Figure:
         figure.legend(*waveform.get_legend_handles_labels(), loc="outside lower right", ncols=2)
     figure.align_ylabels()
     return figure
+
+
+def write_title(figure: Figure, shown: DrawnRecord) -> None:
+    """Write the title of a record; a name of a file or channel is no formula, whatever signs it has."""
+    colour = FAULT_COLOURS[shown.fault]
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=colour, parse_math=False)
 
 
 def draw_waveform(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = None) -> None:

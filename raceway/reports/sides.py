@@ -51,7 +51,7 @@ def draw_sides(records: Mapping[int, DrawnRecord], top: float) -> Figure:
         turns, values = thin(np.arange(x.size) / shown.fs * shown.shaft_rate, x / np.sqrt(np.mean(shown.signal**2)))
         waveform.plot(turns, values, color=INK, linewidth=0.5)
         waveform.set(xlabel="revolution of the shaft", xlim=(0, turns[-1]))
-        waveform.set_title(shown.title, color=_colour(number), fontweight="bold")
+        waveform.set_title(shown.title, color=_colour(number), fontweight="bold", parse_math=False)
         frequencies, power = psd(shown.signal[None], shown.fs, SEGMENT)
         # over the whole energy, since gains of machines differ
         share = power[0] / power[0].sum()

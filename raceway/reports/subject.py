@@ -13,7 +13,8 @@ from features.table.band import LEAST_WIDTH, Band
 from features.table.channels import channel_number
 from features.table.indicators import Orders
 from gen.corpus import FAULT_NAMES, SIGNAL, corpus_name, open_corpus
-from gen.corpus.fault_classes import UNKNOWN
+from gen.corpus.fault_classes import UNKNOWN, fault_class
+from gen.physics.catalogue import CATALOGUE
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
 from raceway.reports.pictures import DrawnRecord
@@ -22,8 +23,8 @@ CONSTANT = 1.02  # largest ratio of two speeds that count as one
 MARGIN = 1.05  # by which a tracked speed may leave the labelled range
 
 
-def shown_record(corpus: Path | str | xr.Dataset, record: int, channel: int | str, band: Band) -> DrawnRecord:
-    """A record of a corpus.
+def shown_record(corpus: Path | str | xr.Dataset, record: int | None, channel: int | str, band: Band) -> DrawnRecord:
+    """A record of a corpus; None is the one record of a Dataset.
 
     Raises
     ------
@@ -33,12 +34,14 @@ def shown_record(corpus: Path | str | xr.Dataset, record: int, channel: int | st
     """
     where = corpus_name(corpus)
     with open_corpus(corpus) as opened:
-        if not 0 <= record < opened.sizes["record"]:
+        if record is None and opened.sizes["record"] > 1:
+            raise CorpusError(f"{where}: has {opened.sizes['record']} records; give one, such as isel(record=0).")
+        if not 0 <= (record or 0) < opened.sizes["record"]:
             raise CorpusError(f"{where}: no record {record}; give one of 0 to {opened.sizes['record'] - 1}.")
         number = channel_number(opened, channel, where)
         several = opened.sizes["channel"] > 1
-        shown = shown_of(opened.isel(record=record), record, number, named=several)._replace(band=band)
-    return _checked(shown, f"{where}: record {record}")
+        shown = shown_of(opened.isel(record=record or 0), record, number, named=several)._replace(band=band)
+    return _checked(shown, where if record is None else f"{where}: record {record}")
 
 
 def shown_recording(
@@ -65,12 +68,16 @@ def shown_recording(
     return turning
 
 
-def shown_of(record: xr.Dataset, number: int, channel: int, *, named: bool = False) -> DrawnRecord:
-    """Record of an opened corpus; ``named`` puts the channel into the title."""
+def shown_of(record: xr.Dataset, number: int | None, channel: int, *, named: bool = False) -> DrawnRecord:
+    """Record of an opened corpus, or without a number one alone; ``named`` puts the channel into the title."""
     fault = FAULT_NAMES[int(record["fault"])]
+    words = fault_class(fault).words
     sensor = f", {record['channel'].values[channel]}" if named else ""
+    start = f"{words}{sensor}" if number is None else f"Record {number}{sensor}: {words[0].lower()}{words[1:]}"
+    # a bearing that the catalogue lacks is a stranger's text, which pictures do not have
+    bearing = str(record["bearing"].item())
     shown = DrawnRecord(
-        title=f"Record {number}{sensor}: {fault}",
+        title=f"{start}, {bearing}" if bearing in CATALOGUE else start,
         signal=record[SIGNAL].isel(channel=channel).values.astype(float),
         fs=float(record["sample_rate"]),
         shaft_rate=float(record["shaft_rate"]),
@@ -104,8 +111,8 @@ def _varies(slowest: float, fastest: float) -> bool:
 def _turning(shown: DrawnRecord, slowest: float, fastest: float) -> DrawnRecord:
     """The same with its speed in the title, and with the angle of the shaft if the speed varies and can be tracked in the signal."""
     if not (can_be_drawn(shown) and _varies(slowest, fastest)):
-        return shown._replace(title=f"{shown.title}, {from_si(shown.shaft_rate, 'rpm'):.0f} rpm")
-    title = f"{shown.title}, {from_si(slowest, 'rpm'):.0f}-{from_si(fastest, 'rpm'):.0f} rpm"
+        return shown._replace(title=f"{shown.title}, {from_si(shown.shaft_rate, 'rpm'):,.0f} rpm")
+    title = f"{shown.title}, {from_si(slowest, 'rpm'):,.0f}-{from_si(fastest, 'rpm'):,.0f} rpm"
     try:
         rate = track_speed(shown.signal, shown.fs, slowest / MARGIN, fastest * MARGIN).rate
     except ValueError:  # too short, or sampled too slowly, for a course

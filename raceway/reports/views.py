@@ -7,6 +7,7 @@ that they stand still. Every view takes the mean away, and shows the healthy rec
 from collections.abc import Callable, Mapping
 
 import numpy as np
+import xarray as xr
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,6 +17,7 @@ from features.signal.impulsive import kurtogram
 from features.signal.orders import order_map, order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray
 from features.signal.spectra import cepstrum
+from features.table.band import DEFAULT_BAND, checked_band
 from gen.corpus.fault_classes import SHAFT, fundamentals
 from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.maps import BRIGHTEST_DB, FAINTEST, draw_coherence, draw_grid, level_over_median, plot
@@ -26,21 +28,59 @@ from raceway.reports.pictures import (
     STYLE,
     UNDER,
     WIDTH,
+    Drawing,
     DrawnRecord,
     draw_cursors,
     draw_density,
     draw_envelope_spectrum,
+    draw_record,
     draw_waveform,
     envelope_over_angle,
     fault_lines,
     name_lines,
+    write_title,
 )
+from raceway.reports.subject import shown_record
 
 HEIGHT = 3.6  # inches
 MAP_TURNS = 24  # revolutions of a window of the waterfall
 CEPSTRUM_TURNS = 1.3  # end of the axis, in revolutions
 SHORTEST_CEPSTRUM = 0.06  # revolutions: what lies below is the shape of the spectrum
 COHERENCE_BAND = 200.0  # Hz
+
+
+def plot_record(
+    record: xr.Dataset,
+    view: str | None = None,
+    *,
+    healthy: xr.Dataset | None = None,
+    channel: int | str = 0,
+    band: tuple[float, float] = DEFAULT_BAND,
+) -> Figure:
+    """Draw a record as ``raceway plot`` does; a notebook shows the figure.
+
+    Parameters
+    ----------
+    record
+        One record, as ``gen.record(...)`` or ``corpus.isel(record=17)``.
+    view
+        One of `VIEWS`; by default waveform, power spectral density and squared envelope spectrum.
+    healthy
+        Another record, which is drawn under it.
+    channel, band
+        Number or name of the channel, and band of the envelope [Hz].
+
+    Raises
+    ------
+    CorpusError
+        If a Dataset is not one record of the format, or cannot be drawn.
+    ValueError
+        For another view, or if the record is too short for it.
+    """
+    if view is not None and view not in VIEWS:
+        raise ValueError(f"view: {view!r} is none of {', '.join(VIEWS)}.")
+    shown, *under = (shown_record(of, None, channel, checked_band(*band)) for of in (record, healthy) if of is not None)
+    return draw_record(shown, *under) if view is None else draw_view(view, shown, *under)
 
 
 @rc_context(STYLE)
@@ -52,8 +92,8 @@ def draw_view(view: str, shown: DrawnRecord, under: DrawnRecord | None = None) -
     ValueError
         If the record is too short for the view.
     """
-    figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
-    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=FAULT_COLOURS[shown.fault])
+    figure = Drawing(figsize=(WIDTH, HEIGHT), layout="constrained")
+    write_title(figure, shown)
     axes = figure.subplots()
     VIEWS[view](axes, shown, under)
     if under is not None and view not in MAPS:

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from features.table.band import DEFAULT_BAND
+from gen.corpus import open_corpus
 from gen.support.errors import CorpusError
-from raceway.reports.pictures import picture, squared_envelope
-from raceway.reports.subject import shown_recording
-from raceway.reports.views import MAPS, VIEWS, draw_view
+from raceway.reports.pictures import draw_record, picture, squared_envelope
+from raceway.reports.subject import shown_record, shown_recording
+from raceway.reports.views import MAPS, VIEWS, draw_view, plot_record
 from tests.pulses import pulse_train
 
 FS = 12_000.0
@@ -66,3 +67,37 @@ def test_a_recording_whose_varying_speed_cannot_be_tracked_is_refused_with_the_o
         CorpusError, match=r"noise: the speed between 600 and 1800 rpm cannot be tracked .* give one speed"
     ):
         shown_recording("noise", noise, FS, (10.0, 30.0), ORDERS, DEFAULT_BAND)
+
+
+@pytest.mark.parametrize("view", [None, "envelope"])
+def test_a_record_from_python_is_drawn_as_the_command_draws_it_and_shown_in_a_notebook(tiny_corpus, view):
+    with open_corpus(tiny_corpus) as corpus:
+        of_command = [shown_record(corpus, number, 0, DEFAULT_BAND) for number in (5, 0)]
+        figure = plot_record(corpus.isel(record=5), view, healthy=corpus.isel(record=0))
+    expected = draw_record(*of_command) if view is None else draw_view(view, *of_command)
+    lines, others = ([line for axes in of.axes for line in axes.lines] for of in (figure, expected))
+    assert len(lines) == len(others) > 10
+    for line, other in zip(lines, others, strict=True):
+        np.testing.assert_array_equal(line.get_xydata(), other.get_xydata())
+    assert figure._repr_png_().startswith(b"\x89PNG")
+
+
+def test_the_title_of_a_record_is_what_a_person_calls_it(tiny_corpus):
+    with open_corpus(tiny_corpus) as corpus:
+        for fault, words in (("healthy", "Healthy"), ("outer", "Outer race fault")):
+            record = corpus.isel(record=int(np.argmax(corpus["fault_name"].values == fault)))
+            rpm = f"{60 * float(record.shaft_rate):,.0f} rpm"
+            assert plot_record(record).get_suptitle() == f"{words}, 6205, {rpm}"
+            # a text of a corpus is not drawn
+            foreign = record.assign_coords(bearing="$x^{$")
+            assert plot_record(foreign).get_suptitle() == f"{words}, {rpm}"
+        with pytest.raises(CorpusError, match=r"has 48 records; give one, such as isel\(record=0\)"):
+            plot_record(corpus)
+        with pytest.raises(ValueError, match="view: 'polar' is none of waveform, psd"):
+            plot_record(record, "polar")
+
+
+def test_a_name_is_drawn_as_it_is_whatever_signs_it_has(steady):
+    figure = draw_view("psd", steady._replace(title="$x^{$.wav"))
+    assert picture(figure, "png")
+    assert figure.get_suptitle() == "$x^{$.wav"
