@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import quote
 
-from gen.support.display import cell_text
 from raceway.console import show
 
 INDEX, LIST = "index.html", "diagnoses.csv"
@@ -105,6 +104,8 @@ def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
 
 
 def _csv_text(rows: Sequence[DiagnosisRow]) -> str:
+    from gen.support.display import cell_text  # not at the top: help needs nothing of gen
+
     stream = io.StringIO()
     table = csv.writer(stream, lineterminator="\n")
     table.writerow(DiagnosisRow._fields)
