@@ -8,6 +8,7 @@ pictures        drawings of one record, and the style of all
 subject         what is drawn: a record, or a recording of the user
 maps            drawings of kurtograms, order maps and coherence
 views           one view of a record, over orders at any speed
+bearing_drawing a bearing under load: its load zone, and the path of a point on a ball
 summaries       drawings of the contents of a corpus, and of scores
 curves          drawings of detection, false alarms and reliability
 sides           drawings of several sets side by side: examples, and distributions
