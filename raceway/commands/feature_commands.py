@@ -48,7 +48,7 @@ def features(
     """Compute the features of every record of DIR.
 
     The table has one row per record, with the features of its signal and all its labels. It does not depend on the number of workers.
-    Several channels are further columns of a Parquet file, and a dimension of a netCDF file.
+    Several channels are further columns of a Parquet file, and a dimension of a netCDF file. For CSV, read the Parquet file with pandas.
 
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet

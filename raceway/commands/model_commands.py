@@ -55,7 +55,8 @@ def train(
     """Train a classifier on the corpus in DIR.
 
     If the corpus has a test split (raceway info DIR), the model is trained on the other records and scored on the test split, which has
-    other specimens. Otherwise it is trained on all records and not scored. Model files run no code when they are loaded.
+    other specimens. Otherwise, or if all records are test records, as imported ones are, it is trained on all of them and not scored;
+    raceway benchmark scores by specimen or rig. Model files run no code when they are loaded.
 
       raceway train corpus -o model.skops
       raceway train corpus -o forest.skops --estimator random_forest
@@ -172,9 +173,11 @@ def calibration_text(calibration: "Calibration") -> str:
     """Sentence on the calibration of a model."""
     if calibration.by == "nothing":
         return "Not calibrated: every record is answered."
+    from features.baselines import percent_text
+
     return (
         f"Calibrated on {calibration.by}s outside the training: answers {100 * calibration.coverage:.0f} % of their records, those with "
-        f"a largest probability of at least {calibration.threshold:.2f}, and is unsure of the others."
+        f"a largest probability of at least {percent_text(calibration.threshold)}, and is unsure of the others."
     )
 
 
@@ -211,7 +214,7 @@ def _show_scores(scores: "Scores") -> None:
     compared = [scores] if whole is None or whole.records == scores.records else [scores, whole]
     header = ("", "by record", "by recording")[: 1 + len(compared)]
     show.table(header, zip(FIGURES, *(_figures(scored) for scored in compared), strict=True))
-    show.text("")
+    show.text("", "Records by their most probable class, those that are not answered too:")
     show.table(
         ("true \\ predicted", *scores.model_classes),
         zip(scores.classes, *zip(*scores.confusion, strict=True), strict=True),
@@ -229,7 +232,7 @@ FIGURES = (
     "calibration error",
     "answered",
     "accuracy of the answered",
-    'faulty among "healthy"',
+    'faulty among answered "healthy"',
     "number",
 )
 

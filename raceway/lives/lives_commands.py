@@ -83,7 +83,9 @@ def prognose(
             if false_alarms is not None:
                 check_seen(opened, str(lives))
     table, other = table_of(corpus, team=team), tested and table_of(tested, team=team)
+    notice("estimating remaining lives, which can take minutes.")
     scores = score_lives(table, other, folds=folds)
+    notice("setting thresholds of alarms, which can take minutes.")
     warned, rate = None, 1.0 if false_alarms is None else false_alarms
     try:
         warned = warn_early(table, other, alarms_per_1000_h=rate, folds=folds)

@@ -27,7 +27,7 @@ from gen.drawing.section import plain
 from gen.mechanisms.faults.kinds import KINDS
 from gen.recipe import Recipe, read_recipe
 from gen.support.errors import CorpusError
-from gen.support.progress import Progress
+from gen.support.progress import Progress, counter
 from gen.support.units import shown_unit
 from raceway.reports.templates import three_digits
 from raceway.visibility.size_curves import sizes_seen
@@ -99,7 +99,8 @@ def limit(
     workers
         Number of processes that make records and compute features.
     progress
-        Called while records are made, and again while features are computed, with the number done and of all.
+        Called while records are made, again while features are computed, and while classifiers and curves are fitted, with the number done
+        and of all.
 
     Returns
     -------
@@ -122,7 +123,10 @@ def limit(
         raise CorpusError(f"{records.title}: a class is on one specimen alone; make two or more of each class.")
     # each record gets its probability from a training without its unit
     by, splits = cross_validation
-    folds, suspicion = fits(records.features, records.fault, estimator, splits, seed), np.empty(len(records.fault))
+    scales, criteria = sizes_of(table), 1 + ("detectable" in table)
+    done = counter(progress, len(splits) + len(scales) * criteria)
+    folds = fits(records.features, records.fault, estimator, splits, seed, done=done)
+    suspicion = np.empty(len(records.fault))
     for (_, tested), (_, probabilities) in zip(splits, folds, strict=True):
         suspicion[tested] = 1 - probabilities[:, 0]  # healthy is the first class, and no training lacks it
     scores = {"classifier": suspicion}
@@ -130,7 +134,7 @@ def limit(
         scores = {"twin": table["detectable"].where(table["detectable"] != UNJUDGED).values} | scores
     # a curve for each class, size and criterion
     unit, healthy, limits = getattr(records, by), records.fault == HEALTHY_CODE, list[FaultLimit]()
-    for fault, variable in sizes_of(table):
+    for fault, variable in scales:
         for criterion, score in scores.items():
             own = (records.fault == FAULTS.index(fault)) & np.isfinite(score)
             size = np.where(own, np.nan_to_num(table[variable].values), 0)
@@ -139,6 +143,7 @@ def limit(
                 bins, ends = detection(seen, size, records.specimen), (size[size > 0].min(), size.max())
                 numbers = (tuple(map(float, some)) for some in (ends, curve, *sizes))
                 limits.append(FaultLimit(fault, criterion, variable, table[variable].attrs["units"], bins, *numbers))
+            done(1)
     return limits
 
 

@@ -62,7 +62,9 @@ def limit(
         corpus_of(source, records=records, workers=workers, progress=report) as corpus,
     ):
         table = table_of(corpus, team=Team(workers), analysis=analysis)
-    limits, healthy = limits_of(table), int((table["fault"] == HEALTHY_CODE).sum())
+    with progress("fitting", "curves and classifiers") as report:
+        limits = limits_of(table, progress=report)
+    healthy = int((table["fault"] == HEALTHY_CODE).sum())
     if healthy * FALSE_ALARMS < 1:
         notice(
             f"warning: {healthy} healthy records are too few for false alarms of 1 %: the classifier must exceed the highest of them; make "
