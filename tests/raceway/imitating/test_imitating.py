@@ -58,7 +58,12 @@ def test_a_recipe_of_a_recording_gives_its_segments_and_faults_on_them(run, writ
     assert all(0.2 < auc < 0.8 for auc in facts["auc"].values() if auc is not None)
     text = (tmp_path / "machine.yaml").read_text()
     recipe = read_recipe("machine.yaml")
-    for line in ("load_n: 500  # given", "shaft_rpm: 1772  # given", "sample_rate_hz: 12000.0  # read"):
+    for line in (
+        "load_n: 500  # given",
+        "shaft_rpm: 1772  # given",
+        "sample_rate_hz: 12000.0  # read",
+        "undetected: keep",
+    ):
         assert line in text
     assert f"healthy.csv, SHA-256 {sha256(recording)}" in text
     assert recipe.background.recording.sha256 == sha256(tmp_path / "machine.nc")
