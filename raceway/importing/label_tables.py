@@ -9,7 +9,7 @@ import csv
 import io
 import re
 from collections.abc import Mapping, Sequence
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -22,13 +22,14 @@ from gen.support.units import unit_suffix
 from gen.support.yaml_files import parse_yaml, read_yaml
 from raceway.importing.columns import column_of
 from raceway.importing.label_keys import Labels
-from raceway.importing.numerals import decimal_marks, is_number, number_in
+from raceway.importing.numerals import IN_THOUSANDS, decimal_marks, in_doubt, is_number, number_in
 from raceway.importing.refused_files import guarded, told_of
 from raceway.importing.text_files import text_of
 
 _TABLES = (".csv", ".txt", ".tsv")
 _MARKS = "\t;,"
 _NUMBERS = {key for key in Labels.model_fields if unit_suffix(key) or key == "n_spalls"}
+_SPEEDS = {key for key in _NUMBERS if unit_suffix(key) == "rpm"}
 _ALIKE = ("title", "origin", "resample_hz", "channel_names")
 _OF_ALL = ("age_s", "motor_load_w")
 _MOST_SENTENCES = 20
@@ -62,11 +63,14 @@ def read_table_of_labels(path: Path, common: Mapping[str, Any]) -> list[tuple[st
             message = f"{place}: {lost!r:.60} is in a column without a key in row {first}; give the key, or quote a text with commas."
             raise CorpusError(message)
         texts.append((place, {name: cell for name, cell in zip(named, cells, strict=False) if cell}))
-    marks = decimal_marks(
-        text for _, keys in texts for key, text in keys.items() if key in _NUMBERS and is_number(text)
-    )
+    columns = {
+        key: [text for _, keys in texts if is_number(text := keys.get(key, ""))] for key in names if key in _NUMBERS
+    }
+    of_table = decimal_marks(chain(*columns.values()))
+    # nobody sees a wrong speed, so the other speeds must tell how it is read
+    marks = {key: "" if key in _SPEEDS and in_doubt(column) else of_table for key, column in columns.items()}
     rows = [
-        (place, {key: value_of(f"{place}, column {key}", key, text, marks) for key, text in keys.items()})
+        (place, {key: value_of(f"{place}, column {key}", key, text, marks.get(key, "")) for key, text in keys.items()})
         for place, keys in texts
     ]
     beside = path.with_suffix(".yaml")
@@ -177,7 +181,5 @@ def value_of(where: str, key: str, text: Any, marks: str = "") -> Any:
         return column_of(text) if key in ("column", "speed_column") else text
     number = number_in(text, marks if len(marks) == 1 else "")
     if number is None:
-        raise CorpusError(
-            f"{where}: {text} may be in thousands; write it without marks between them, or with four decimals."
-        )
+        raise CorpusError(f"{where}: {text} {IN_THOUSANDS}.")
     return number

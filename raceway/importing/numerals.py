@@ -27,6 +27,7 @@ AS_PYTHON: Mapping[str, Mapping[int, str | None]] = {
     point: str.maketrans({**dict.fromkeys(_THOUSANDS[point]), point: ".", "d": "e", "D": "e"}) for point in ".,"
 }
 """Letters to be replaced in a number, by its decimal mark, to make one that Python reads."""
+IN_THOUSANDS = "may be in thousands; write it without marks between them, or with four decimals"
 
 
 def is_number(text: str) -> bool:
@@ -51,6 +52,18 @@ def decimal_marks(numbers: Iterable[str]) -> str:
         if any(all(re.fullmatch(form, text, re.ASCII) for text in texts) for form in forms)
     ]
     return "".join(fitting) if any("." in text or "," in text for text in texts) else "."
+
+
+def in_doubt(numbers: Iterable[str]) -> bool:
+    """Whether a number of a column may be in thousands, such as ``1.480``; no, if all have decimals that show the mark.
+
+    >>> [in_doubt(texts) for texts in (["1.480", "1480"], ["1.480"], ["1.480", "999.5"], ["1480", "999.5"])]
+    [True, True, False, False]
+    """
+    texts = [*numbers]
+    mark = decimal_marks(texts)
+    shown = len(mark) == 1 and all(mark in text for text in texts)
+    return not shown and any(len(decimal_marks([text])) > 1 for text in texts)
 
 
 def number_in(text: str, marks: str = "") -> float | None:

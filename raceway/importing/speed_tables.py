@@ -5,6 +5,7 @@ from pathlib import Path
 
 from gen.support.errors import CorpusError
 from raceway.importing.label_tables import lines_of
+from raceway.importing.numerals import IN_THOUSANDS, in_doubt
 from raceway.importing.reading_options import Speeds, speeds_in
 
 FILE, RPM = "file", "rpm"
@@ -26,14 +27,17 @@ def read_speed_table(table: Path, recordings: Iterable[Path], others: Iterable[P
     needed = [path.name for path in recordings]
     allowed = {*needed, *(path.name for path in others)}
     speeds: dict[str, Speeds] = {}
-    for number, cells in lines:
-        row = dict(zip(names, cells, strict=False))
-        name = row.get(FILE, "")
+    rows = [(number, dict(zip(names, cells, strict=False))) for number, cells in lines]
+    doubtful = in_doubt(speed for _, row in rows for speed in row.get(RPM, "").split("-"))
+    for number, row in rows:
+        name, text = row.get(FILE, ""), row.get(RPM, "")
         if name in speeds or name not in allowed:
             flaw = "is in two rows; remove one" if name in speeds else "is no recording of the folder; correct the name"
             raise CorpusError(f"{table}, row {number}, column {FILE}: {name!r:.60} {flaw}.")
+        if doubtful and in_doubt(text.split("-")):
+            raise CorpusError(f"{table}, row {number}, column {RPM}: {text} {IN_THOUSANDS}.")
         try:
-            speeds[name] = speeds_in(row.get(RPM, ""))
+            speeds[name] = speeds_in(text)
         except ValueError as error:
             raise CorpusError(f"{table}, row {number}, column {RPM}: {error}.") from None
     if missing := [name for name in needed if name not in speeds]:

@@ -14,6 +14,7 @@ from gen.support.limits import VARIABLE
 from gen.support.units import unit_suffix
 from raceway.importing.label_keys import Labels
 from raceway.importing.label_tables import read_table_of_labels
+from raceway.importing.speed_tables import read_speed_table
 from tests.labels import write_labels
 from tests.paths import ROOT
 
@@ -180,6 +181,37 @@ TABLES = {
     "path\n" + "\0" * 10: "labels.csv: is no text with columns",
     "path\n" + "a.npy\n" * 21: "labels.csv: names 21 files, and the limit is 20;",
 }
+
+
+def _speeds(folder, texts, **more):
+    rows = [BASE | {"path": f"{n}.npy", "shaft_rpm": text, **more} for n, text in enumerate(texts)]
+    return [labels.shaft_rpm for labels in read(folder, *rows, mark=";")]
+
+
+OPEN = ["1.480 1480", "1480 1,480", "1.480 1480 990.5", "1.480,5 1.480", "1.480 1.500"]
+
+
+@pytest.mark.parametrize("load", ["0.5", "1480"])
+@pytest.mark.parametrize("texts", OPEN)
+def test_a_speed_that_may_be_in_thousands_is_refused_whatever_other_columns_tell(tmp_path, texts, load):
+    with pytest.raises(CorpusError, match=r"column shaft_rpm: 1[.,]480 may be in thousands; write it"):
+        _speeds(tmp_path, texts.split(), load_n=load)
+
+
+@pytest.mark.parametrize("texts", ["990.250 1480.125", "1,480.5 990.5", "1.4800 1480", "0.950 1.480"])
+def test_speeds_that_all_show_the_decimal_mark_or_cannot_be_in_thousands_are_read(tmp_path, texts):
+    assert _speeds(tmp_path, texts.split()) == [float(text.replace(",", "")) for text in texts.split()]
+
+
+def test_a_table_of_speeds_has_the_same_rule(tmp_path):
+    names = [Path(name) for name in ("a.wav", "b.wav")]
+    table = tmp_path / "speeds.csv"
+    table.write_text("file,rpm\na.wav,990.250-1000.125\nb.wav,1480.5\n", encoding="utf-8")
+    assert read_speed_table(table, names, []) == {"a.wav": (990.25, 1000.125), "b.wav": (1480.5, 1480.5)}
+    for text in ("1.480", "1.480-1.520", "1480-1.520"):
+        table.write_text(f"file,rpm\na.wav,1480\nb.wav,{text}\n", encoding="utf-8")
+        with pytest.raises(CorpusError, match=f"speeds.csv, row 3, column rpm: {text} may be in thousands; write it"):
+            read_speed_table(table, names, [])
 
 
 @pytest.mark.parametrize("content", TABLES, ids=range(len(TABLES)))
