@@ -227,6 +227,7 @@ ESTIMATORS: dict[str, Callable[[int], Estimator]] = {
 }
 RELATIVE_ESTIMATORS: dict[str, Callable[[int], Estimator]] = {"relative_ensemble": relative_ensemble}
 """Estimators for records relative to a reference alone; the other baselines take such records as they are."""
+MAKERS = ESTIMATORS | RELATIVE_ESTIMATORS
 
 
 def relative_name(name: str) -> str:
@@ -248,11 +249,14 @@ def make_estimator(name: str | Maker, seed: int) -> Estimator:
     """
     if not isinstance(name, str):
         return OwnClassifier(name, seed)
-    makers = ESTIMATORS | RELATIVE_ESTIMATORS
-    if name not in makers:
-        message = f"estimator: {name!r} is no baseline; choose from {', '.join(ESTIMATORS)}."
-        raise ValueError(message)
-    return makers[name](seed)
+    check_baseline(name)
+    return MAKERS[name](seed)
+
+
+def check_baseline(name: str) -> None:
+    """ValueError for a name that is not in the registry."""
+    if name not in MAKERS:
+        raise ValueError(f"estimator: {name!r} is no baseline; choose from {', '.join(ESTIMATORS)}.")
 
 
 def class_probabilities(estimator: Estimator, features: "DataFrame | Waveforms") -> FloatArray:

@@ -20,7 +20,7 @@ from sklearn.exceptions import NotFittedError
 from features.baselines.calibration import UNCALIBRATED, Calibration
 from features.baselines.classifying import RECORDED, predict, suited
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
-from features.baselines.estimators import Estimator, relative_name
+from features.baselines.estimators import MAKERS, Estimator, check_baseline, relative_name
 from features.baselines.model_parts import Packed, Part
 from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, UNTRAINED
 from features.baselines.own import Maker, maker_name
@@ -72,7 +72,7 @@ class Model(Shown):
     Attributes
     ----------
     classifier
-        Name of a baseline, or a classifier of the user.
+        Name of a baseline, or a classifier of the user; ValueError for another name.
     groups
         Groups of features.
     seed
@@ -120,6 +120,10 @@ class Model(Shown):
     shorter: Part[Model] = Part()  # noqa: RUF009
     wide: Part[Model] = Part()  # noqa: RUF009
 
+    def __post_init__(self) -> None:
+        if isinstance(self.classifier, str):
+            check_baseline(self.classifier)
+
     @property
     def name(self) -> str:
         """Name of the classifier."""
@@ -165,8 +169,6 @@ class Model(Shown):
         ------
         CorpusError
             If the table has only one class or several channels, or lacks a group of features, or a baseline is given waveforms.
-        ValueError
-            For an unknown baseline.
         """
         table = (
             _feature_table(data, [*dict.fromkeys((*GROUPS, *self.groups))])
@@ -310,7 +312,11 @@ class Model(Shown):
     def of_content(cls, path: Path | str, content: Mapping[str, Any]) -> Self:
         """Model of the fields in a model file; CorpusError if they are none."""
         stored = isinstance(content, Mapping) and set(content) == {*_STORED, *_PARTS}
-        if not stored or any(not isinstance(content[name], bytes | None) for name in _PARTS):
+        if (
+            not stored
+            or content["name"] not in [*MAKERS]
+            or any(not isinstance(content[name], bytes | None) for name in _PARTS)
+        ):
             raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
         missing = missing_distributions(content["versions"]) or [c for c in content["classes"] if c not in FAULTS]
         if missing:

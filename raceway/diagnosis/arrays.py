@@ -8,19 +8,21 @@ from numpy.typing import ArrayLike
 
 from features.baselines.models import Model
 from features.signal.arguments import as_records, fault_orders
+from gen.physics.bearing_text import bearing_orders
 from raceway.diagnosis.answer import diagnose_recording
 from raceway.diagnosis.result import Diagnosis
 from raceway.diagnosis.search import given_of
 from raceway.importing.recorded import Recorded
+from raceway.kept_models import reference_model
 
 
 def diagnose(
     x: ArrayLike,
     fs: float,
     *,
-    orders: Sequence[float] | Mapping[str, Sequence[float]],
+    orders: str | Sequence[float] | Mapping[str, str | Sequence[float]],
     rpm: float | tuple[float, float] | None = None,
-    model: Model | Path | str,
+    model: Model | Path | str | None = None,
     healthy: Sequence[ArrayLike] = (),
 ) -> Diagnosis:
     """Diagnose one recording of a machine.
@@ -32,11 +34,12 @@ def diagnose(
     fs
         Sample rate [Hz].
     orders
-        Nominal fault orders ``ftf, bpfo, bpfi, bsf`` of the bearing, as `gen.bearing_orders` gives them; or those of several by name.
+        A bearing as in ``--bearing``, such as ``"6205"``, or its nominal fault orders ``ftf, bpfo, bpfi, bsf``; or those of several by
+        name.
     rpm
         Speed of the shaft, or its lowest and highest; by default 300 to 6000 rpm are searched.
     model
-        A trained model or its file; ``raceway.reference_model()`` is that of ``raceway diagnose``.
+        A trained model or its file; by default ``raceway.reference_model()``, which the first call trains.
     healthy
         Recordings of the same machine with a healthy bearing, with the sample rate and the channels of ``x``.
 
@@ -45,14 +48,19 @@ def diagnose(
     ValueError
         If a recording has other dimensions or values that are not finite, or ``fs``, ``rpm`` or an order is not a positive number.
     CorpusError
-        If the model cannot take the features of the recording or the healthy recording.
+        If a bearing is not known, or the model cannot take the features of the recording or the healthy recording.
     """
     bearings = orders if isinstance(orders, Mapping) else {"the bearing": orders}
-    nominal = {name: fault_orders(each, f"orders of {name}") for name, each in bearings.items()}
+    nominal = {
+        name: fault_orders(bearing_orders(bearing) if isinstance(bearing, str) else bearing, f"orders of {name}")
+        for name, bearing in bearings.items()
+    }
     machine = given_of(nominal, None if rpm is None else np.broadcast_to(rpm, 2).tolist())
     low, high = machine.rates
     if not (0 < fs < np.inf and 0 < low <= high < np.inf):
         raise ValueError(f"fs and rpm: {fs} and {rpm} are not positive numbers; give Hz, and revolutions per minute.")
+    if model is None:
+        model = reference_model()
     classifier = model if isinstance(model, Model) else Model.load(model)
     references = [
         _recorded(signals, fs, f"healthy recording {number}") for number, signals in enumerate(healthy, start=1)

@@ -117,6 +117,14 @@ def test_a_part_that_is_no_model_is_refused(files, tmp_path, part, value):
     assert "not a complete model" in refusal(tmp_path / "m")
 
 
+def test_a_classifier_that_is_no_baseline_is_refused_before_the_fit_and_in_a_file(files, tmp_path):
+    with pytest.raises(ValueError, match="estimator: 'rf' is no baseline; choose from majority, "):
+        Model("rf")
+    for name in ("rf", ["svm"]):
+        (tmp_path / "m").write_bytes(skops.io.dumps(read_model_file(files["svm"]) | {"name": name}))
+        assert "not a complete model" in refusal(tmp_path / "m")
+
+
 @pytest.mark.parametrize(
     ("packed", "sentence"),
     [

@@ -189,7 +189,7 @@ def test_levels_are_told_and_those_of_a_wav_file_without_a_unit_tell_no_velocity
 def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
     signal, rpm = recordings["outer"]
     signal = signal.astype(np.float32)
-    known = {"orders": bearing_orders("6205"), "model": model}
+    known = {"orders": "6205", "model": model}
     found = told(write_wav(tmp_path / "r.wav", signal), "--bearing", "6205", "--rpm", rpm, "--model", model)
     diagnosis = raceway.diagnose(signal, FS, rpm=rpm, **known)
     assert diagnosis.sentence == found["sentence"]
@@ -197,7 +197,7 @@ def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
     axes = raceway.diagnose([signal, signal], FS, rpm=(0.9 * rpm, 1.1 * rpm), healthy=[[signal, signal]], **known)
     assert [levels.channel for levels in axes.levels] == ["0", "1", "0", "1"]
     several = raceway.diagnose(
-        signal, FS, rpm=rpm, model=model, orders={"6205": known["orders"], "other": (0.4, 4, 6, 3)}
+        signal, FS, rpm=rpm, model=model, orders={"6205": bearing_orders("6205"), "other": "6308"}
     )
     assert several.bearing == "6205"
     assert axes.sentence.endswith("; channels 0 and 1, as axes of one housing.")
@@ -209,6 +209,16 @@ def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
             raceway.diagnose(wrong, FS, rpm=rpm, **known)
     with pytest.raises(ValueError, match="not positive numbers"):
         raceway.diagnose(signal, FS, rpm=-rpm, **known)
+
+
+def test_an_array_needs_no_model_and_a_bearing_of_the_catalogue(model, recordings, monkeypatch):
+    signal, rpm = recordings["outer"]
+    monkeypatch.setattr("raceway.diagnosis.arrays.reference_model", lambda: Model.load(model))
+    diagnosis = raceway.diagnose(signal, FS, orders="6205", rpm=rpm)
+    same = raceway.diagnose(signal, FS, orders=bearing_orders("6205"), rpm=rpm, model=model)
+    assert (diagnosis.sentence, diagnosis.probabilities) == (same.sentence, same.probabilities)
+    with pytest.raises(CorpusError, match="bearing '6295' is not in the catalogue"):
+        raceway.diagnose(signal, FS, orders="6295")
 
 
 def test_a_signal_that_tells_nothing_gives_unsure_and_advice(model, recordings, tmp_path):
