@@ -148,8 +148,10 @@ def diagnose(
         if stated is not None:
             of_file = (*of_file, f"{path.name}: it states a speed of {stated:g} rpm, which is used.")
         own = _given(candidates, own_speeds if stated is None else (stated, stated))
+        # channels have their names in this recording, also those of the healthy ones
+        recorded, *alike = [each.renamed(recorded.matched) for each in (recorded, *references)]
         with set_aside(path, unusable if several else None), notice_compilation():
-            diagnosis = diagnose_recording(recorded, own, loaded, healthy=references)
+            diagnosis = diagnose_recording(recorded, own, loaded, healthy=alike)
         if path in unusable:
             continue
         notes = tuple(dict.fromkeys(of_file + doubts))
@@ -164,7 +166,7 @@ def diagnose(
             if not page.parent.is_dir():  # of a folder of recordings
                 make_result_folder(page.parent)
             facts = assumptions(recorded, candidates, diagnosis, used, healthy, source, notes)
-            write_diagnosis(diagnosis, recorded, page, healthy=references, name=path.name, assumed=facts)
+            write_diagnosis(diagnosis, recorded, page, healthy=alike, name=path.name, assumed=facts)
         answers.append(diagnosis_facts(diagnosis, recorded, path, source, page, notes))
     # files that could not be used stand in the table, too
     rows = rows_of(answers, unusable)

@@ -79,7 +79,8 @@ class Sensor(NamedTuple):
 class Signal(NamedTuple):
     """A recording in m s-2, shape (time,), its sample rate [Hz] or None if it is not known, and a sentence for each assumption.
 
-    ``unit`` is the unit in which the file was read; ``rpm`` the speed of the shaft, if the file states it.
+    ``unit`` is the unit in which the file was read; ``rpm`` the speed of the shaft, if the file states it;
+    ``variable`` its name in a MATLAB file.
     """
 
     values: FloatArray
@@ -87,6 +88,7 @@ class Signal(NamedTuple):
     warnings: tuple[str, ...]
     unit: Unit
     rpm: float | None = None
+    variable: str = ""
 
 
 def read_signal(
@@ -217,7 +219,7 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
             told = *told, of_course
         if not np.isfinite(signal).all():
             raise UnusableError("has values beyond the range of numbers; check its unit")
-        return Signal(signal, fs, told, unit, rpm)
+        return Signal(signal, fs, told, unit, rpm, table.variable)
 
     return read
 

@@ -86,7 +86,8 @@ def _table(variables: Mapping[str, Any], variable: str | None) -> NumberTable:
             speeds[key[:-3]] = number
     own = [number for start, number in speeds.items() if start and name.startswith(start)] or [*speeds.values()]
     values = np.empty(0) if getattr(variables[name], "attrs", {}).get("MATLAB_empty") else np.asarray(variables[name])
-    return table_of(values)._replace(header=Header(rates=tuple(rates)), rpm=own[0] if len(own) == 1 else None)
+    rpm = own[0] if len(own) == 1 else None
+    return table_of(values)._replace(header=Header(rates=tuple(rates)), rpm=rpm, variable=name)
 
 
 def _number(value: Any) -> float | None:

@@ -37,7 +37,8 @@ class NumberTable(NamedTuple):
 
     ``flaws`` are reasons why columns cannot be used; ``marks`` are the decimal marks with which columns that have such marks can be read;
     ``notes`` are sentences without their end. ``playback`` is a sample rate [Hz] in whose place another can be given; ``absolute`` is
-    False for shares of the full scale of a converter; ``rpm`` is the speed of the shaft that the file states.
+    False for shares of the full scale of a converter; ``rpm`` is the speed of the shaft that the file states. ``variable`` is the name of
+    the variable of a MATLAB file.
     """
 
     columns: Mapping[int, FloatArray]
@@ -48,6 +49,7 @@ class NumberTable(NamedTuple):
     playback: float | None = None
     absolute: bool = True
     rpm: float | None = None
+    variable: str = ""
 
     def without(self, column: int) -> "NumberTable":
         """Table without a column."""

@@ -119,11 +119,12 @@ def _read(path: Path, reading: "Reading", given_up: Sequence[str]) -> "tuple[Rec
     if shortest < _FEWEST:
         raise UnusableError(f"holds {shortest} samples, and a diagnosis needs {_FEWEST} at least; record 10 s")
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}
+    matched = {name: signal.variable for name, signal in signals.items() if "*" in name and signal.variable}
     unit = "unit of the file" if reading.unit is None and path.suffix.lower() == ".wav" else ACCELERATION
     units = " and ".join(dict.fromkeys(signal.unit for signal in signals.values()))
     told = [note for signal in signals.values() for note in signal.warnings if "its rms" not in note] + notes[::-1]
     return (
-        Recorded(cut, first.fs, str(path), unit, first.rpm),
+        Recorded(cut, first.fs, str(path), unit, first.rpm, matched),
         reading._replace(unit=units),
         tuple(f"{path.name}: {note}." for note in dict.fromkeys(told)),
     )

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.io import savemat
 
 import raceway
 from features.baselines import Model
@@ -184,6 +185,21 @@ def test_levels_are_told_and_those_of_a_wav_file_without_a_unit_tell_no_velocity
     assert levels["velocity_rms_mm_s"] == pytest.approx(1e3 * velocity_rms(signal[None], FS, rpm / 60)[0], rel=1e-4)
     assert (without["velocity_rms_mm_s"], without["unit"]) == (None, "unit of the file")
     assert re.search(r"<th scope=.row.>h.wav</th><td>\d", page.read_text(encoding="utf-8"))
+
+
+def test_a_channel_that_a_pattern_chose_is_called_by_its_name_in_the_file(model, recordings, tmp_path):
+    for number, fault in ((97, "healthy"), (105, "outer")):
+        signal, _ = recordings[fault]
+        savemat(tmp_path / f"{number}.mat", {f"X{number:03d}_{end}_time": signal for end in ("DE", "FE")})
+    options = ("--rate", FS, "--unit", "m/s2", "--bearing", "6205", "--rpm", "1700-1800", "--model", model)
+    for channels, names in (("*_DE_time", ["X105_DE_time"]), ("*DE*,*FE*", ["X105_DE_time", "X105_FE_time"])):
+        how = (*options, "--channel", channels, "--healthy", tmp_path / "97.mat", "-o", tmp_path / "page.html")
+        facts = told(tmp_path / "105.mat", *how)
+        assert facts["channels"] == names
+        assert {level["channel"] for level in facts["levels"]} == {*names}
+        page = (tmp_path / "page.html").read_text(encoding="utf-8")
+        assert channels not in page
+        assert names[0] in page
 
 
 def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
