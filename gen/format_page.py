@@ -50,7 +50,7 @@ as JSON where they are not text. A fact without content is left out:
 | `recipe_text` | attribute only: the recipe as in `recipe.yaml` |
 
 Every file has `Conventions`, `raceway_format`, `title`, `history` and `source`. `index.nc` and single files
-have all facts; `raceway.describe` and `raceway.publish` add the attributes of [publication](sharing.md).
+have all facts; `raceway.describe`, `publish` and `copy` add the attributes of [publication](sharing.md).
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
 a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;

@@ -1,6 +1,6 @@
 """The files of a corpus beside its parts, written when all parts are there: index and manifest, or one file of all parts."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from itertools import accumulate, pairwise
 from pathlib import Path
@@ -25,10 +25,17 @@ from gen.corpus.trust import codec_of
 _OF_PARTS = ("Conventions", "raceway_format", "history", "source")
 
 
-def finish_corpus(directory: Path, rows: Iterable[PartRow], file: Path | None = None, **facts: Any) -> Manifest:
+def finish_corpus(
+    directory: Path,
+    rows: Iterable[PartRow],
+    file: Path | None = None,
+    attributes: Callable[[Manifest], Mapping[str, str]] = lambda _: {},
+    **facts: Any,
+) -> Manifest:
     """Write index and manifest over the finished parts of a folder, or all parts into one ``file``; atomically, and manifest last.
 
-    ``facts`` are further fields of the manifest. A data card with its ``croissant.json`` describes the corpus as it was and is removed;
+    ``facts`` are further fields of the manifest, and ``attributes`` gives global attributes of the index or file beside them, such as
+    those of publication. A data card with its ``croissant.json`` describes the corpus as it was and is removed;
     ``raceway.describe`` writes both. The same parts and facts give the same bytes.
 
     Raises
@@ -38,7 +45,7 @@ def finish_corpus(directory: Path, rows: Iterable[PartRow], file: Path | None = 
     """
     manifest = manifest_of_parts(rows, facts)
     with whole_or_not_at_all(file or directory / INDEX_NAME) as temporary:
-        _join_parts(directory, manifest, temporary, without=() if file else (SIGNAL,))
+        _join_parts(directory, manifest, temporary, attributes(manifest), without=() if file else (SIGNAL,))
     if file is None:
         write_manifest(directory, manifest.content)
         if (directory / CROISSANT_NAME).exists():  # a README.md alone can be one of the user
@@ -47,7 +54,9 @@ def finish_corpus(directory: Path, rows: Iterable[PartRow], file: Path | None = 
     return manifest
 
 
-def _join_parts(directory: Path, manifest: Manifest, path: Path, without: tuple[str, ...]) -> None:
+def _join_parts(
+    directory: Path, manifest: Manifest, path: Path, attributes: Mapping[str, str], without: tuple[str, ...]
+) -> None:
     """Write the variables of the parts one after the other into a new file, those of one part at a time."""
     paths, counts = [directory / "parts" / row.name for row in manifest.parts], [row.records for row in manifest.parts]
     with stored_records(paths, paths, counts) as records:
@@ -55,7 +64,7 @@ def _join_parts(directory: Path, manifest: Manifest, path: Path, without: tuple[
         blocks = [slice(first, stop) for first, stop in pairwise(accumulate(counts, initial=0))]
         kept = {name: records.attrs[name] for name in _OF_PARTS if name in records.attrs}
         facts = facts_as_attributes(manifest.content, recipe_text(directory))
-        write_netcdf(columns, kept | facts, path, codec_of(paths[0]), blocks)
+        write_netcdf(columns, {**kept, **facts, **attributes}, path, codec_of(paths[0]), blocks)
     append_checksum(path)
 
 

@@ -1,6 +1,6 @@
 """A new corpus written part by part: a folder or a single file, there as a whole or not at all."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from gen.corpus.disk import (
 )
 from gen.corpus.fault_classes import further_classes
 from gen.corpus.finishing import finish_corpus
-from gen.corpus.manifest import RECIPE_NAME
+from gen.corpus.manifest import RECIPE_NAME, Manifest
 from gen.corpus.outputs import check_new
 from gen.corpus.part import PartRow, part_name, write_part
 from gen.corpus.schema import with_file_codes
@@ -27,11 +27,13 @@ from gen.support.errors import CorpusError
 class NewCorpus:
     """Corpus under way; ``facts`` are fields of its manifest, which can be completed until the end.
 
+    ``attributes`` gives further global attributes of the index or the single file, from the finished manifest.
     ``classes`` of plug-ins have codes in the order in which records have them, unless they are named before.
     """
 
     def __init__(self, folder: Path, codec: Codec, facts: dict[str, Any]) -> None:
         self.facts, self.rows, self.classes = facts, list[PartRow](), list[str]()
+        self.attributes: Callable[[Manifest], Mapping[str, str]] = lambda _: {}
         self._parts = folder / "parts"
         self._codec: Codec = codec
 
@@ -103,4 +105,4 @@ def _write(
     yield corpus
     if not corpus.rows:
         raise CorpusError("no record was written, so there is no corpus; choose some records.")
-    finish_corpus(folder, corpus.rows, file, **corpus.facts)
+    finish_corpus(folder, corpus.rows, file, corpus.attributes, **corpus.facts)

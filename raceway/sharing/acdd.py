@@ -33,7 +33,8 @@ def attributes_or_none(manifest: Manifest) -> dict[str, str | None]:
     recorded = _RECORDED if manifest.recipe is None else _BOTH
     platform, instrument, origin = _SIMULATED if manifest.importer is None else recorded
     creators = publication.creators
-    institutional = all(creator.name == publication.institution for creator in creators)
+    kinds = {publication.kind_of(creator) for creator in creators}
+    creator_type = kinds.pop() if len(kinds) == 1 else None
     publisher = publication.institution or ", ".join(creator.name for creator in creators)
     return {
         # what follows from the corpus itself
@@ -49,13 +50,13 @@ def attributes_or_none(manifest: Manifest) -> dict[str, str | None]:
         # what a person has to say, and may have left out
         "license": _license(publication.license),
         "creator_name": ", ".join(creator.name for creator in creators),
-        "creator_type": ("institution" if institutional else "person") if creators else None,
+        "creator_type": creator_type,
         "creator_url": _addresses(creators),
         "creator_email": publication.contact,
         "creator_institution": publication.institution,
         "institution": publication.institution,
         "publisher_name": publisher,
-        "publisher_type": "institution" if publication.institution else "person" if publisher else None,
+        "publisher_type": "institution" if publication.institution else creator_type,
         "publisher_institution": publication.institution,
         "publisher_email": publication.contact,
         "references": "; ".join(publication.references),

@@ -34,6 +34,12 @@ _PARTS = {
     "encodingFormat": "application/x-netcdf",
     "includes": "parts/*.nc",
 }
+# readers of Croissant refuse a creator of neither type, so that one who may be either has both
+_CREATOR_TYPES = {
+    "person": "sc:Person",
+    "institution": "sc:Organization",
+    None: ["sc:Person", "sc:Organization"],
+}
 _TERMS = (
     "arrayShape", "citeAs", "column", "containedIn", "equivalentProperty", "extract", "field", "fileObject", "fileProperty", "fileSet",
     "format", "includes", "isArray", "isLiveDataset", "jsonPath", "key", "md5", "parentField", "path", "recordSet", "references", "regex",
@@ -132,7 +138,7 @@ def _publication_facts(publication: Publication) -> dict[str, Any]:
     """Licence, creators, publisher and dates, as far as they are given."""
     creators = []
     for creator in publication.creators:
-        kind = "sc:Organization" if creator.name == publication.institution else "sc:Person"
+        kind = _CREATOR_TYPES[publication.kind_of(creator)]
         address = {"url": f"https://orcid.org/{creator.orcid}"} if creator.orcid else {}
         creators.append({"@type": kind, "name": creator.name, **address})
     publisher = {"@type": "sc:Organization", "name": publication.institution}

@@ -12,6 +12,7 @@ from gen.corpus.new import NewCorpus, new_corpus
 from gen.corpus.outputs import FILE_SUFFIXES, check_new
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
+from raceway.sharing.acdd import publication_attributes
 from raceway.sharing.copying import Chosen, choose
 from raceway.sharing.huggingface import write_huggingface
 from raceway.sharing.parquet_files import write_parquet
@@ -122,6 +123,8 @@ def _place(form: str, target: Path, recipe: str | None, codec: Codec) -> Abstrac
 
 def _write_parts(chosen: Chosen, corpus: NewCorpus) -> None:
     corpus.facts |= chosen.facts()
+    if chosen.publication:
+        corpus.attributes = publication_attributes
     for block in chosen.blocks(_PART_BYTES):
         corpus.write(block.as_stored())
 

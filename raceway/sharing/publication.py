@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping
 from datetime import UTC, date, datetime
 from os import environ
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 from packaging.licenses import InvalidLicenseExpression, canonicalize_license_expression
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, ValidationError
@@ -137,6 +137,10 @@ class Publication(BaseModel):
     """Papers, reports and web pages that describe the corpus, one text each."""
     date: Date | None = None
     """Day on which the corpus was made, such as `2026-03-31`; if left out, that of the environment variable SOURCE_DATE_EPOCH, if set."""
+
+    def kind_of(self, creator: Creator) -> Literal["person", "institution"] | None:
+        """Whether a creator is a person, who has an ORCID, or the institution; None if neither is known."""
+        return "person" if creator.orcid else "institution" if creator.name == self.institution else None
 
     @property
     def stored(self) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from gen.corpus.manifest import (
     write_manifest,
 )
 from gen.corpus.part import write_texts
-from gen.corpus.trust import LIBRARY_LOCK, attributes_of
+from gen.corpus.trust import LIBRARY_LOCK, attributes_of, library_errors, open_trusted
 from raceway.sharing.acdd import attributes_or_none
 from raceway.sharing.card.additions import read_additions, write_additions
 from raceway.sharing.card.card_page import card_folder, check_card, write_card
@@ -82,7 +82,8 @@ def publish(path: Path | str, publication: Publication | Mapping[str, Any]) -> N
     published = manifest.model_copy(update={"publication": publication.dated().stored})
     if path.is_file():
         remove_left_behind_of(path)
-        if published != manifest:
+        # a single file that was never published has no such attributes
+        if published.publication or manifest.publication:
             _write_attributes(path, published)
         return
     with lock(path):
@@ -95,12 +96,15 @@ def _write_attributes(file: Path, manifest: Manifest) -> None:
     """Give a single file, or an index, the attributes of publication, in a copy that takes its place."""
     wanted = {"publication": json.dumps(manifest.publication) if manifest.publication else None}
     wanted |= attributes_or_none(manifest)
+    with library_errors(file), open_trusted(file) as stored:
+        before = attributes_of(stored)
+    other = {name: value for name, value in wanted.items() if (value or None) != before.get(name)}
+    if not other:
+        return
     with whole_or_not_at_all(file) as temporary:
         shutil.copyfile(file, temporary)
         remove_checksum(temporary)
         with LIBRARY_LOCK, h5py.File(temporary, "r+") as changed:
-            before = attributes_of(changed)
-            other = {name: value for name, value in wanted.items() if (value or None) != before.get(name)}
             for name in other.keys() & before.keys():
                 del changed.attrs[name]
         write_texts(temporary, {name: value for name, value in other.items() if value})

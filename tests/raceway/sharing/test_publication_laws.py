@@ -8,11 +8,13 @@ import pytest
 from ruamel.yaml import YAML
 
 from gen.corpus import new_corpus, open_corpus, read_manifest, validate_corpus
+from gen.corpus.disk import append_checksum, remove_checksum
 from gen.corpus.finishing import finish_corpus
 from gen.generation.corpus import generate
 from gen.support.errors import CorpusError
 from raceway import copy, describe, publish
 from raceway.sharing import croissant_problems
+from raceway.sharing.acdd import publication_attributes
 from raceway.sharing.card.card_page import data_card
 from raceway.sharing.croissant import croissant
 from raceway.sharing.publication import Publication, check_orcid, publication_of, read_publication
@@ -230,3 +232,51 @@ def test_a_card_of_another_content_is_removed_and_a_changed_croissant_is_found(c
     finish_corpus(copied_folder, read_manifest(copied_folder).parts, title="Another")
     assert not croissant.exists()
     assert not (copied_folder / "README.md").exists()
+
+
+def test_a_copy_of_a_published_corpus_to_one_file_has_the_attributes_of_a_published_file(copied_folder, tmp_path):
+    copy(copied_folder, tmp_path / "unpublished.nc")
+    publish(copied_folder, WHOLE)
+    copy(copied_folder, tmp_path / "published.nc")
+    attributes = {}
+    for name in ("published", "unpublished"):
+        with netCDF4.Dataset(tmp_path / f"{name}.nc") as opened:
+            attributes[name] = {key: opened.getncattr(key) for key in opened.ncattrs()}
+    copied = read_manifest(tmp_path / "published.nc")
+    assert publication_attributes(copied).items() <= attributes["published"].items()
+    assert attributes["published"].keys() - publication_attributes(copied).keys() == {
+        *attributes["unpublished"], "publication"
+    }  # fmt: skip
+    assert validate_corpus(tmp_path / "published.nc") == []
+
+
+def test_a_published_file_that_lost_its_attributes_gets_them_back(copied_file):
+    """A file that an earlier version copied has the facts of its publication in ``publication`` alone."""
+    publish(copied_file, WHOLE)
+    before = files(copied_file)
+    remove_checksum(copied_file)
+    with netCDF4.Dataset(copied_file, "a") as opened:
+        opened.delncattr("license")
+    append_checksum(copied_file)
+    publish(copied_file, WHOLE)
+    with netCDF4.Dataset(copied_file) as opened:
+        assert opened.license.startswith("CC-BY-4.0")
+    assert files(copied_file).keys() == before.keys()
+    assert validate_corpus(copied_file) == []
+
+
+@pytest.mark.parametrize(
+    ("creator", "of_croissant", "of_acdd"),
+    [
+        ({"name": "Jane Doe", "orcid": "0000-0002-1825-0097"}, "sc:Person", "person"),
+        ({"name": "Example Institute"}, "sc:Organization", "institution"),
+        ({"name": "Example Lab"}, ["sc:Person", "sc:Organization"], None),
+    ],
+)
+def test_a_creator_is_called_a_person_or_an_organisation_only_if_it_is_known(
+    copied_folder, creator, of_croissant, of_acdd
+):
+    publish(copied_folder, {"creators": [creator], "institution": "Example Institute"})
+    (stated,) = croissant(copied_folder)["creator"]
+    assert stated["@type"] == of_croissant
+    assert publication_attributes(read_manifest(copied_folder)).get("creator_type") == of_acdd
