@@ -196,6 +196,9 @@ def _read_manifest(path: Path, check: Check) -> Manifest:
             raise CorpusError(_altered(path))
         return _manifest_of_file(path)
     if not path.is_dir():
+        # a single file is generated from parts beside it
+        if path.with_name(f"{path.name}.parts").is_dir():
+            raise CorpusError(unfinished(path))
         raise CorpusError(
             f"{path}: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file."
         )
@@ -296,6 +299,11 @@ def _altered(file: Path, place: str = "at its end") -> str:
     )
 
 
+def unfinished(path: Path) -> str:
+    """Sentence about a corpus that lacks parts."""
+    return f"{path}: is unfinished; run the raceway generate command that began it again."
+
+
 def finished(path: Path | str, check: Check = "sha256") -> Manifest:
     """Manifest of a finished corpus.
 
@@ -309,7 +317,7 @@ def finished(path: Path | str, check: Check = "sha256") -> Manifest:
     path = Path(path)
     manifest = read_manifest(path, check)
     if not manifest.complete:
-        raise CorpusError(f"{path}: is unfinished; run the raceway generate command that began it again.")
+        raise CorpusError(unfinished(path))
     for problem in file_problems(path, manifest, check):
         raise CorpusError(problem)
     return manifest

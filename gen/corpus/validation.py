@@ -16,6 +16,7 @@ from gen.corpus.manifest import (
     file_problems,
     read_manifest,
     recipe_text,
+    unfinished,
 )
 from gen.corpus.schema import SIGNAL
 from gen.corpus.unusable import VERDICTS, SignalCounts, count_verdicts, counts_in_words, judge
@@ -36,7 +37,7 @@ def validate_corpus(path: Path | str) -> list[str]:
         manifest = read_manifest(path)
         problems = file_problems(path, manifest, "sha256")
         if problems or not manifest.complete:
-            return problems or [f"{path}: is unfinished; run the raceway generate command that began it again."]
+            return problems or [unfinished(path)]
         with open_corpus(path, check="size") as corpus:
             return [*_facts_problems(path, manifest, corpus), *_records_problems(path, manifest)]
     except CorpusError as error:
