@@ -82,7 +82,10 @@ def check_same(place: Path, manifest: Manifest, facts: dict[str, Any], recipe: R
             f"{place}: holds a corpus that was not generated from a recipe as a whole; choose another name."
         )
     if manifest.recipe_sha256 != facts["recipe_sha256"]:
-        raise CorpusError(f"{place}: holds a corpus of another recipe or seed; choose another name.")
+        raise CorpusError(
+            f"{place}: holds a corpus of another recipe or seed; choose another name, or grow a folder with its old recipe "
+            "and --records N."
+        )
     before, asked = records_of(place, manifest), recipe.n_records
     if before is not None and (asked < before or (place.is_file() and asked > before)):
         raise CorpusError(

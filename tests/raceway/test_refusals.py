@@ -58,7 +58,7 @@ REFUSED = [
         "{recipe} -o {one} --records 60",
         "holds a corpus of 48 records and not 60; a folder grows, and no corpus shrinks",
     ),
-    ("{recipe} -o {whole} --seed 77", "holds a corpus of another recipe or seed"),
+    ("{recipe} -o {whole} --seed 77", "choose another name, or grow a folder with its old recipe and --records N."),
     ("{loaded} -o {whole}", "holds a corpus of another recipe or seed"),
     ("{recipe} -o {of_other_sources}", "was begun with sources 000000000000"),
     ("{recipe} -o {of_unknown_sources}", "is installed and can give other samples: install the former to complete it"),
