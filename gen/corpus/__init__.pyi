@@ -83,6 +83,7 @@ from .schema import (
 )
 from .unusable import (
     SignalCounts as SignalCounts,
+    clipping_complaint as clipping_complaint,
     complaint as complaint,
     counts_in_words as counts_in_words,
     sum_counts as sum_counts,

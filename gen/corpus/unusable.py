@@ -101,3 +101,13 @@ def complaint(counts: SignalCounts, records: int) -> str | None:
         return None
     advice = dict.fromkeys(_ADVICE[kind] for kind in counts)
     return f"{useless:,} of {records:,} records cannot be used ({counts_in_words(counts)}): {'; '.join(advice)}."
+
+
+def clipping_complaint(clipped: int, records: int) -> str | None:
+    """Sentence with the number of records with a clipped sample, usable or not, and the key to change; None if there are none.
+
+    >>> clipping_complaint(23, 100)
+    '23 of 100 records are clipped at least once; raise recording.converter.full_scale_m_s2.'
+    """
+    key = "recording.converter.full_scale_m_s2"
+    return f"{clipped:,} of {records:,} records are clipped at least once; raise {key}." if clipped else None

@@ -17,14 +17,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gen.corpus import (
     RECIPE_NAME,
+    Manifest,
     PartRow,
     SignalCounts,
     check_place,
+    clipping_complaint,
     facts_as_attributes,
     finish_corpus,
     finished,
     is_single_file,
     lock,
+    open_corpus,
     read_manifest,
     remove_left_behind_of,
     remove_parts,
@@ -70,6 +73,8 @@ class Generated(Shown):
     """One sentence for each record that is left out: it could not be simulated, or its fault cannot be seen."""
     signals: SignalCounts
     """Number of records that cannot be used."""
+    clipped: int
+    """Number of records with a clipped sample, usable or not."""
 
     def _heading(self) -> str:
         return f"Corpus {self.path}: {self.records:,} records"
@@ -78,6 +83,7 @@ class Generated(Shown):
         return {
             "parts": f"{self.parts:,}, of which {self.kept:,} were made before",
             "left out": " ".join(self.failures),
+            "clipped": clipping_complaint(self.clipped, self.records) or "",
             "next": f'gen.open_corpus("{self.path}"), features.feature_table("{self.path}")',
             "browse": f"raceway explore {self.path} -o explore.html",
         }
@@ -192,7 +198,14 @@ def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, 
         if not left.complete and left.recipe_sha256 == manifest.recipe_sha256:
             with lock(folder):
                 remove_parts(folder, [part_file(recipe, part) for part in range(recipe.n_parts)])
-    return Generated(file, manifest.records, recipe.n_parts, recipe.n_parts, manifest.failures, manifest.signals)
+    return _generated(file, manifest, recipe.n_parts, recipe.n_parts)
+
+
+def _generated(path: Path, manifest: Manifest, parts: int, kept: int) -> Generated:
+    """Result of a finished corpus, of which so many parts were kept."""
+    with open_corpus(path, check="size") as corpus:
+        clipped = int((corpus["clipped"].values > 0).sum())
+    return Generated(path, manifest.records, parts, kept, manifest.failures, manifest.signals, clipped)
 
 
 def _all_parts(
@@ -281,6 +294,4 @@ def _finish(target: Path, folder: Path, text: bytes, outcomes: list[Outcome], fa
         with writing(folder):
             write_durably(text, folder / RECIPE_NAME)
         manifest = finish_corpus(folder, rows, None if target == folder else target, **facts, failures=failures)
-    return Generated(
-        target, manifest.records, len(rows), sum(outcome.kept for outcome in outcomes), failures, manifest.signals
-    )
+    return _generated(target, manifest, len(rows), sum(outcome.kept for outcome in outcomes))

@@ -196,7 +196,7 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     # a misspelt name is reported before the simulator is imported
     wanted = read_recipe(recipe, seed=options["seed"], records=options["records"])
     from gen import generate as generate_corpus
-    from gen.corpus import complaint
+    from gen.corpus import clipping_complaint, complaint
     from gen.support.executor import cores
     from raceway.sharing import describe
 
@@ -211,10 +211,11 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     for failure in generated.failures:
         notice(f"left out: {failure}")
     useless = complaint(generated.signals, generated.records)
-    for sentence in filter(None, (useless, _coarse_steps(generated.path))):
+    clipping = clipping_complaint(generated.clipped, generated.records)
+    for sentence in filter(None, (useless, clipping, _coarse_steps(generated.path))):
         notice(sentence)
     if as_json:
-        facts = {name: getattr(generated, name) for name in ("records", "parts", "kept", "failures")}
+        facts = {name: getattr(generated, name) for name in ("records", "parts", "kept", "failures", "clipped")}
         seconds = round(time.monotonic() - start, 3)
         show.as_json({"corpus": generated.path, **facts, "signals": generated.signals, "seconds": seconds})
     else:

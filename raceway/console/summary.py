@@ -17,6 +17,7 @@ from gen.corpus import (
     Manifest,
     by_class,
     class_counts,
+    clipping_complaint,
     counts_in_words,
     extent,
     file_problems,
@@ -120,7 +121,8 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
             labels = {name: values[chosen] for name, values in labels.items()}
         channels, samples = channel_names(records), records.sizes["elapsed_time"]
     fs = float(labels["sample_rate"][0])
-    units = unit_counts(labels)
+    units, clipped = unit_counts(labels), clipped_records(labels)
+    clipping = clipping_complaint(sum((clipped or {}).values()), units.records)
     return {
         "chosen": units.records,
         "channels": channels,
@@ -138,8 +140,8 @@ def _content(directory: Path, manifest: Manifest, where: str | None) -> dict[str
         "load": _range(labels["load"]),
         "severities": _severities(labels, sizes),
         "units": sizes,
-        "warnings": [*manifest.warnings, *filter(None, [step_complaint(labels)])],
-        "clipped": clipped_records(labels),
+        "warnings": [*manifest.warnings, *filter(None, [clipping, step_complaint(labels)])],
+        "clipped": clipped,
         "faults": None if (counts := fault_counts(labels)) is None else counts._asdict(),
     }
 
