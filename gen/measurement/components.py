@@ -16,12 +16,13 @@ from scipy.fft import irfft, rfft
 from gen.measurement.mixing import Lines, Parts, mix
 from gen.measurement.rig import RigFilters
 from gen.mechanisms.background.background import machine_sources_of
+from gen.mechanisms.background.source import MachineSource, Vibration
+from gen.mechanisms.mechanism import unusable_result
 from gen.scenarios import Scenario
 from gen.simulation.shaft import angles_of
 from gen.simulation.simulate import Run, acceleration_of
 from gen.simulation.timeline import timeline
 from gen.simulation.truth import lines_of_faults
-from gen.support.errors import RacewayError
 
 FloatArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
@@ -98,13 +99,21 @@ def _others(scenario: Scenario, rig: RigFilters, angles: FloatArray) -> ComplexA
     hits = np.zeros(len(angles), np.float32)  # strengths of impulses at the samples where they start
     for source in machine_sources_of(scenario.recipe):
         stream = partial(scenario.stream, source.place)
-        for vibration in source.vibrations(angles, rig.fs, stream):
-            if np.shape(vibration) != angles.shape or not np.isfinite(vibration).all():
-                raise RacewayError(
-                    f"{source.place}: vibrations() gives shape {np.shape(vibration)}, or no finite numbers; give {angles.shape} of them."
-                )
+        for vibration in _checked(source.vibrations(angles, rig.fs, stream), source, angles.shape):
             spectrum += rig.source_in_channels(vibration)
         source.add_impulses(hits, angles, rig.fs, stream)
     if hits.any():
         spectrum += rfft(hits, rig.n) * rig.impulse_paths
     return spectrum
+
+
+def _checked(vibrations: Any, source: MachineSource, shape: tuple[int, ...]) -> list[Vibration]:
+    """Vibrations of a source, which can be one of a plug-in; RacewayError unless they are arrays of finite numbers in this shape."""
+    try:
+        arrays = [np.asarray(vibration) for vibration in vibrations]
+        usable = all(array.shape == shape and np.isfinite(array).all() for array in arrays)
+    except (TypeError, ValueError):  # not a sequence, of unequal lengths, or not numbers
+        usable, arrays = False, []
+    if not usable:
+        raise unusable_result(source, "vibrations", f"a list of arrays of {shape[0]} finite numbers each")
+    return arrays

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from gen.corpus.schema import Variable
 from gen.drawing import Level, Probability, Section, composed, sections_with_places
+from gen.support.errors import RacewayError
 from gen.support.plugins import plugin, plugins, unusable
 
 FloatArray = NDArray[np.floating]
@@ -62,6 +63,13 @@ def plugins_of(*recipes: Section) -> list[str]:
     added = {name: plugin("mechanisms", name, type) for name in plugins("mechanisms")}
     sections = [section for recipe in recipes if added for _, section in sections_with_places(recipe)]
     return [name for name, mechanism in added.items() if any(isinstance(section, mechanism) for section in sections)]
+
+
+def unusable_result(mechanism: Mechanism, method: str, wanted: str) -> RacewayError:
+    """Error that names the plug-in of a mechanism whose method does not return what it must."""
+    reason = f"{method}() of {mechanism.place} must return {wanted}"
+    of_plugin = (unusable("mechanisms", name, reason) for name in plugins_of(mechanism))
+    return next(of_plugin, RacewayError(f"{reason}."))
 
 
 def section_with(name: str, module: str, base: type[Section], mechanisms: Iterable[type[Mechanism]]) -> Any:

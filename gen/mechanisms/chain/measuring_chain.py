@@ -12,7 +12,7 @@ into its limit. Gaps come last; a converter acts on each sample by itself, so th
 """
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,8 +25,7 @@ from gen.mechanisms.chain.loose_mount import LooseMount
 from gen.mechanisms.chain.mains_hum import MainsHum
 from gen.mechanisms.chain.saturation import Saturation
 from gen.mechanisms.chain.sensor_fault import SensorFault
-from gen.mechanisms.mechanism import FloatArray, mechanisms_of, section_with, with_plugins
-from gen.support.errors import RacewayError
+from gen.mechanisms.mechanism import FloatArray, mechanisms_of, section_with, unusable_result, with_plugins
 
 CHAIN: tuple[type[SensorFault], ...] = with_plugins(
     SensorFault, (LooseMount, Drift, MainsHum, EmiBursts, GainSteps, Saturation, DroppedSamples)
@@ -64,11 +63,19 @@ def disturb(
     -------
     array, shape (channel, time), of the type of ``signal``
         The ``signal`` itself if there is no fault.
+
+    Raises
+    ------
+    RacewayError
+        If a fault of a plug-in does not return a signal of this shape and the values of its labels.
     """
     dtype, labels = signal.dtype, dict[str, float]()
     for fault in mechanisms_of(section):
-        signal, *values = fault.disturb(signal, fs, stream(f"sensor_faults.{fault.place}"))
-        if len(values) != len(fault.labels):
-            raise RacewayError(f"{fault.place}: gives {len(values)} values for its {len(fault.labels)} labels.")
+        result: Any = fault.disturb(signal, fs, stream(f"sensor_faults.{fault.place}"))
+        count = len(fault.labels)
+        if not isinstance(result, tuple) or len(result) != 1 + count or np.shape(result[0]) != signal.shape:
+            wanted = f"a tuple of the signal, shape {signal.shape}, and the values of its {count} labels"
+            raise unusable_result(fault, "disturb", wanted)
+        signal, *values = result
         labels |= zip([label.name for label in fault.labels], values, strict=True)
     return signal.astype(dtype, copy=False), labels
