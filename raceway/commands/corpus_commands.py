@@ -119,7 +119,7 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
 
 
 def _show_plan(planned: "Plan") -> None:
-    steps = list(planned.steps_per_sample)
+    steps, times = list(planned.steps_per_sample), planned.records / WORTH_WORKERS
     # a large corpus is counted on a part of it
     about, about_checked = (
         "" if count == planned.records else f" (scaled up from {count:,} {done} records)"
@@ -139,6 +139,9 @@ def _show_plan(planned: "Plan") -> None:
             "parts": f"{planned.parts:,}",
             "size": f"about {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",
+            "time": f"on one core about {times:,.1f} times that of generate --records {WORTH_WORKERS}"
+            if times > 1
+            else "",
             "kernel": "compiled" if planned.compiled else "will be compiled for this machine, in 10 to 20 s",
         }
     )
