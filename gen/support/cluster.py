@@ -10,6 +10,7 @@ import math
 import os
 import sys
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
@@ -147,7 +148,10 @@ def _check_workers(client: Client) -> None:
 
 def sent_once(client: Client, function: Callable[..., Any]) -> Future:
     """A function as the result of a task: each worker gets it once, and dask makes it again if a worker that has it is lost."""
-    return client.submit(_itself, function, pure=False)
+    with warnings.catch_warnings():
+        # a function may bring a feature table along; it is sent no more than once for each worker
+        warnings.filterwarnings("ignore", "Sending large graph")
+        return client.submit(_itself, function, pure=False)
 
 
 def _itself(function: Callable[..., Any]) -> Callable[..., Any]:
