@@ -4,7 +4,8 @@
 const INK = "#222";
 const FAINT = "#8a8a8a";
 const DASHED = { stroke: FAINT, "stroke-width": 0.7, "stroke-dasharray": "3 3" };
-const OVER_ORDERS = { xTitle: "order of the shaft", above: 34, height: 230 };
+const LABEL_ROWS = 3; // above the axes of orders
+const OVER_ORDERS = { xTitle: "order of the shaft", above: 10 + 12 * LABEL_ROWS, height: 242 };
 
 const byId = (id) => document.getElementById(id);
 
@@ -56,7 +57,7 @@ function ticks([low, high], log, count) {
   const found = [];
   const first = Math.ceil(low / step - 1e-9);
   for (let k = first; k * step <= high + 1e-9 * step; k++) found.push(+(k * step).toPrecision(6));
-  return found;
+  return found.length > 1 || count > 20 ? found : ticks([low, high], log, 2 * count);
 }
 
 // Empty axes in a figure: `at` and `up` give the place of a value across and upwards.
@@ -93,7 +94,7 @@ function addCursors(plot, fault, nominal, last) {
   const all = [...lines, ...about.compared.filter(([label]) => !own.has(label))];
   const drawn = all.filter((one) => place(one) < last).sort((one, other) => place(one) - place(other));
   const rule = (order, look) => addPath(plot, `M${plot.at(order)} ${plot.top}V${plot.bottom}`, look);
-  const ends = [-Infinity, -Infinity]; // of the labels in two rows
+  const ends = Array(LABEL_ROWS).fill(-Infinity); // of the labels in each row
   for (const one of drawn) {
     const [label] = one;
     const order = place(one);
@@ -104,7 +105,8 @@ function addCursors(plot, fault, nominal, last) {
       visible.forEach((found) => rule(found, { stroke: colour, "stroke-dasharray": "1 3" }));
     } else rule(order, DASHED);
     const half = 3.4 * label.length + 3;
-    const row = plot.at(order) - half > ends[0] ? 0 : +(ends[1] < ends[0]);
+    const fits = ends.findIndex((end) => plot.at(order) - half > end);
+    const row = fits < 0 ? ends.indexOf(Math.min(...ends)) : fits;
     ends[row] = plot.at(order) + half;
     const weight = own.has(label) ? "bold" : "normal";
     addText(plot, label, { x: plot.at(order), y: plot.top - 4 - 12 * row, "font-weight": weight });

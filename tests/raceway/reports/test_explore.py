@@ -154,6 +154,28 @@ def test_the_page_works_in_a_browser_by_keys_at_any_width(page, corpus, tmp_path
         assert opened.errors == []
 
 
+OVERLAPPING = """
+    [...document.querySelectorAll(".plots svg")].flatMap((svg) => {
+        const boxes = [...svg.querySelectorAll("text")].map((text) => [text.textContent, text.getBoundingClientRect()]);
+        return boxes.flatMap(([one, a], k) => boxes.slice(k + 1).filter(([, b]) =>
+            a.left < b.right && b.left < a.right && a.top < b.bottom - 2 && b.top < a.bottom - 2
+        ).map(([other]) => `${one} and ${other}`));
+    })
+"""
+
+
+def test_no_label_of_a_line_overlaps_another_at_any_width(page, tmp_path):
+    with browser(tmp_path / "profile") as opened:
+        for width in (360, 1400):
+            opened.look(width)
+            opened.open(page)
+            opened.until("document.querySelectorAll('.plots svg').length === 4")
+            for record in range(4, 80, 15):
+                opened.value(f"show({record})")
+                opened.until(f"byId('name').textContent.startsWith('Record {record}: ')")
+                assert opened.value(OVERLAPPING) == []
+
+
 BROKEN = """
     [...document.querySelectorAll("#labels tr:not(.text) td")].filter((cell) => {
         const text = (cell.querySelector("small") ?? cell).firstChild;
