@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
@@ -46,6 +47,7 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
         rms = _rms(signal)
         panels[1].semilogy(age, rms / np.median(rms[:FIRST]), color=BLUE, linewidth=1)
         panels[1].set_ylabel("rms over\nits start")
+        _plain_ticks(panels[1])
         panels[2].plot(age, from_si(life["spall_length"].values, "mm"), color=VERMILION, linewidth=1)
         panels[2].set(ylabel="spall [mm]", xlabel="age [h]")
         for axes in panels[:3]:
@@ -62,6 +64,15 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
             with open_corpus(like) as other:
                 _draw_courses(panels[3], opened, other)
         return figure
+
+
+def _plain_ticks(axes: Any) -> None:
+    """Plain numbers on a logarithmic axis, without powers of ten."""
+    low, high = axes.get_ylim()
+    subs = (1.0, 2.0, 5.0) if high < 100 * low else (1.0,)  # labels of more would overlap
+    axes.yaxis.set_major_locator(LogLocator(subs=subs))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_locator(NullLocator())
 
 
 def _draw_spectra(axes: Any, age: FloatArray, signal: FloatArray, fs: float, title: str) -> None:
@@ -86,6 +97,7 @@ def _draw_courses(axes: Any, own: xr.Dataset, other: xr.Dataset) -> None:
             )
     axes.axhline(1, color=FAINT, linewidth=0.6)
     axes.set(xlabel="share of life [%]", ylabel="rms over\nits start")
+    _plain_ticks(axes)
     axes.legend(loc="upper left")
 
 

@@ -50,8 +50,12 @@ def draw_bins(axes: Axes, bins: Sequence[WidthBin], unit: float, bars: str, dots
 def set_size_axis(axes: Axes, size: Sequence[float]) -> None:
     """Logarithmic axis of sizes."""
     axes.set_xscale("log")
-    # the ticks of a logarithmic axis would stand at powers of ten, which are too few here
-    ticks = np.geomspace(min(size), max(size), 4)
+    # round numbers, or the ends of a range that has fewer than two
+    smallest, largest = min(size), max(size)
+    powers = 10.0 ** np.arange(np.floor(np.log10(smallest)), np.log10(largest) + 1)
+    subs = (1, 2, 5) if largest < 100 * smallest else (1,)  # labels of more would overlap
+    ticks = [tick for tick in np.outer(powers, subs).ravel().tolist() if smallest <= tick <= largest]
+    ticks = ticks if len(ticks) > 1 else [smallest, largest]
     axes.set_xticks(ticks, map(three_digits, ticks))
     axes.xaxis.set_minor_locator(NullLocator())
 

@@ -28,6 +28,10 @@ def test_a_picture_has_the_course_of_one_life(lives):
     assert figure.axes[0].get_title("left").split(":")[0] in longest[longest == longest.max()].index
     spall = figure.axes[2].lines[0].get_ydata()
     assert 0 == spall[0] < spall[-1] <= 6
+    figure.canvas.draw()
+    numbers = [label.get_text() for label in figure.axes[1].get_yticklabels(which="both") if label.get_text()]
+    assert all(float(number) > 0 for number in numbers)
+    assert len(numbers) > 1
     assert figure.axes[3].get_ylabel() == "dB re 1 (m/s²)²/Hz"
 
 

@@ -82,6 +82,7 @@ def test_the_picture_has_a_panel_for_each_class_and_a_curve_for_each_criterion(t
     (axes,) = draw_limits(limits).axes
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["twin", "classifier"]
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("width [mm]", "outer seen")
+    assert {label.get_text().strip("0.")[:1] for label in axes.get_xticklabels()} <= {"1", "2", "5"}
     assert [label.get_text() for label in axes.get_yticklabels()] == ["0 %", "50 %", "90 %", "100 %"]
 
 
