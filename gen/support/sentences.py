@@ -180,5 +180,9 @@ def _kinds(location: tuple[int | str, ...], model: type[BaseModel]) -> list[str]
 
 def _guess(location: tuple[int | str, ...], model: type[BaseModel]) -> str | None:
     """Allowed key that is most similar to the last key of ``location``, if any."""
-    near = difflib.get_close_matches(str(location[-1]), _siblings(location, model), 1)
+    key, allowed = str(location[-1]), _siblings(location, model)
+    # rpm is the end of shaft_rpm, which is nearer than nominal_rpm
+    near = sorted((name for name in allowed if name.endswith(f"_{key}")), key=len) or difflib.get_close_matches(
+        key, allowed, 1
+    )
     return near[0] if near else None

@@ -48,6 +48,10 @@ def _verdict(error: BaseException) -> tuple[int, str]:
         case click.NoSuchOption(option_name=option, ctx=click.Context() as ctx) if option in _of_all_commands(ctx):
             rest = ctx.command_path.removeprefix("raceway ")
             return BAD_INPUT, f"{ctx.command_path}: {option} is for all commands; put it between raceway and {rest}."
+        case click.UsageError(ctx=click.Context(params={"model": None}) as ctx) if (
+            "extra argument" in error.message and ".skops" in f"{error.message} {[*ctx.params.values()]}"
+        ):
+            return BAD_INPUT, f"{ctx.command_path}: a model is no argument; give it with --model FILE.skops."
         case click.UsageError():
             command = error.ctx.command_path if error.ctx else "raceway"
             return BAD_INPUT, f"{command}: {error.format_message().rstrip('.')}; see {command} --help."

@@ -100,6 +100,9 @@ TABLE = [
     ("plot {corpus} --record 99 -o {new}.png", "no record 99; give one of 0 to 47."),
     # models and scores
     ("evaluate {corpus} --model {nowhere}", "nowhere: no such file; give a model made with raceway train."),
+    ("evaluate {corpus} m.skops", "raceway evaluate: a model is no argument; give it with --model FILE.skops."),
+    ("evaluate m.skops {corpus}", "raceway evaluate: a model is no argument; give it with --model FILE.skops."),
+    ("evaluate {corpus} {nowhere}", "see raceway evaluate --help."),
     ("evaluate {corpus} --model {cut}", "cut.skops: not a readable model"),
     ("benchmark {corpus} -o {new} --track rig --folds 3", "2 rig(s) cannot fill 3 folds; use at most 2 folds."),
     ("benchmark {corpus} -o {new} --folds 3 --test {corpus}", "48 of its records are in the training corpus too"),

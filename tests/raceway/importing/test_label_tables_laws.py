@@ -110,6 +110,7 @@ def test_a_missing_key_is_told_with_the_places_where_it_can_be_given(tmp_path, k
 
 REFUSED = {
     "labels.csv, row 2, column shaft_rmp: no such key; did you mean shaft_rpm?": {"shaft_rmp": 5},
+    "labels.csv, row 2, column rpm: no such key; did you mean shaft_rpm?": {"rpm": 5},
     "column fault: 'gear' is not allowed here; it must be 'healthy'": {"fault": "gear"},
     "column load_n: 'heavy' is not allowed here; it must be a number.": {"load_n": "heavy"},
     "column load_n: 1.480 may be in thousands; write it without marks": {"load_n": "1.480", "shaft_rpm": 900, "sample_rate_hz": 800},
