@@ -80,7 +80,7 @@ class Signal(NamedTuple):
     """A recording in m s-2, shape (time,), its sample rate [Hz] or None if it is not known, and a sentence for each assumption.
 
     ``unit`` is the unit in which the file was read; ``rpm`` the speed of the shaft, if the file states it;
-    ``variable`` its name in a MATLAB file.
+    ``variable`` its name in a MATLAB file; ``bare`` the name of a column of times without a unit.
     """
 
     values: FloatArray
@@ -89,6 +89,7 @@ class Signal(NamedTuple):
     unit: Unit
     rpm: float | None = None
     variable: str = ""
+    bare: str = ""
 
 
 def read_signal(
@@ -219,7 +220,7 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
             told = *told, of_course
         if not np.isfinite(signal).all():
             raise UnusableError("has values beyond the range of numbers; check its unit")
-        return Signal(signal, fs, told, unit, rpm, table.variable)
+        return Signal(signal, fs, told, unit, rpm, table.variable, content.bare)
 
     return read
 

@@ -24,7 +24,8 @@ _MOST_DIGITS = 6
 class Values(NamedTuple):
     """Values of a signal in the unit of its file, shape (time,), with what the file states of them.
 
-    ``rates`` are sample rates [Hz] and where they are stated; ``unit`` is as the file writes it, and ``named`` tells where.
+    ``rates`` are sample rates [Hz] and where they are stated; ``unit`` is as the file writes it, and ``named`` tells where. ``bare`` is
+    the name of a column of times without a unit.
     """
 
     values: FloatArray
@@ -32,6 +33,7 @@ class Values(NamedTuple):
     unit: str
     named: str
     table: NumberTable
+    bare: str = ""
 
     def rate(self, wanted: float | None) -> tuple[float | None, list[str]]:
         """Sample rate to be used, or None; and a sentence without its end if another one is stated.
@@ -118,10 +120,11 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
         unit = SECONDS.get(key_of(header.unit_of(place)))
         rate = unit and _rate_of(columns[place] * unit)
         rates += [(rate, f"times in column {name}")] if rate else []
+    bare = next((header.names[n] for n in times if header.is_of_time(n) and not header.unit_of(n)), "")
     own = header.unit_of(signals[0])
     name = header.name(signals[0])
     named = f"column {name if own in name else f'{name} in {own:.60}'}" if own else header.unit[:60]
-    return Values(columns[signals[0]], tuple(rates), own or header.unit, named, table)
+    return Values(columns[signals[0]], tuple(rates), own or header.unit, named, table, bare)
 
 
 def column_of(text: str) -> int | str:

@@ -226,7 +226,8 @@ def _join(parts: Sequence[tuple[Path, Labels]]) -> tuple[list[FloatArray], float
         notes |= {labels.note: None} if labels.note else {}
         for sensor, signal in zip(labels.sensors, signals, strict=True):
             if signal.fs is None:
-                raise UnusableError("states no sample rate; give it", "sample_rate_hz")
+                advice = f"write {signal.bare} [s] over its times, or " if signal.bare else ""
+                raise UnusableError(f"states no sample rate; {advice}give it", "sample_rate_hz")
             rates.add(signal.fs)
             speeds.append(signal.rpm)
             notes |= dict.fromkeys(

@@ -1,5 +1,6 @@
 """Table of the speeds of the recordings in a folder, with the columns ``file`` and ``rpm`` and a row for each file."""
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -9,6 +10,14 @@ from raceway.importing.numerals import IN_THOUSANDS, in_doubt
 from raceway.importing.reading_options import Speeds, speeds_in
 
 FILE, RPM = "file", "rpm"
+_LONGEST_LINE = 1000  # characters that are read of a file that may be a recording
+
+
+def is_speed_table(path: Path) -> bool:
+    """Whether the first line of a file names the columns ``file`` and ``rpm``, as no recording does."""
+    with path.open(encoding="utf-8-sig", errors="ignore") as stream:
+        names = re.split("[\t;,]", stream.readline(_LONGEST_LINE))
+    return {FILE, RPM} <= {name.strip(' "\n') for name in names}
 
 
 def read_speed_table(table: Path, recordings: Iterable[Path], others: Iterable[Path]) -> dict[str, Speeds]:

@@ -15,6 +15,7 @@ from raceway.importing.columns import column_of
 from raceway.importing.conversion import Scale, volts_per_acceleration
 from raceway.importing.recorded import ACCELERATION, Recorded
 from raceway.importing.refused_files import UnusableError, told_of
+from raceway.importing.speed_tables import is_speed_table
 
 if TYPE_CHECKING:
     from raceway.importing.reading_options import Reading
@@ -33,7 +34,7 @@ OPTIONS = {
 
 
 def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
-    """Files of recordings in a folder, not below it, except some files; numbers in their names are in the order of their values.
+    """Files of recordings in a folder, not below it, except tables of speeds and some files, sorted by the numbers in their names.
 
     Raises
     ------
@@ -43,6 +44,7 @@ def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
     left_out = {path.resolve() for path in without}
     files = (path for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
     recordings = [path for path in files if is_known(path.suffix) and path.resolve() not in left_out]
+    recordings = [path for path in recordings if not is_speed_table(path)]
     if not recordings:
         message = f"{folder}: has no recording in it ({', '.join(SUFFIXES)}); give a recording, or the folder that holds them."
         raise CorpusError(message)
@@ -115,7 +117,8 @@ def _read(path: Path, reading: "Reading", given_up: Sequence[str]) -> "tuple[Rec
         signals = {"": signals[reading.channels[0]]}
     first, shortest = next(iter(signals.values())), min(signal.values.size for signal in signals.values())
     if first.fs is None:
-        raise UnusableError("does not state its sample rate; give it with --rate HZ")
+        advice = f"write {first.bare} [s] over its times, or " if first.bare else ""
+        raise UnusableError(f"does not state its sample rate; {advice}give it with --rate HZ")
     if shortest < _FEWEST:
         raise UnusableError(f"holds {shortest} samples, and a diagnosis needs {_FEWEST} at least; record 10 s")
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}

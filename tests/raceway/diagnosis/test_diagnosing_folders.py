@@ -149,6 +149,13 @@ def test_files_are_in_the_order_of_the_numbers_in_their_names(named):
         assert [path.name for path in recordings_in(Path(folder), []) if path.name != "Run.csv"] == expected[1:]
 
 
+def test_a_table_of_speeds_is_no_recording(tmp_path):
+    tables = {"a.csv": "file,rpm\n", "b.csv": 'note;"rpm";"file"\n', "c.txt": "\ufeffrpm\tfile\r\n1\ta.wav\r\n"}
+    for name, text in {**tables, "r.csv": "rpm,x\n", "s.csv": "file\n"}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    assert [path.name for path in recordings_in(tmp_path, [])] == ["r.csv", "s.csv"]
+
+
 def test_each_recording_of_a_folder_is_diagnosed_at_its_speed_in_the_table(model, recordings, tmp_path):
     folder = tmp_path / "campaign"
     folder.mkdir()

@@ -93,6 +93,19 @@ def test_a_file_that_leaves_something_open_is_refused(tmp_path, name):
     assert_refused(tmp_path / name, *REFUSED[name])
 
 
+@pytest.mark.parametrize("name", ["Zeit", "time", "X_Value"])
+def test_times_without_a_unit_are_told_by_their_name_unless_the_rate_is_given(tmp_path, name):
+    rows = "".join(f"{n / 1000:.3f};{n * n % 7}\n" for n in range(200))
+    path = tmp_path / "r.csv"
+    path.write_text(f"{name};x\n{rows}", encoding="utf-8")
+    reading = Reading((), *[None] * (len(Reading._fields) - 1))
+    with pytest.raises(CorpusError, match=rf"rate; write {name} \[s\] over its times, or give it with --rate HZ"):
+        read_recording(path, reading)
+    assert read_recording(path, reading._replace(rate=800))[0].fs == 800
+    path.write_text(f"{name} [s];x\n{rows}", encoding="utf-8")
+    assert read_recording(path, reading)[0].fs == 1000
+
+
 LABELS = {"bearing": "6205", "unit": "g", "sample_rate_hz": 12800}
 ROW = {"path": "a.npy", "fault": "inner", "specimen": "A"}
 
