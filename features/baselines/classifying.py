@@ -1,6 +1,7 @@
 """Predictions of a fitted model for feature tables and waveforms, alone or compared with healthy records."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
@@ -18,6 +19,7 @@ from features.table.channels import channels_of
 from features.table.durations import durations_of
 from features.table.recording_speeds import recording_numbers
 from features.table.waveforms import Waveforms
+from gen.corpus import open_corpus
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
@@ -60,6 +62,22 @@ def suited(model: Model, durations: Sequence[float], highest: float) -> Model:
     if durations and SAME_DURATION * min(durations) < min(model.durations, default=0.0) and model.shorter:
         return model.shorter
     return model.wide if highest > model.band[1] and model.wide and highest >= model.wide.band[1] else model
+
+
+def suited_to(model: Model, *corpora: Path | str | xr.Dataset) -> Model:
+    """The model whose features are computed of the signals of some corpora, by their durations and sample rates.
+
+    Raises
+    ------
+    CorpusError
+        If one cannot be read.
+    """
+    durations, rates = list[float](), list[float]()
+    for corpus in corpora:
+        with open_corpus(corpus) as opened:
+            rates.append(float(opened["sample_rate"].max()))
+            durations.append(opened.sizes["elapsed_time"] / rates[-1])
+    return suited(model, durations, RECORDED * min(rates))
 
 
 def check_takes_reference(model: Fitted, reference: str) -> None:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sklearn.exceptions import NotFittedError
 
 from features.baselines.calibration import UNCALIBRATED, Calibration
-from features.baselines.classifying import RECORDED, predict, suited
+from features.baselines.classifying import predict, suited, suited_to
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import MAKERS, Estimator, check_baseline, relative_name
 from features.baselines.model_parts import Packed, Part
@@ -45,7 +45,7 @@ from features.table.corpus_features import feature_table
 from features.table.definitions import ALL_GROUPS, GROUPS
 from features.table.durations import durations_of
 from features.table.waveforms import Waveforms
-from gen.corpus import FAULTS, UNKNOWN_CODE, check_result, corpus_name, open_corpus
+from gen.corpus import FAULTS, UNKNOWN_CODE, check_result, corpus_name
 from gen.support.display import Shown
 from gen.support.errors import CorpusError
 from gen.support.executor import Workers, connected
@@ -359,22 +359,6 @@ def _content(model: Model) -> dict[str, Any]:
 
     parts = {name: None if (part := getattr(model, name)) is None else pack(_content(part)) for name in _PARTS}
     return {name: getattr(model, name) for name in _STORED} | {"calibration": model.calibration._asdict()} | parts
-
-
-def suited_to(model: Model, *corpora: Path | str | xr.Dataset) -> Model:
-    """The model whose features are computed of the signals of some corpora, by their durations and sample rates.
-
-    Raises
-    ------
-    CorpusError
-        If one cannot be read.
-    """
-    durations, rates = list[float](), list[float]()
-    for corpus in corpora:
-        with open_corpus(corpus) as opened:
-            rates.append(float(opened["sample_rate"].max()))
-            durations.append(opened.sizes["elapsed_time"] / rates[-1])
-    return suited(model, durations, RECORDED * min(rates))
 
 
 def _holds_signals(data: Data) -> TypeGuard[Path | str | xr.Dataset]:

@@ -135,8 +135,7 @@ def evaluate(
       raceway evaluate pump --model model.skops --reference pump
     """
     from features.baselines import count_unknown
-    from features.baselines.classifying import check_takes_reference
-    from features.baselines.models import suited_to
+    from features.baselines.classifying import check_takes_reference, suited_to
     from features.baselines.reference_choice import check_durations
     from gen import open_corpus
     from raceway.kept_models import open_model

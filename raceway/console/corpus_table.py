@@ -53,7 +53,7 @@ def tables_for(
     channel: str | tuple[str, ...] | None = None,
 ) -> "list[xr.Dataset]":
     """Feature tables of corpora that are scored together, as a model takes them: in its band, and cut into records as long as its own."""
-    from features.baselines.models import suited_to
+    from features.baselines.classifying import suited_to
 
     suited = suited_to(model, *corpora)
     analysis = Analysis(channel, suited.band, tuple(model.groups))

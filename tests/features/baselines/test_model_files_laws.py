@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from features.baselines import ESTIMATORS, Model, estimators, predict
-from features.baselines.classifying import SAME_DURATION, suited
+from features.baselines.classifying import SAME_DURATION, suited, suited_to
 from features.baselines.model_file import TRUSTED, read_model_file
-from features.baselines.models import FORMAT, suited_to
+from features.baselines.models import FORMAT
 from features.table.durations import durations_of
 from gen.support.errors import CorpusError
 from tests.model_files import Archive, make_table, write_models
