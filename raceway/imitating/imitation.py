@@ -26,7 +26,7 @@ from gen.support.yaml_files import parse_yaml
 from raceway.diagnosis import diagnose_recording, given_of
 from raceway.imitating.estimates import background_keys
 from raceway.imitating.nearness import write_nearness
-from raceway.importing.reading_options import Reading
+from raceway.importing.reading_options import Reading, speeds_in
 from raceway.importing.recorded import Recorded
 from raceway.importing.user_folder import read_recording
 from raceway.kept_models import reference_model
@@ -98,7 +98,10 @@ def imitate(
     speed = first.rpm if rpm is None else rpm
     if speed is None:
         raise CorpusError(f"{first.name}: does not state its speed; give it with --rpm RPM.")
-    speeds = np.broadcast_to(speed, 2).tolist()
+    try:
+        speeds = speeds_in("-".join(f"{each}" for each in np.ravel(speed)))
+    except ValueError as error:
+        raise CorpusError(f"rpm: {error}.") from None
     rate, duration = rpm_to_hertz(sum(speeds) / 2), _duration(signals, min(speeds))
     notes += _doubts(signals, drawing, speeds)
     # every recording is as long as the shortest, and cut into segments of the length of a record

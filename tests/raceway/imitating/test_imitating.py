@@ -165,3 +165,11 @@ def test_what_cannot_be_imitated_gets_one_sentence_and_leaves_nothing(write, sig
     (tmp_path / "machine.yaml").write_text("mine")
     with pytest.raises(CorpusError, match=r"machine\.yaml: exists"):
         raceway.imitate(write(), "machine.yaml", **usual)
+
+
+@pytest.mark.parametrize("rpm", ["fast", -5, 0, np.nan, [1400, 1500, 1600], [1500, 1400], []])
+def test_a_speed_that_is_none_is_refused_before_anything_is_written(write, tmp_path, rpm):
+    recording = write()
+    with pytest.raises(CorpusError, match=r"rpm: .* is no speed and no range such as 1400-1900"):
+        raceway.imitate(recording, tmp_path / "machine.yaml", bearing="6205", rpm=rpm)
+    assert list(tmp_path.iterdir()) == [recording]
