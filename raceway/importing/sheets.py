@@ -7,7 +7,7 @@ import re
 import struct
 import zipfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from datetime import date, datetime
 from pathlib import Path
 from typing import Any
@@ -44,12 +44,13 @@ def read_sheet(path: Path, sheet: str | None) -> NumberTable:
     """
     library = optional("python_calamine")
     with guarded(path, "spreadsheet"):
-        active = 0
+        active, output = 0, nullcontext()
         if zipfile.is_zipfile(path):
             active = _check_size(path)
         else:  # old Excel files have at most 65,536 rows of 256 columns
             _check_old_excel(path)
-        with _silent(), library.CalamineWorkbook.from_path(str(path)) as book:
+            output = _silent()
+        with output, library.CalamineWorkbook.from_path(str(path)) as book:
             shown = library.SheetVisibleEnum.Visible, library.SheetTypeEnum.WorkSheet
             visible = [entry.name for entry in book.sheets_metadata if (entry.visible, entry.typ) == shown]
             name, notes = _chosen(book.sheet_names, visible, active, sheet)
