@@ -150,8 +150,8 @@ def unit_said(name: str) -> str:
 
     >>> unit_said("DE [g]"), unit_said("a/(m/s²)"), unit_said("a/g"), unit_said("V"), unit_said("Dev1/ai0")
     ('g', 'm/s²', 'g', 'V', '')
-    >>> unit_said("DE (counts)"), unit_said("accel_g"), unit_said("Acceleration")
-    ('counts', 'accel_g', '')
+    >>> unit_said("DE (counts)"), unit_said("accel_g"), unit_said("time_s"), unit_said("Acceleration")
+    ('counts', 'accel_g', 's', '')
     """
     bracketed = _IN_BRACKETS.search(name)
     if bracketed and bracketed[2] not in ("X", "Y"):  # Origin numbers its columns A(X), B(Y)
@@ -160,7 +160,10 @@ def unit_said(name: str) -> str:
     if slash:
         plain = _is_unit(after.strip()) and not unit_said(before.strip())
         return after.strip() if plain else "" if _CHANNEL.fullmatch(after) else name
-    return name if _is_unit(re.split(r"[\s_,;]+", name)[-1]) else ""
+    last = re.split(r"[\s_,;]+", name)[-1]
+    if _TIMES.match(name) and key_of(last) in SECONDS:
+        return last
+    return name if _is_unit(last) else ""
 
 
 def key_of(unit: str) -> str:
