@@ -177,6 +177,9 @@ def show_facts(facts: dict[str, Any]) -> None:
     made_by += [f"import {facts['importer']}"] if facts.get("importer") else []
     clipped, every = facts.get("clipped"), facts["parts_of_recipe"] or facts["parts"]
     state = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
+    unknown = facts.get("recipe_sha256") and facts["parts_of_recipe"] is None and facts["corpus"].is_dir()
+    if facts["complete"] and unknown:
+        state = f"complete, if its recipe has no more parts, which {RECIPE_NAME} does not tell"
     if facts["complete"] and facts["parts"] < every:
         state = f"{facts['parts']:,} of {show.count_text(every, 'part')} of its recipe; raceway copy joins them with the others"
     show.text(facts.get("title", str(facts["corpus"])), "")

@@ -108,6 +108,8 @@ def test_info_says_of_how_many_parts_a_corpus_has_some(run, told, tiny_recipe, t
     assert [told("info", corpus)["parts_of_recipe"] for corpus in (tmp_path / "first", tiny_corpus)] == [4, 4]
     assert "state       2 of 4 parts of its recipe; raceway copy joins them" in run("info", tmp_path / "first").stdout
     assert "complete" in run("info", tiny_corpus).stdout
+    (tmp_path / "first" / "recipe.yaml").unlink()
+    assert "complete, if its recipe has no more parts" in run("info", tmp_path / "first").stdout
 
 
 def test_a_single_file_is_generated_kept_shown_and_used_like_a_folder(run, told, tiny_recipe, tiny_corpus, tmp_path):
@@ -120,7 +122,7 @@ def test_a_single_file_is_generated_kept_shown_and_used_like_a_folder(run, told,
     own = {"corpus", "bytes", "parts", "parts_of_recipe"}
     one, other = (told("info", corpus) for corpus in (file, tiny_corpus))
     assert {name: one[name] for name in one.keys() - own} == {name: other[name] for name in other.keys() - own}
-    assert "complete" in run("info", file).stdout
+    assert "complete\n" in run("info", file).stdout
     for corpus, name in ((file, "file.nc"), (tiny_corpus, "folder.nc")):
         told("features", corpus, "-o", tmp_path / name)
     assert read_table(tmp_path / "file.nc").equals(read_table(tmp_path / "folder.nc"))
