@@ -24,7 +24,7 @@ from sklearn.model_selection import GroupKFold, cross_val_predict
 
 from features import open_waveforms
 from gen import generate, read_recipe
-from gen.corpus import FAULTS, UNKNOWN_CODE, is_single_file
+from gen.corpus import FAULTS, UNKNOWN_CODE, is_single_file, specimen_numbers
 
 FloatArray = NDArray[np.float64]
 
@@ -85,7 +85,7 @@ def read_records(corpus: Path | str) -> Shortcuts:
             shortcuts[name] = np.stack([labels[variable].values for variable in variables], axis=1)
     fault = labels["fault"].values
     faulty, ball = fault != FAULTS.index("healthy"), fault == FAULTS.index("ball")
-    return Shortcuts(shortcuts, faulty, labels["rig"].values, labels["specimen"].values, ball)
+    return Shortcuts(shortcuts, faulty, labels["rig"].values, specimen_numbers(labels), ball)
 
 
 def permuted(records: Shortcuts, rng: np.random.Generator) -> NDArray[np.bool_]:

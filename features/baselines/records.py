@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from features.signal.rows import FloatArray, IntArray
 from features.table.recording_speeds import recording_numbers
 from features.table.waveforms import Waveforms
-from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
+from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE, numbered, specimen_numbers
 from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 
@@ -71,13 +71,12 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
         allowed = ", ".join(f"{code} {name}" for code, name in FAULT_NAMES.items())
         message = f"{title}: fault has values other than {allowed}."
         raise CorpusError(message)
-    rig = table["rig"].values
-    specimen = _numbered(rig, table["specimen"].values)
+    specimen = specimen_numbers(table)
     return Records(
         title=title,
         features=rows,
         fault=fault,
-        rig=_numbered(rig),
+        rig=numbered(table["rig"].values),
         specimen=specimen,
         recording=recording_numbers(table),
         width=_column(table, "width"),
@@ -144,7 +143,7 @@ def _bearing_type(table: xr.Dataset, specimen: IntArray) -> IntArray:
     balls = np.rint(_column(table, "bpfo") + _column(table, "bpfi"))
     named = table["bearing"].values.astype(str) if "bearing" in table else np.full(len(balls), "")
     first = np.unique(specimen, return_index=True)[1][specimen]
-    return _numbered(np.unique(named, return_inverse=True)[1], np.nan_to_num(balls))[first]
+    return numbered(np.unique(named, return_inverse=True)[1], np.nan_to_num(balls))[first]
 
 
 def record_digests(features: FloatArray | Waveforms) -> NDArray[np.uint64]:
@@ -211,8 +210,3 @@ def _require(title: str, names: Iterable[str], held: Iterable[Hashable]) -> None
     if lacking:
         message = f"{title}: the feature table lacks {min(lacking)!r}; make it again with raceway features."
         raise CorpusError(message)
-
-
-def _numbered(*keys: IntArray) -> IntArray:
-    """Number from 0 of each distinct combination of keys, shape (record,)."""
-    return np.unique(np.stack(keys), axis=1, return_inverse=True)[1].reshape(-1)

@@ -19,6 +19,7 @@ from features.signal.rows import FloatArray
 from features.signal.speed import DISAGREEMENT, EVIDENCE, ShaftSpeed, find_speed
 from features.table.channels import accelerations, orders_of
 from features.table.speed_search import line_levels
+from gen.corpus import numbered
 from gen.support.units import from_si
 
 Speed = Literal["off", "check", "correct"]
@@ -60,8 +61,7 @@ def checked_speed(speed: str, table: xr.Dataset) -> Speed:
 
 def recording_numbers(table: xr.Dataset) -> IntArray:
     """Number of the recording that each record was cut from, from 0 and without a gap, shape (record,)."""
-    keys = np.stack([table[name].values for name in RECORDING])
-    return np.unique(keys, axis=1, return_inverse=True)[1].reshape(-1)
+    return numbered(*(table[name].values for name in RECORDING))
 
 
 def block_sums(task: tuple[xr.Dataset, IntArray]) -> list[Sums]:

@@ -11,6 +11,8 @@ from .contents import (
     by_class as by_class,
     class_counts as class_counts,
     extent as extent,
+    numbered as numbered,
+    specimen_numbers as specimen_numbers,
     unit_counts as unit_counts,
 )
 from .disk import (

@@ -65,6 +65,20 @@ def extent(values: NDArray[Any]) -> tuple[float, float, float] | None:
     return (float(finite.min()), float(np.median(finite)), float(finite.max())) if finite.size else None
 
 
+def numbered(*keys: NDArray[Any]) -> NDArray[np.intp]:
+    """Number from 0 of each different combination of values in arrays of shape (record,).
+
+    >>> numbered(np.array([7, 7, 8]), np.array([1, 1, 1]))
+    array([0, 0, 1])
+    """
+    return np.unique(np.stack(keys), axis=1, return_inverse=True)[1].reshape(-1)
+
+
+def specimen_numbers(columns: Columns) -> NDArray[np.intp]:
+    """Number from 0 of the specimen of each record, shape (record,): that of the format begins again in each rig."""
+    return numbered(*(column(columns, name) for name in UNITS[:2]))
+
+
 def distinct(*keys: NDArray[Any]) -> int:
     """Number of different combinations of values in arrays of shape (record,)."""
     return np.unique(np.stack(keys), axis=1).shape[1]

@@ -23,6 +23,7 @@ from gen.corpus import (
     file_problems,
     open_records,
     read_manifest,
+    specimen_numbers,
     unit_counts,
 )
 from gen.corpus.choice import channel_names, chosen_records, per_record
@@ -151,7 +152,7 @@ def _lives(labels: Columns) -> dict[str, int] | None:
     if "event" not in labels:
         return None
     (names,) = (variable.flags for variable in LIFE if variable.name == "event")
-    _, first = np.unique(labels["specimen"], return_index=True)
+    _, first = np.unique(specimen_numbers(labels), return_index=True)
     return text_counts(names[int(event)] for event in labels["event"][first])
 
 

@@ -18,11 +18,11 @@ from features.baselines import DEFAULT_ESTIMATOR
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import Maker, maker_name
 from features.baselines.records import IntArray
-from gen.corpus import FAULTS
+from gen.corpus import FAULTS, specimen_numbers
 from gen.corpus.fault_classes import HEALTHY, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
-from raceway.lives.prognosis import bearing_folds, check_others, in_order, specimens_of
+from raceway.lives.prognosis import bearing_folds, check_others, in_order
 from raceway.lives.survival import BoolArray, FloatArray
 
 FEATURES = ("raw_kurtosis", "whitened_highest_line")
@@ -157,7 +157,7 @@ def _watched(table: xr.Dataset, name: str) -> Watched:
     fault[~np.isin(of["stage"].values, (0, 1, 2))] = UNKNOWN_CODE
     names = [str(feature) for feature in of["feature"].values]
     features = pd.DataFrame(of["features"].transpose("record", "feature").values, columns=names)
-    return Watched(features, fault, specimens_of(of), age, of["stage"].values == 0, seen_from)
+    return Watched(features, fault, specimen_numbers(of), age, of["stage"].values == 0, seen_from)
 
 
 def _of_feature(name: str) -> Detector:

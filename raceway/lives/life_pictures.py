@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
-from gen.corpus import SIGNAL, open_corpus
+from gen.corpus import SIGNAL, open_corpus, specimen_numbers
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
 from raceway.lives.prognosis import FIRST, check_lives
@@ -28,7 +28,7 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
     corpus
         A corpus of lives.
     bearing
-        Name of the bearing, or number of its specimen; by default the one that failed with most damaged snapshots.
+        Name of the bearing, or its number in the corpus from 0; by default the one that failed with most damaged snapshots.
     like
         Another corpus of lives.
 
@@ -108,24 +108,22 @@ def _life(records: xr.Dataset, corpus: Path, bearing: str | None) -> xr.Dataset:
         if not lives:
             raise CorpusError(f"{corpus}: no bearing failed; name one.")
         return lives[-1]
-    names, specimens = records["bearing"].values, records["specimen"].values
-    places = np.flatnonzero(specimens.astype(str) == bearing if bearing.isdecimal() else names == bearing)
+    names, numbers = records["bearing"].values, specimen_numbers(records)
+    places = np.flatnonzero(numbers.astype(str) == bearing if bearing.isdecimal() else names == bearing)
     if not len(places):
         named = ", ".join(dict.fromkeys(names.tolist()))
         raise CorpusError(f"{corpus}: has no bearing {bearing}; it has {named[:200]}.")
-    if len(alike := np.unique(specimens[places])) > 1:
-        numbers = ", ".join(map(str, alike.tolist()))
-        raise CorpusError(
-            f"{corpus}: several bearings are called {bearing}; name one by its specimen: {numbers[:200]}."
-        )
+    if len(alike := np.unique(numbers[places])) > 1:
+        listed = ", ".join(map(str, alike.tolist()))
+        raise CorpusError(f"{corpus}: several bearings are called {bearing}; give the number of one: {listed[:200]}.")
     return records.isel(record=places)
 
 
 def _failed(records: xr.Dataset) -> Iterator[xr.Dataset]:
     """Records of each bearing that failed."""
-    specimens = records["specimen"].values
-    for specimen in dict.fromkeys(specimens[records["event"].values == 1].tolist()):
-        yield records.isel(record=np.flatnonzero(specimens == specimen))
+    numbers = specimen_numbers(records)
+    for number in dict.fromkeys(numbers[records["event"].values == 1].tolist()):
+        yield records.isel(record=np.flatnonzero(numbers == number))
 
 
 def _signal(life: xr.Dataset) -> FloatArray:

@@ -24,7 +24,7 @@ from raceway.console.progress_bar import notice
 @click.option(
     "--bearing",
     metavar="NAME",
-    help="Bearing, such as '6206 #3', or its specimen, such as 3; by default the one with most damaged snapshots.",
+    help="Bearing, such as '6206 #3', or its number in the corpus, such as 3; by default the one with most damaged snapshots.",
 )
 @click.option("--like", type=A_CORPUS, metavar="OTHER", help="Also draw all lives beside those of another corpus.")
 def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> None:

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from sklearn.ensemble import HistGradientBoostingRegressor
 from sklearn.model_selection import GroupKFold
 
+from gen.corpus import specimen_numbers
 from gen.support.errors import CorpusError
 from raceway.lives.survival import BoolArray, FloatArray, kaplan_meier, weibull, weibull_median_left
 
@@ -37,7 +38,7 @@ SHARES = (0.5, 0.75, 0.9)
 WITHIN = 0.2
 _DRAWS = 20
 _NONE_FAILED = "no bearing of the feature table failed; make longer tests, or more bearings."
-_NEEDED = ("age", "rul", "event", "identity", "specimen", "stage")
+_NEEDED = ("age", "rul", "event", "identity", "rig", "specimen", "stage")
 
 
 class Lives(NamedTuple):
@@ -84,12 +85,7 @@ def check_lives(records: xr.Dataset, name: str) -> None:
 def in_order(table: xr.Dataset, name: str) -> xr.Dataset:
     """Snapshots of lives by bearing and then by age; CorpusError with a ``name`` if they are none."""
     check_lives(table, name)
-    return table.isel(record=np.lexsort((table["age"].values, table["specimen"].values)))
-
-
-def specimens_of(lives: xr.Dataset) -> NDArray[np.int_]:
-    """Number of the bearing of each snapshot from 0, shape (snapshot,); bearings of joined corpora can have the same name."""
-    return np.unique(lives["specimen"].values, return_inverse=True)[1]
+    return table.isel(record=np.lexsort((table["age"].values, specimen_numbers(table))))
 
 
 def check_others(table: xr.Dataset, tested: xr.Dataset) -> None:
@@ -136,7 +132,7 @@ def lives_of(table: xr.Dataset) -> Lives:
         If a variable of lives is missing, or no remaining life is known.
     """
     of = in_order(table, "the feature table")
-    bearing = specimens_of(of)
+    bearing = specimen_numbers(of)
     features = of["features"].transpose("record", "feature").values.astype(np.float64)
     failed, damaged = of["event"].values == 1, of["stage"].values > 0
     if not np.isfinite(of["rul"].values).any():

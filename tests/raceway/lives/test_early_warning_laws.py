@@ -23,7 +23,7 @@ def table(seed, rises_at=SEEN, bearings=30, rise=20.0):
     features = rng.standard_normal((len(age), 2))
     features[:, 0] += rise * (hours >= rises_at)
     columns = {
-        "age": age, "rul": (END - hours) * HOUR, "event": np.ones(len(age), int), "specimen": specimen,
+        "age": age, "rul": (END - hours) * HOUR, "event": np.ones(len(age), int), "rig": 0 * specimen, "specimen": specimen,
         "stage": (hours >= BEGUN).astype(int),
         "fault": np.where(hours >= BEGUN, FAULTS.index("outer"), FAULTS.index("healthy")),
         "first_detectable_time": np.full(len(age), SEEN * HOUR),
@@ -64,7 +64,7 @@ def by_hand(corpus, lives, seen_from):
     """Lives of an hour between snapshots, spalled from the fifth on, with the values of ``raw_kurtosis`` that are listed."""
     hours, number = np.tile(np.arange(10), len(lives)), np.repeat(np.arange(len(lives)), 10)
     columns = {
-        "age": hours * HOUR, "rul": (10 - hours) * HOUR, "event": np.ones(len(hours), int), "specimen": number,
+        "age": hours * HOUR, "rul": (10 - hours) * HOUR, "event": np.ones(len(hours), int), "rig": 0 * number, "specimen": number,
         "stage": (hours >= 5).astype(int), "fault": np.where(hours >= 5, FAULTS.index("ball"), FAULTS.index("healthy")),
         "first_detectable_time": np.repeat(seen_from, 10) * HOUR,
         "identity": np.array([identity(corpus, 0, *some) for some in zip(number, hours, strict=True)]),

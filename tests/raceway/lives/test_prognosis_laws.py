@@ -27,7 +27,7 @@ def table(seed, bearings=30, told=True, corpus="a"):
     features, age, rul, failed, number, damaged = map(np.array, zip(*rows, strict=True))
     order = rng.permutation(len(age))
     columns = {
-        "age": age, "rul": rul, "event": failed.astype(int), "specimen": number, "bearing": np.full(len(number), "6205"),
+        "age": age, "rul": rul, "event": failed.astype(int), "rig": 0 * number, "specimen": number, "bearing": np.full(len(number), "6205"),
         "stage": damaged.astype(int),
         "identity": np.array([identity(f"{corpus}{seed}", 0, *some) for some in zip(number, age, strict=True)]),
     }  # fmt: skip
@@ -68,6 +68,14 @@ def test_bearings_of_the_training_are_not_tested_at_other_ages_either():
     halves = (table(6).isel(record=slice(first, None, 2)) for first in (0, 1))
     with pytest.raises(CorpusError, match="are among those of the training"):
         score_lives(*halves)
+
+
+def test_bearings_of_two_machines_are_others_though_both_begin_at_0():
+    lives = table(5, bearings=10)
+    number = lives["specimen"].values
+    of_two = lives.assign(rig=("record", number // 5), specimen=("record", number % 5))
+    for one, other in zip(lives_of(lives), lives_of(of_two), strict=True):
+        np.testing.assert_array_equal(one, other)
 
 
 def test_the_order_of_records_does_not_matter():
