@@ -135,4 +135,5 @@ def _shown(
     # the mean of a measured course is exact
     low, high = (recorded.rpm or 0.0,) * 2 if speeds is None else speeds
     rates = rpm_to_hertz(low), rpm_to_hertz(high)
-    return shown_recording(source.name, signal, recorded.fs, rates, bearing_orders(bearing), options["band"])
+    shown = shown_recording(source.name, signal, recorded.fs, rates, bearing_orders(bearing), options["band"])
+    return shown._replace(unit=recorded.unit)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from features.baselines.predictions import UNSURE
-from gen.corpus import check_new, check_result, sha256, temporary_folder, write_text_durably, writing
+from gen.corpus import check_new, check_result, sha256, temporary_folder, whole_or_not_at_all, write_text_durably
 from gen.corpus.fault_classes import HEALTHY
 from gen.generation.writing import write_corpus
 from gen.physics.bearing import Bearing, orders
@@ -128,12 +128,16 @@ def imitate(
             rms=float(np.sqrt(np.mean(x**2))),
             recording=None if synthetic else {"file": str(kept), "sha256": sha256(corpus)},
         )
-        checked = Recipe(parse_yaml(text, recipe, RecipeError))
+        drawn = parse_yaml(text, recipe, RecipeError)
         if not synthetic:
-            with writing(kept):
-                shutil.copyfile(corpus, kept)
+            drawn["background"]["recording"]["file"] = str(corpus)
+        auc = write_nearness(Recipe(drawn), segments, corpus, folder / page.name)
+        # nothing is kept before all of it is there
+        results = {page: folder / page.name} if synthetic else {page: folder / page.name, kept: corpus}
+        for target, source in results.items():
+            with whole_or_not_at_all(target) as temporary:
+                shutil.copyfile(source, temporary)
         write_text_durably(text, recipe)
-        auc = write_nearness(checked, segments, corpus, page)
     return Imitation(recipe, None if synthetic else kept, page, auc, tuple(dict.fromkeys(notes)))
 
 

@@ -48,7 +48,6 @@ _SIGNATURES = {
     rb"TDSm": ".tdms",
 }
 _ZIPPED = (".npz", ".ods")
-_OF_VARIABLES = (".mat", ".npz")
 _AS_HERE: Mapping[str, str] = MappingProxyType({"sample_rate_hz": "rate"})
 
 
@@ -170,7 +169,7 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
 
     def course_at(speed: int | str, table: NumberTable, sensor: Sensor) -> tuple[NumberTable, int]:
         """Table that holds the speed, and its column there."""
-        if isinstance(speed, int) or path.suffix.lower() not in _OF_VARIABLES:
+        if isinstance(speed, int) or not has_variables(path):
             return table, place_of(table, speed, "speed_column")
         try:
             beside = table_at(speed, sensor)
@@ -225,15 +224,26 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
     return read
 
 
-def _table(path: Path, variable: str | None, delimiter: str | None, decimal: str | None) -> NumberTable:
+def has_variables(path: Path) -> bool:
+    """Whether a file holds variables by name, each a table of its own."""
+    return _kind(path) in (".mat", ".npz")
+
+
+def _kind(path: Path) -> str:
+    """Suffix of the files that are read as this one."""
     suffix = path.suffix.lower()
-    if path.is_file():
-        with path.open("rb") as stream:
-            start = stream.read(12)
-        kinds = (kind for begin, kind in _SIGNATURES.items() if re.match(begin, start, re.DOTALL))
-        # content goes before the suffix, but an archive does not tell its kind, and a text may have any
-        kind = next(kinds, ".txt" if suffix == ".xls" or suffix[1:].isdecimal() else suffix)
-        suffix = suffix if kind == ".xlsx" and suffix in _ZIPPED else kind
+    if not path.is_file():
+        return suffix
+    with path.open("rb") as stream:
+        start = stream.read(12)
+    kinds = (kind for begin, kind in _SIGNATURES.items() if re.match(begin, start, re.DOTALL))
+    # content goes before the suffix, but an archive does not tell its kind, and a text may have any
+    kind = next(kinds, ".txt" if suffix == ".xls" or suffix[1:].isdecimal() else suffix)
+    return suffix if kind == ".xlsx" and suffix in _ZIPPED else kind
+
+
+def _table(path: Path, variable: str | None, delimiter: str | None, decimal: str | None) -> NumberTable:
+    suffix = _kind(path)
     if suffix in _ARRAYS:
         return _ARRAYS[suffix](path)
     if suffix in _OF_PARTS:

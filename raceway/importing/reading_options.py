@@ -107,7 +107,7 @@ _channels: Decorator = click.option(
     "channels",
     callback=lambda *arguments: names(*arguments) or (),
     metavar="A,B,C",
-    help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
+    help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB or .npz file; several are the axes "
     "of one housing. By default all axes of one sensor, as names or their absence tell: x, y, z, ch1, ch2, ch3, or three columns.",
 )
 _variable: Decorator = click.option(
@@ -132,7 +132,7 @@ _decimal: Decorator = click.option(
 _speed_column: Decorator = click.option(
     "--speed-column",
     metavar="NAME",
-    help="Column, by name or number from 0, or variable of a MATLAB file with the speed at each sample or a tacho: the recording is "
+    help="Column, by name or number from 0, or variable of a MATLAB or .npz file with the speed at each sample or a tacho: the recording is "
     "sampled again at equal angles of its shaft.",
 )
 _speed_unit: Decorator = click.option(

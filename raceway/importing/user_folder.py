@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gen.support.errors import CorpusError
-from raceway.importing.acceleration import SUFFIXES, Sensor, Signal, is_known, reader
+from raceway.importing.acceleration import SUFFIXES, Sensor, Signal, has_variables, is_known, reader
 from raceway.importing.columns import column_of
 from raceway.importing.conversion import Scale, volts_per_acceleration
 from raceway.importing.recorded import ACCELERATION, Recorded
@@ -134,9 +134,9 @@ def _read(path: Path, reading: "Reading", given_up: Sequence[str]) -> "tuple[Rec
 
 
 def _sensor(path: Path, reading: "Reading", channel: str | None) -> Sensor:
-    """How a channel is read; a name is a variable of a MATLAB file, and else a column."""
+    """How a channel is read; a name is a variable where a file has some, and else a column."""
     number = channel and column_of(channel)
-    named = path.suffix.lower() == ".mat" and isinstance(number, str)
+    named = isinstance(number, str) and has_variables(path)
     variable, column = (channel, None) if named else (reading.variable, number)
     scale = Scale(reading.unit, volts_per_acceleration(reading.sensitivity, None))
     place = channel or "", variable, column, reading.delimiter, reading.decimal

@@ -48,6 +48,17 @@ def _quick(model, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
 
 
+def test_an_imitation_that_is_interrupted_leaves_nothing(write, tmp_path, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    write()
+    monkeypatch.setattr("raceway.imitating.imitation.write_nearness", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        raceway.imitate("healthy.csv", "machine.yaml", bearing="6205", rpm=RPM)
+    assert [path.name for path in tmp_path.iterdir()] == ["healthy.csv"]
+
+
 @pytest.mark.usefixtures("unpainted")
 def test_a_recipe_of_a_recording_gives_its_segments_and_faults_on_them(run, write, signals, tmp_path):
     recording = write()

@@ -8,7 +8,9 @@ import pytest
 from raceway.importing.acceleration import Sensor, read_signal, reader
 from raceway.importing.axes import axes_of
 from raceway.importing.header import Header, unit_said
+from raceway.importing.reading_options import Reading
 from raceway.importing.refused_files import UnusableError
+from raceway.importing.user_folder import read_recording
 from tests.raceway.importing.file_writers import T, X, Y, array, mat, text, wav
 
 Z = np.roll(X, 7)
@@ -76,3 +78,15 @@ def test_a_file_of_several_signals_names_its_axes_as_they_are_chosen(name, conte
     signals = [read_signal(path, **{"variable" if named else "column": axis}).values for axis in columns]
     for values, written in zip(signals, (X, Y, Z), strict=False):
         np.testing.assert_allclose(values / values.std(), written / written.std(), rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["r.mat", "saved_as.dat", "r.npz"])
+def test_a_channel_is_a_variable_of_every_file_that_has_some(name, tmp_path: Path):
+    content = {"DE": X, "FE": Y, "fs": 12800.0}
+    if name.endswith(".npz"):
+        np.savez(tmp_path / name, **content)
+    else:
+        mat(**content)(tmp_path / name)
+    recorded, *_ = read_recording(tmp_path / name, Reading(("FE",), None, None, None, 12800.0, None))
+    values = recorded.signals["FE"]
+    np.testing.assert_allclose(values / values.std(), Y / Y.std(), rtol=1e-9)
