@@ -89,12 +89,12 @@ def _check(numbers: Mapping[str, object], kind: type, holds: Callable[[Any], boo
             raise ValueError(f"{name}: {_shown(value)} is not {meant}.")
 
 
-def ascending(values: ArrayLike, name: str) -> tuple[float, float]:
-    """Lower and upper end of a range from 0, the upper one perhaps infinite; ValueError for anything else."""
+def band_ends(values: ArrayLike) -> tuple[float, float]:
+    """Lower and upper edge of a band from 0, the upper one perhaps infinite; ValueError for anything else."""
     match values:
         case (Real() as low, Real() as high) if 0 <= low < high:
             return float(low), float(high)
-    raise ValueError(f"{name}: {_shown(values)} is no range; give two ascending numbers from 0.")
+    raise ValueError(f"band: {_shown(values)} is no range; give two ascending numbers from 0.")
 
 
 def fault_orders(values: ArrayLike, name: str) -> FloatArray:

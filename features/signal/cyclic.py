@@ -34,7 +34,7 @@ from numpy.typing import ArrayLike
 from scipy.fft import fft, ifft, next_fast_len, rfft
 from scipy.special import gammainccinv
 
-from features.signal.arguments import as_records, ascending, check_positive, check_probability, like
+from features.signal.arguments import as_records, band_ends, check_positive, check_probability, like
 from features.signal.demodulation import ZERO_PADDING
 from features.signal.rows import ComplexArray, FloatArray, brief, by_row, squared_modulus
 from features.signal.spectra import prediction_filters, sine_windowed
@@ -80,7 +80,7 @@ class Coherence(NamedTuple):
 
     def inside(self, band: tuple[float, float] | None) -> np.ndarray:
         """Whether each spectral frequency lies in a band [Hz]; None for all, shape (spectral,)."""
-        low, high = (0.0, np.inf) if band is None else ascending(band, "band")
+        low, high = (0.0, np.inf) if band is None else band_ends(band)
         chosen = (self.spectral >= low) & (self.spectral <= high)
         if not chosen.any():
             raise ValueError(f"no spectral frequency lies in {low:g}-{high:g} Hz: choose a wider band.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from features.signal.arguments import as_records, ascending, check_positive, like
+from features.signal.arguments import as_records, band_ends, check_positive, like
 from features.signal.demodulation import amplitude_spectrum, analytic_band
 from features.signal.rows import FloatArray, squared_modulus
 from features.signal.spectra import fourier_coefficients
@@ -34,9 +34,9 @@ def band_envelope_spectrum(
         If no frequency lies in the band.
     """
     check_positive(fs=fs)
-    records, (low, high) = as_records(x), ascending(band, "band")
-    duration = records.shape[1] / fs
-    if low >= min(high, fs / 2) or round(low * duration) >= round(min(high, fs / 2) * duration):
+    records, (low, high) = as_records(x), band_ends(band)
+    duration, high = records.shape[1] / fs, min(high, fs / 2)
+    if low >= high or round(low * duration) >= round(high * duration):
         raise ValueError(
             f"band: {low:g}-{high:g} Hz holds no frequency of these records; give one below {rounded_down(fs / 2)} Hz."
         )

@@ -158,9 +158,10 @@ def order_map(y: ArrayLike, per_turn: int, turns: int = 16) -> OrderMap:
     if signals.shape[1] < length:
         told = f"{signals.shape[1] / per_turn:.3g} turns are less than a window of {turns}"
         raise ValueError(f"y: {told}; give fewer turns.")
-    windows = np.lib.stride_tricks.sliding_window_view(signals, length, axis=1)[:, :: length // 2]
+    step = max(length // 2, 1)
+    windows = np.lib.stride_tricks.sliding_window_view(signals, length, axis=1)[:, ::step]
     orders, amplitude = amplitude_spectrum(windows.reshape(-1, length), per_turn)
-    middle = 0.5 * turns + np.arange(windows.shape[1]) * (length // 2) / per_turn
+    middle = 0.5 * turns + np.arange(windows.shape[1]) * step / per_turn
     return OrderMap(middle, orders, like(y, amplitude.reshape(*windows.shape[:2], -1)))
 
 

@@ -60,7 +60,7 @@ def cepstrum(x: ArrayLike) -> FloatArray:
 def power_density(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, FloatArray]:
     """`psd` of records that are known to be such arrays."""
     n = x.shape[-1]
-    length = min(n, max(2, round(segment * fs)))
+    length = min(n, max(2, round(min(segment * fs, n))))
     window = hann_window(length, x.dtype)
     transforms = np.asarray(rfft(_segments(x, window), axis=-1))
     power = squared_modulus(transforms.reshape(len(x), -1)).reshape(transforms.shape)

@@ -82,7 +82,8 @@ def feature_table(
     scheduler
         A dask client, or the address of a dask scheduler whose workers see ``corpus`` under the same path; replaces ``workers``.
     progress
-        Called after each block of records with the number of blocks done and of all; speeds count every block twice.
+        Called after each block of records with the number of blocks done and of all; speeds count every block twice, and several channels are
+        counted one after the other.
 
     Returns
     -------
@@ -107,6 +108,8 @@ def feature_table(
         check_positive(window=window)
     # several channels are tables of one channel each, joined along a dimension
     if not isinstance(channel, int | str):
+        if not channel:
+            raise ValueError("channel: none is named; give the name of one, or of several.")
         each = partial(
             feature_table, corpus, groups, speed=speed, band=band, window=window, workers=workers, scheduler=scheduler
         )

@@ -98,7 +98,8 @@ def compare(
     Raises
     ------
     CorpusError
-        If a corpus cannot be read or has no shaft rates, or no class has enough windows in the synthetic and a real corpus.
+        If a corpus cannot be read, has no shaft rates or is given twice as a real one, or no class has
+        enough windows in the synthetic and a real corpus.
     ValueError
         Without a real corpus.
     """
@@ -106,6 +107,8 @@ def compare(
     if len(folders) < 2:
         message = "real: no corpus of real recordings is given; give at least one."
         raise ValueError(message)
+    if len({folder.resolve() for folder in folders[1:]}) < len(folders) - 1:
+        raise CorpusError("a real corpus is given twice; give each once.")
     common = common_ground(folders, top, window)
     measured: list[Windows] = []
     done = counter(progress, len(folders))

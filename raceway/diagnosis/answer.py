@@ -133,7 +133,7 @@ def _usable(recording: Recorded, machine: Given) -> tuple[Recorded, Quality]:
     duration = recording.duration
     # what is left out is told
     warnings = [f"Only the first {LONGEST:g} s of {duration:,.0f} s are used."] if duration > LONGEST else []
-    warnings += [f"Channel {name} is left out, since {checked[name].useless}." for name in checked.keys() - kept.keys()]
+    warnings += [f"Channel {name} is left out, since {checked[name].useless}." for name in checked if name not in kept]
     several = len(signals) > 1
     for name in kept:
         warnings += [f"Channel {name}: {warning}" if several else warning for warning in checked[name].warnings]

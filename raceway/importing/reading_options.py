@@ -132,8 +132,8 @@ _decimal: Decorator = click.option(
 _speed_column: Decorator = click.option(
     "--speed-column",
     metavar="NAME",
-    help="Column, by name or number from 0, or variable of a MATLAB or .npz file with the speed at each sample or a tacho: the recording is "
-    "sampled again at equal angles of its shaft.",
+    help="Column, by name or number from 0, or variable of a MATLAB or .npz file with the speed at each sample or a tacho: the recording "
+    "is sampled again at equal angles of its shaft.",
 )
 _speed_unit: Decorator = click.option(
     "--speed-unit",

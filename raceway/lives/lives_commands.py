@@ -70,16 +70,18 @@ def prognose(
       raceway prognose corpus --test pronostia
       raceway prognose corpus --json
     """
-    from gen.corpus import open_corpus
+    from gen.corpus import open_corpus, specimen_numbers
     from gen.support.errors import CorpusError
     from gen.support.units import from_si
     from raceway.lives.early_warning import check_seen, warn_early
-    from raceway.lives.prognosis import SHARES, check_lives, score_lives
+    from raceway.lives.prognosis import SHARES, bearing_folds, check_lives, score_lives
 
     # refused before the features are computed, which takes minutes
     for lives in (corpus, tested or corpus):
         with open_corpus(lives) as opened:
             check_lives(opened, str(lives))
+            if tested is None:
+                bearing_folds(specimen_numbers(opened), folds)
             if false_alarms is not None:
                 check_seen(opened, str(lives))
     table, other = table_of(corpus, team=team), tested and table_of(tested, team=team)

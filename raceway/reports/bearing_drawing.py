@@ -39,11 +39,13 @@ def plot_bearing(bearing: str | Mapping[str, Any], load_n: float = 500.0, cleara
     Raises
     ------
     ValueError
-        If there is no such bearing, its dimensions are not known, or the load is not a positive number.
+        If there is no such bearing, its dimensions are not known, the load is not a positive number, or the clearance not finite.
     """
     drawn = bearing_of_label(bearing)
     if not 0 < load_n < np.inf:
         raise ValueError(f"load_n: {load_n} is no positive number; give the radial load in N.")
+    if not np.isfinite(clearance_um):
+        raise ValueError(f"clearance_um: {clearance_um} is no finite number; give the diametral clearance in um.")
     if not np.isfinite(drawn.pitch_diameter):
         raise ValueError(f"bearing: of {bearing} only the orders are known; give dimensions.")
     ratios, balls = orders(drawn), 2 * np.pi * np.arange(drawn.n_balls) / drawn.n_balls

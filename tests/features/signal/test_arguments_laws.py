@@ -159,20 +159,19 @@ RATES_REFUSED = (0.0, [87.0, -1.0], [87.0, 88.0, 89.0], np.nan, None, "87", [[87
 PROBABILITIES_REFUSED = (0, 1, -0.1, np.nan, "0.1")
 BANDS_REFUSED = (300, (300,), (5000, 300), (-1, 300), (np.nan, 300), ("a", "b"), (300, 300))
 PARAMETERS = {
-    **dict.fromkeys(("fs", "segment", "high_pass", "highest", "resolution", "slowest", "fastest", "delay"), POSITIVE),
-    **dict.fromkeys(("order", "length", "per_turn", "turns", "pulses_per_turn"), WHOLE),
+    **dict.fromkeys(("fs", "segment", "highest", "resolution", "slowest", "fastest"), POSITIVE),
+    **dict.fromkeys(("per_turn", "turns", "pulses_per_turn"), WHOLE),
     **dict.fromkeys(("rate", "shaft_rate"), RATES_REFUSED),
     "narrowest": (np.nan, np.inf, "0", None),
     "threshold": (np.nan, "1", [1.0, 2.0]),
     "band": (None, *BANDS_REFUSED),
-    "removed": (None, [], (0.0, 0.002), [(0.002, 0.0)], [(0.0, np.nan)], 0.002),
 }
 """Values without meaning of each parameter that is no array and no switch."""
 ARRAYS = {"x": X, "y": X, "tacho": X, "angle": 2 * np.pi * 20 * TIME}
 GIVEN = ARRAYS | {
-    "segment": 0.1, "fs": FS, "order": 30, "length": 20, "rate": 90.0, "removed": [(0.0, 0.002)], "high_pass": 10.0,
+    "segment": 0.1, "fs": FS, "rate": 90.0,
     "highest": 200.0, "resolution": 200.0, "per_turn": PER_TURN, "turns": 2, "pulses_per_turn": 1, "threshold": 2.0,
-    "slowest": 16.0, "fastest": 25.0, "narrowest": 0.0, "band": (300.0, 5000.0), "delay": 0.1, "shaft_rate": 20 + 0 * X,
+    "slowest": 16.0, "fastest": 25.0, "narrowest": 0.0, "band": (300.0, 5000.0), "shaft_rate": 20 + 0 * X,
 }  # fmt: skip
 
 
@@ -189,6 +188,14 @@ def test_parameters_without_meaning_are_refused_by_name(name):
                 with pytest.raises(ValueError, match=rf"^{parameter}\b") as refusal:
                     function(**{**needed, parameter: wrong})
                 assert "\n" not in str(refusal.value)
+
+
+def test_parameters_beyond_the_record_end_with_it():
+    for endless in (np.inf, 1e300):
+        band = signal.band_envelope_spectrum(X, FS, (300.0, endless))
+        np.testing.assert_array_equal(band[1], signal.band_envelope_spectrum(X, FS, (300.0, FS / 2))[1])
+    np.testing.assert_array_equal(signal.psd(X, FS, 1e305)[1], signal.psd(X, FS, X.shape[1] / FS)[1])
+    assert signal.order_map(X, 1, 1).amplitude.shape[1] == X.shape[1]
 
 
 def test_results_of_one_record_serve_the_functions_that_take_them():

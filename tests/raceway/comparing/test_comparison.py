@@ -97,6 +97,8 @@ def test_a_sample_rate_too_low_for_the_band_is_refused(dark, tmp_path):
     slow = write_pulses(tmp_path / "slow", fs=8000.0)
     with pytest.raises(CorpusError, match="at most 4000 Hz"):
         compare(dark, [slow])
+    with pytest.raises(CorpusError, match="given twice"):
+        compare(dark, [slow, slow])
     assert compare(dark, [slow], top=4000.0).common.rate == 8000.0
     assert compare(dark, [slow], top=3000.0).auc["outer"]["energy_above_3500_hz"] is None
 
