@@ -82,8 +82,8 @@ def feature_table(
     scheduler
         A dask client, or the address of a dask scheduler whose workers see ``corpus`` under the same path; replaces ``workers``.
     progress
-        Called after each block of records with the number of blocks done and of all; speeds count every block twice, and several channels are
-        counted one after the other.
+        Called after each block of records with the number of blocks done and of all; speeds count every block twice, and several
+        channels are counted one after the other.
 
     Returns
     -------

@@ -31,7 +31,7 @@ def make_part(recipe: Recipe, numbers: range) -> xr.Dataset:
     Raises
     ------
     SimulationError
-        If a record needs finer steps than the recipe allows, or every life has ended before these records.
+        If a record needs finer steps than the recipe allows.
     """
     outcomes = make_records(recipe, numbers) if recipe.origin is None else made_from(draw_scenarios(recipe))
     kept = [record for record in outcomes if isinstance(record, Measured)]

@@ -14,7 +14,6 @@ from gen.recipe import Recipe
 from gen.scenarios import Scenario, draw_scenarios, further_ratios
 from gen.simulation.hits import felt_places
 from gen.simulation.simulate import Run, integrate_runs, runs_of, simulate
-from gen.support.errors import SimulationError
 
 LEVEL_TRIES = 8  # draws of the level of a record whose fault cannot be seen
 FAULT_TRIES = 12  # faults drawn for a specimen until one can be seen in all of its records
@@ -24,17 +23,13 @@ Made = Measured | str
 
 
 def make_records(recipe: Recipe, numbers: range) -> list[Made]:
-    """Make the records with the given numbers, in their order; a life that has ended has no further records.
-
-    Raises
-    ------
-    SimulationError
-        If there are none, since every life has ended before them.
-    """
+    """Make the records with the given numbers, in their order; a life that has ended has no further records."""
     corpus, redraws = recipe.corpus, recipe.truth.undetected == "redraw" and recipe.truth.twins
     # all records of a specimen are judged together, those of a group share a level
     size = corpus.records_of_a_specimen if redraws or recipe.life is not None else corpus.n_rungs
-    stop = min(-(-numbers.stop // size) * size, recipe.n_records)
+    stop = -(-numbers.stop // size) * size
+    # the last specimen is judged whole, though the corpus may end within it: it can grow
+    recipe = recipe.model_copy(update={"records": max(stop, recipe.n_records)})
     scenarios = draw_scenarios(recipe, numbers.start // size * size, stop)
     final, integrated = dict[int, Made](), dict[int, Run]()
     while scenarios:
@@ -59,8 +54,6 @@ def make_records(recipe: Recipe, numbers: range) -> list[Made]:
         # records with another fault replace those with the fault before
         by_number = {run.scenario.origin.record: record for run, record in zip(runs, records, strict=True)}
         final.update({number: record for number, record in by_number.items() if number in numbers})
-    if not final:
-        raise SimulationError(f"records {numbers.start}-{numbers.stop - 1}: every life has ended before them.")
     return [final[number] for number in numbers if number in final]
 
 

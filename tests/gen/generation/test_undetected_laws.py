@@ -86,6 +86,22 @@ def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing):
         assert_same(make_records(recipe, numbers), whole[numbers.start : numbers.stop])
 
 
+def test_a_record_does_not_depend_on_the_number_of_records(recipe_with):
+    """Also in a corpus that ends within a specimen whose fault is drawn again for a record beyond the end."""
+    wide = {
+        "level": {"kind": "physical", "background_m_s2": "loguniform(0.3, 10)"},
+        "operation.load_n": "loguniform(30, 2000)",
+        "operation.shaft_rpm": "uniform(900, 6000)",
+        "faults": [OUTER | {"width_mm": "loguniform(0.2, 1)"}],
+    }
+    recipe = recipe_with(TRAINING | wide | {"truth.undetected": "redraw"})
+    whole = make_records(recipe, range(recipe.n_records))
+    redrawn = {scenario.origin.specimen for scenario in scenarios_of(whole) if scenario.origin.fault_try}
+    for first, _ in map(recipe.records_of, redrawn):
+        cut = recipe.model_copy(update={"records": first + 1})
+        assert_same(make_records(cut, range(first, first + 1)), whole[first : first + 1])
+
+
 @pytest.mark.parametrize(("waviness", "kinds"), [(0, ["inner"]), (20, ["inner", "outer"])])
 def test_the_twin_of_a_record_is_the_record_without_its_fault(recipe_with, waviness, kinds):
     worn = {"kind": "distributed", "site": "outer", "waviness_um": 0.5}
