@@ -17,8 +17,8 @@ def open_corpus(path: Path | str | xr.Dataset, check: Check = "sha256") -> xr.Da
     Parameters
     ----------
     path : path
-        Folder of a corpus, or a corpus in a single file. Records in memory, of :func:`gen.records` or chosen from an open corpus, are
-        returned as they are.
+        Folder of a corpus, or a corpus in a single file. Records in memory, of :func:`gen.records` or chosen from an open corpus, get
+        the axes and coordinates of a corpus.
     check : {"sha256", "size"}
         Comparison of each file with its hash, or with its size only, before anything is read.
 

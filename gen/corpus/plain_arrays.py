@@ -10,6 +10,7 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from gen.corpus.contents import specimen_numbers
 from gen.corpus.fault_classes import FAULT_NAMES
 from gen.corpus.index import open_corpus
 from gen.corpus.items import torch_dataset
@@ -50,8 +51,7 @@ def to_arrays(
     opened = open_corpus(corpus)
     items = torch_dataset(opened, split=split, where=where, channels=channels, label=label)
     ((x, y),) = items.batches(len(items))
-    bearings = np.stack([opened[name].values[items.records] for name in ("rig", "specimen")])
-    groups = np.unique(bearings, axis=1, return_inverse=True)[1].reshape(-1)
+    groups = specimen_numbers(opened.isel(record=items.records))
     return Arrays(x, np.array([items.names[code] for code in y]) if items.names else y, groups)
 
 

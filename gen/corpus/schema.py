@@ -198,13 +198,23 @@ def _with_codes(records: "xr.Dataset", codes: NDArray[Any], names: Mapping[int, 
 
 
 def add_class_names(records: "xr.Dataset") -> None:
-    """Add the coordinates ``fault_name`` and ``split_name``: classes in words, which no corpus holds and which have no role."""
+    """Add the coordinates ``fault_name`` and ``split_name``: classes in words, which no corpus holds and which have no role.
+
+    Raises
+    ------
+    CorpusError
+        If a code has no name, since records in memory were changed.
+    """
     for name in NAMED:
-        names = class_names(records[name].attrs)
+        codes, names = records[name], class_names(records[name].attrs)
+        if codes.dtype.kind not in "iu" or not np.isin(codes, [*names]).all():
+            raise CorpusError(
+                f"{name}: is no code with a name, since where and drop_attrs of xarray change variables; choose records with isel or sel."
+            )
         words = np.array([names.get(code, "") for code in range(max(names) + 1)])
         records.coords[f"{name}_name"] = (
-            records[name].dims,
-            words[records[name].values],
+            codes.dims,
+            words[codes.values],
             {"long_name": f"name of the {name}"},
         )
 
@@ -262,8 +272,13 @@ def make_dataset(
     content = {"coverage_content_type": "modelResult" if DRAWS in variables else "physicalMeasurement"}
     data: dict[str, Any] = {SIGNAL: (SIGNAL_DIMS, signal, signal_attributes(counts_per_unit) | content)}
     for variable in variables.values():
-        dtype = object if variable.dtype == "str" else np.dtype(variable.dtype)
-        values = np.asarray(columns[variable.name], dtype=dtype)
+        values, dtype = np.asarray(columns[variable.name]), np.dtype(variable.dtype)
+        # joining and choosing with xarray turns numbers that are missing into floating ones
+        if dtype.kind in "iu" and values.dtype.kind == "f" and (values != np.round(values)).any():
+            raise CorpusError(
+                f"{variable.name}: a value is missing or no whole number; leave its record out, or drop it."
+            )
+        values = values.astype(object if dtype.kind == "U" else dtype)
         data[variable.name] = ("record", values, variable_attributes(variable))
     content = {"coverage_content_type": "coordinate"}
     axis = {"units": "s", "long_name": "time since the start of the record", **content}

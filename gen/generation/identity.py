@@ -19,6 +19,7 @@ from gen.support.sources import hash_sources
 
 _MAKES_RECORDS = (
     "gen/drawing",
+    "gen/life",
     "gen/physics",
     "gen/mechanisms",
     "gen/recipe",

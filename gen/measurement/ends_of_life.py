@@ -30,7 +30,8 @@ def with_ends(runs: Sequence[Run], records: Sequence[Measured | str], end: LifeE
     for places in lives.values():
         whole = [(place, record) for place in places if not isinstance(record := records[place], str)]
         last = next((place for place, record in whole if limited and _is_beyond(record, end)), None)
-        seen = next((_life(record).age for _, record in whole if record.detectable == 1), None)
+        tested = [record for place, record in whole if last is None or place <= last]
+        seen = next((_life(record).age for record in tested if record.detectable == 1), None)
         for place, record in whole:
             life = _life(record).model_copy(update={"first_detectable_time": seen})
             if last is not None:

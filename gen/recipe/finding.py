@@ -6,6 +6,8 @@ from pathlib import Path
 
 from gen.support.errors import RecipeError
 
+LONGEST = 4096  # characters of a path
+
 
 def shipped_recipes() -> dict[str, Path]:
     """Names and paths of the recipes that ship with Raceway."""
@@ -31,7 +33,12 @@ def find_recipe(recipe: Path | str) -> Path:
     RecipeError
         If there is no such file and no recipe of that name.
     """
-    path = Path(recipe)
+    path, text = Path(recipe), str(recipe)
+    # a name this long is an error of the system
+    if "\n" in text or len(text) > LONGEST:
+        raise RecipeError(
+            "recipe: is a text in place of a path or a name; write it to a file, or give its mapping of keys."
+        )
     if path.is_file():
         return path
     shipped = shipped_recipes()

@@ -3,6 +3,8 @@
 import importlib
 import os
 import shutil
+import subprocess
+import sys
 
 import pytest
 
@@ -156,6 +158,7 @@ def test_the_hash_of_the_sources_changes_with_every_file_that_makes_records(tmp_
     monkeypatch.setattr(identity, "hash_sources", sources.hash_sources.__wrapped__)
     assert hashes_seen == {sources_sha256()}
     for name in (
+        "life/growth.py",
         "physics/bearing.py",
         "physics/kernel/compiling.py",
         "scenarios/draw.py",
@@ -164,9 +167,18 @@ def test_the_hash_of_the_sources_changes_with_every_file_that_makes_records(tmp_
     ):
         (package / name).write_text((package / name).read_text() + "\n# changed\n")
         hashes_seen.add(sources_sha256())
-    assert len(hashes_seen) == 6
+    assert len(hashes_seen) == 7
     (package / "corpus" / "validation.py").write_text("")
     assert sources_sha256() in hashes_seen
+
+
+def test_every_module_that_a_part_is_made_with_is_in_the_hash_or_makes_no_numbers():
+    loaded = "import gen.generation.make_part, sys; print(*(name for name in sys.modules if name.startswith('gen.')))"
+    names = subprocess.run([sys.executable, "-c", loaded], capture_output=True, text=True, check=True).stdout.split()
+    hashed = [name.removesuffix(".py").replace("/", ".") for name in identity._MAKES_RECORDS]
+    others = {name for name in names if not any(name == of or name.startswith(f"{of}.") for of in hashed)}
+    # reading, writing and refusing: nothing that a number of a record depends on
+    assert {".".join(name.split(".")[:2]) for name in others} <= {"gen.corpus", "gen.generation", "gen.support"}
 
 
 def test_a_second_call_keeps_every_part_whatever_comments_its_recipe_has(recipe_file, whole, single, copied, tmp_path):

@@ -138,6 +138,11 @@ def test_a_changed_record_loses_the_truth_of_its_old_signal_and_no_other(ladder,
         (lambda ladder: ladder.drop_vars(["fault", SIGNAL]), "the Dataset has no variable acceleration, fault;"),
         (lambda ladder: ladder.assign(draws=("record", ['{"name": "x", "wrong": 1}'] * 6)), "drop the variable draws"),
         (lambda ladder: ladder.assign(fault=ladder.fault + 7), "fault has values other than 0 healthy, 1 inner"),
+        (
+            lambda ladder: ladder.assign(fault=ladder.fault.where(ladder.fault != 2)),
+            "fault: a value is missing or no whole number",
+        ),
+        (lambda ladder: ladder.assign(clipped=ladder.clipped + 0.5), "clipped: a value is missing or no whole number"),
         (lambda ladder: ladder.assign(mine=("record", np.arange(6))), "mine: needs one value for each record and the"),
         (
             lambda ladder: ladder.assign(mine=ladder[SIGNAL].std("elapsed_time").isel(channel=0)),
@@ -154,6 +159,19 @@ def test_a_dataset_that_is_not_in_the_format_is_refused(ladder, tmp_path, change
         gen.write_corpus(changed(ladder), tmp_path / "corpus")
     assert sentence in str(caught.value)
     assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        lambda ladder: ladder.where(ladder.width > 0, drop=True),
+        lambda ladder: ladder.drop_attrs(),
+        lambda ladder: ladder.assign(fault=ladder.fault + 100),
+    ],
+)
+def test_classes_that_lost_their_codes_or_names_are_refused(ladder, changed):
+    with pytest.raises(CorpusError, match=r"no code with a name, .* choose records with isel or sel\.$"):
+        gen.open_corpus(changed(ladder))
 
 
 def test_records_of_two_recipes_in_one_dataset_are_replayed_and_their_machines_keep_apart(ladder, tmp_path):
@@ -256,6 +274,8 @@ WRONG_TYPES = [
     (lambda some: gen.simulate(some[0]), RecipeError, "scenarios: Scenario given; give a list of scenarios"),
     (lambda _: gen.simulate(None), RecipeError, "scenarios: NoneType given; give a list"),
     (lambda _: gen.read_recipe(None), RecipeError, "recipe: NoneType given; give a path, the name of"),
+    (lambda _: gen.read_recipe("name: a\ntitle: b"), RecipeError, "recipe: is a text in place of a path or a name"),
+    (lambda _: gen.read_recipe("n" * 5000), RecipeError, "recipe: is a text in place of a path or a name"),
     (lambda _: gen.write_recipe({}, "recipe.yaml"), RecipeError, "recipe: dict given; give one that gen.make_recipe"),
     (lambda _: raceway.publish("corpus", [1]), CorpusError, r"publication: \[1\] is not a mapping; give keys"),
 ]

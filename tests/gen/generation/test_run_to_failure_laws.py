@@ -10,6 +10,7 @@ import gen
 from gen.corpus import LIFE, open_corpus
 from gen.generation.corpus import generate
 from gen.generation.replaying import replay
+from gen.generation.undetected import make_records
 from gen.physics.trace import spall_positions
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import spall_paths
@@ -71,6 +72,16 @@ def test_the_first_detection_is_that_of_the_record(records):
     for of in bearings(records):
         seen = of.age.values[of.detectable.values == 1]
         np.testing.assert_array_equal(of.first_detectable_time, seen[0] if len(seen) else np.nan)
+
+
+def test_what_is_seen_behind_the_end_of_a_test_is_not_known(recipe_with, monkeypatch):
+    monkeypatch.setattr(
+        "gen.measurement.ends_of_life._is_beyond", lambda record, _: record.scenario.origin.life.age > 0
+    )
+    for record in filter(None, make_records(recipe_with(SHORT), range(40))):
+        first, age = record.scenario.origin.life.first_detectable_time, record.scenario.origin.life.age
+        assert age <= 40 * 3600
+        assert first is None or first <= 40 * 3600
 
 
 def test_a_snapshot_in_the_middle_of_a_life_is_made_again(lives, records):
