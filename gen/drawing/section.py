@@ -150,8 +150,8 @@ class Section(BaseModel):
                 drawn[key] = new
         return self.model_copy(update=drawn) if drawn else self
 
-    def check_drawn(self, place: str) -> None:
-        """RecipeError if a drawn value is not in the range of its key; paths of keys begin with ``place``."""
+    def check_drawn(self, place: str, advice: str) -> None:
+        """RecipeError with an ``advice`` if a drawn value is not in the range of its key; paths of keys begin with ``place``."""
         for key, bounds in bounds_of(type(self)).items():
             drawn = self.__dict__[key]
             # a key that may be left out has nothing to draw then
@@ -161,12 +161,10 @@ class Section(BaseModel):
                 number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else np.nan
                 if not is_within(number, bounds):
                     shown = " ".join(str(value).split())
-                    raise RecipeError(
-                        f"{place}{key}: {shown} was drawn, which is not in {interval(bounds)}; correct draw() of its class."
-                    )
+                    raise RecipeError(f"{place}{key}: {shown} was drawn, which is not in {interval(bounds)}; {advice}.")
         for key, sections in self.below():
             for section in sections if isinstance(sections, tuple) else (sections,):
-                section.check_drawn(f"{place}{key}.")
+                section.check_drawn(f"{place}{key}.", advice)
 
     def below(self) -> list[tuple[str, Any]]:
         """Sections, and tuples of them, in this one."""

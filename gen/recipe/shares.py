@@ -13,7 +13,6 @@ from gen.drawing import Section, Support, bounds_of, interval, is_within, quanti
 from gen.mechanisms.faults.bearing_fault import BALL_SPACING, RACES
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.sections import Sections
-from gen.recipe.sensing import PhysicalLevel
 from gen.support.units import UNITS, split_unit, unit_suffix
 
 BEARING_QUANTITIES = ("pitch_diameter_mm", "ball_diameter_mm")
@@ -53,10 +52,8 @@ def share_problems(recipe: Sections) -> Iterator[str]:
         for key, quantity in quantities(section).items():
             if quantity.share_of is not None and kind not in _PLACES:
                 yield f"{place}.{key}: there are shares in {_HAVE_SHARES} alone; give the quantity a range of its own."
-            if quantity.per is not None and not (kind.endswith("operation") or isinstance(section, PhysicalLevel)):
-                yield (
-                    f"{place}.{key}: per can be chosen for quantities of operation and of a physical level alone; leave it out."
-                )
+            if quantity.per is not None and not kind.endswith("operation"):
+                yield f"{place}.{key}: per can be chosen for quantities of operation alone; leave it out."
     # what they name, and the range that follows
     for place, section, above in _scopes(recipe):
         own = quantities(section)

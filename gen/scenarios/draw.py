@@ -6,7 +6,7 @@ record with its fault and the same record without it differ in the fault alone.
 """
 
 import functools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -37,6 +37,7 @@ from gen.scenarios.scenario import Scenario, as_built, check_bearing, scenario_o
 from gen.support.errors import RecipeError
 from gen.support.units import split_unit
 
+_OF_PLUGIN = "correct draw() of its class"
 _OF_RIG = ("recording", "bearing", "machine", "machine_conditions", "contact", "path", "background", "sensor_faults")
 
 
@@ -83,23 +84,21 @@ def draw_scenarios(
         specimens[number] = _draw_specimen(recipe, *rigs[recipe.rig_of(number)], draws, fault_try)
     scenarios = list(_draw_records(recipe, specimens, numbers))
     if plugins_of(recipe):
-        _check_drawn(scenarios)
+        _check_drawn(scenarios, ("background", "machine_conditions", "sensor_faults"), _OF_PLUGIN)
+    if recipe.life is not None:
+        _check_drawn(scenarios, ("specimen", "operation", "level"), "lower the wear or the histories of life")
     return scenarios
 
 
-def _check_drawn(scenarios: list[Scenario]) -> None:
-    """RecipeError if a mechanism of a plug-in drew a value that its key does not allow: replay would refuse the record."""
+def _check_drawn(scenarios: list[Scenario], keys: Sequence[str], advice: str) -> None:
+    """RecipeError if a plug-in or a life made a value that its key does not allow: replay would refuse the record."""
     checked: set[int] = set()  # records share the mechanisms of their rig and specimen
     for scenario in scenarios:
-        recipe = scenario.recipe
-        for key, section in (
-            ("background", recipe.background),
-            ("machine_conditions", recipe.machine_conditions),
-            ("sensor_faults", recipe.sensor_faults),
-        ):
+        for key in keys:
+            section = getattr(scenario.recipe, key)
             if id(section) not in checked:
                 checked.add(id(section))
-                section.check_drawn(f"record {scenario.origin.record}: {key}.")
+                section.check_drawn(f"record {scenario.origin.record}: {key}.", advice)
 
 
 def _draws(recipe: Recipe, level: Any, of: int, item: int, point: NDArray[np.float64]) -> Draws:
@@ -188,7 +187,7 @@ def _draw_specimen(recipe: Recipe, rig: Recipe, of_rig: Draws, draws: Draws, fau
         drawn[key] = undrawn.draw(of_rig.within(key, "rig")).draw(draws.within(key, "specimen"))
     fault = recipe.faults[entry].draw(built._replace(point=[], attempt=fault_try).within("faults", "specimen"))
     if plugins_of(recipe):
-        fault.check_drawn(f"specimen {draws.of}: faults.")
+        fault.check_drawn(f"specimen {draws.of}: faults.", _OF_PLUGIN)
     for part in fault.components:
         part.check(built.bearing, f"specimen {draws.of}")
     # conditions of the fault are those of the record by now

@@ -1,10 +1,12 @@
 """Laws of corpora of lives: labels, ends that are seen in the signal, replay, resumption, workers."""
 
+import re
 import shutil
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 import gen
 from gen.corpus import LIFE, open_corpus
@@ -12,8 +14,11 @@ from gen.generation.corpus import generate
 from gen.generation.replaying import replay
 from gen.generation.undetected import make_records
 from gen.physics.trace import spall_positions
+from gen.recipe import Recipe
+from gen.recipe.finding import shipped_recipes
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import spall_paths
+from gen.support.errors import RecipeError
 from tests.recipes import LIVES
 from tests.same_corpora import files
 
@@ -102,6 +107,15 @@ def test_two_workers_and_an_interrupted_call_give_the_same_files(lives, recipe_w
     (tmp_path / "half" / "parts" / "part-00001.nc").unlink()
     generate(recipe_with(SHORT), tmp_path / "half")
     assert files(tmp_path / "half") == files(lives)
+
+
+def test_wear_that_no_recipe_of_a_record_can_have_is_refused():
+    text = shipped_recipes()["run_to_failure"].read_text(encoding="utf-8")
+    recipe = Recipe(YAML(typ="safe").load(re.sub("waviness_nm_per_mrev: .*", "waviness_nm_per_mrev: 100", text)))
+    with pytest.raises(
+        RecipeError, match=r"^record \d+: specimen\.waviness_nm: .*; lower the wear or the histories of life\.$"
+    ):
+        draw_scenarios(recipe, 0, recipe.corpus.records_per_specimen)
 
 
 def test_a_spall_that_grows_lays_bare_more_of_the_same_floor(recipe_with):
