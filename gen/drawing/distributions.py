@@ -23,6 +23,7 @@ from pydantic import (
 
 from gen.drawing.expressions import expression_of, read_expression
 
+_FARTHEST = 6  # standard deviations from the mean, beyond which quantiles of a normal distribution are too coarse
 Number = Annotated[float, Field(strict=True)]
 Support = tuple[float, float]
 """Smallest and largest value."""
@@ -173,6 +174,15 @@ class Normal(_Interval):
     """Mean before the distribution is truncated."""
     sd: Annotated[Number, Field(gt=0)]
     """Standard deviation before the distribution is truncated."""
+
+    @model_validator(mode="after")
+    def _holds_some(self) -> Self:
+        reach = _FARTHEST * self.sd
+        if self.low > self.mean + reach or self.high < self.mean - reach:
+            raise ValueError(
+                f"mean {self.mean} lies {_FARTHEST} sd or more outside low {self.low} and high {self.high}; move it, or raise sd."
+            )
+        return self
 
     def draw(self, u: float) -> float:
         """Value at the quantile ``u`` of the truncated distribution."""

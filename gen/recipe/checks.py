@@ -130,8 +130,11 @@ def _several(recipe: Sections) -> Iterator[str]:
 def _sensor_faults(recipe: Sections) -> Iterator[str]:
     loose = getattr(recipe.sensor_faults, "loose_mount", None)
     channels = len(recipe.recording.channels)
-    if loose is not None and any(place >= channels for place in loose.loose_channels or ()):
-        yield f"sensor_faults.loose_mount.loose_channels: a record has {channels} channels, numbered from 0; name some of them."
+    if loose is not None and (named := loose.loose_channels) is not None:
+        if len({*named} & {*range(channels)}) < len(named):
+            yield f"sensor_faults.loose_mount.loose_channels: a record has {channels} channels, from 0; name some, each once."
+        if loose.probability < 1:
+            yield "sensor_faults.loose_mount.probability: does not act on channels that are named; set it to 1."
     for fault in mechanisms_of(recipe.sensor_faults):
         problem = fault.problem(recipe.recording.full_scale, recipe.recording.duration_s)
         if problem is not None:

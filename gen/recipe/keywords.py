@@ -68,9 +68,10 @@ def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | N
         section = data.setdefault(name, value)
         if isinstance(section, dict) and isinstance(value, dict):
             data[name] = value | section
-    corpus = data.setdefault("corpus", {})
-    if isinstance(corpus, dict) and isinstance(data["faults"], list):
-        data["corpus"] = _counted({"fault_choice": "in_turn", **corpus}, max(len(data["faults"]), 1), n)
+    corpus, entries = data.setdefault("corpus", {}), data["faults"]
+    entries = entries.get("entries") if isinstance(entries, dict) else entries
+    if isinstance(corpus, dict) and isinstance(entries, list):
+        data["corpus"] = _counted({"fault_choice": "in_turn", **corpus}, max(len(entries), 1), n)
     data.setdefault("title", _title(data))
     return Recipe(**data)
 

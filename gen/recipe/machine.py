@@ -175,6 +175,8 @@ class GeometryBearing(Section):
     def _fits(self) -> Self:
         ball, pitch = self.ball_diameter_mm, self.pitch_diameter_mm
         low, high = ball.support()
+        if ball.share_of == "roller_length_mm":
+            low, high = (end * length for end, length in zip((low, high), self.roller_length_mm.support(), strict=True))
         if ball.share_of != "pitch_diameter_mm":
             low, high = low / pitch.support()[1], high / pitch.support()[0]
         if low * (1 + 1e-9) < SMALLEST_BALL or high > LARGEST_BALL * (1 + 1e-9):

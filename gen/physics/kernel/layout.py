@@ -16,7 +16,6 @@ from gen.physics.kernel.compiling import in_both
 FloatArray = NDArray[np.float64]
 
 AXES = 6  # coordinates x1 y1 x2 y2 xr yr: shaft, housing, sensor
-COORDINATES = ("x1", "y1", "x2", "y2", "xr", "yr")
 
 
 class Shape(NamedTuple):

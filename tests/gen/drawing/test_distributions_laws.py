@@ -16,6 +16,7 @@ EVEN = (np.arange(2000) + 0.5) / 2000
 @st.composite
 def distributions(draw):
     low, high = sorted((draw(numbers), draw(numbers)))
+    mean = draw(st.floats(low, high))
     values = tuple(draw(st.lists(numbers, min_size=1, max_size=5)))
     return draw(
         st.sampled_from(
@@ -23,7 +24,7 @@ def distributions(draw):
                 Constant(value=low),
                 Uniform(kind="uniform", low=low, high=high),
                 LogUniform(kind="loguniform", low=low, high=high),
-                Normal(kind="normal", mean=draw(numbers), sd=draw(numbers), low=low, high=high),
+                Normal(kind="normal", mean=mean, sd=draw(numbers), low=low, high=high),
                 Choice(kind="choice", values=values),
                 Grid(kind="grid", values=values),
             ]
@@ -50,8 +51,10 @@ def test_a_higher_quantile_never_gives_a_lower_value_of_a_continuous_distributio
         (LogUniform(kind="loguniform", low=0.1, high=30), loguniform(0.1, 30)),
         (Normal(kind="normal", mean=1, sd=2, low=0, high=4), truncnorm(-0.5, 1.5, 1, 2)),
         (Normal(kind="normal", mean=0, sd=1, low=-8, high=8), truncnorm(-8, 8)),
+        (Normal(kind="normal", mean=0, sd=1, low=6, high=9), truncnorm(6, 9)),
+        (Normal(kind="normal", mean=100, sd=2, low=40, high=88), truncnorm(-30, -6, 100, 2)),
     ],
-    ids=["uniform", "loguniform", "normal", "untouched normal"],
+    ids=["uniform", "loguniform", "normal", "untouched normal", "far above", "far below"],
 )
 def test_values_at_even_quantiles_follow_the_distribution_they_are_named_after(distribution, expected):
     values = [distribution.draw(u) for u in EVEN]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
 from gen.generation.plan import plan
-from gen.recipe import Recipe, read_recipe
+from gen.recipe import Recipe, make_recipe, read_recipe
 from gen.support.errors import RacewayError, RecipeError
 from tests.conftest import small_with
 from tests.recipes import LIVES
@@ -250,3 +250,38 @@ def test_a_life_that_cannot_be_is_refused_in_one_sentence(changes, sentence):
 def test_an_overload_test_must_be_asked_for():
     life = LIVES["life"] | {"accelerated": True, "cadence_h": 0.1, "history_h": 10}
     assert Recipe(small_with(LIVES | {"operation.load_n": 15_000, "life": life})).life.accelerated
+
+
+MOUNT = {"probability": 1, "frequency_hz": 500, "damping_percent": 5, "holding_m_s2": 3}
+ROLLERS = {"n_rollers": 13, "pitch_diameter_mm": 39, "roller_length_mm": 9}
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"operation.load_n": "normal(0, 1, 50, 60)"}, "mean 0.0 lies 6 sd or more outside low 50.0 and high 60.0"),
+        ({"sensor_faults": {"loose_mount": MOUNT | {"loose_channels": [0, 0]}}}, "name some, each once"),
+        (
+            {"sensor_faults": {"loose_mount": MOUNT | {"loose_channels": [0], "probability": 0.5}}},
+            "probability: does not act on channels that are named",
+        ),
+        (
+            {"bearing": ROLLERS | {"roller_diameter_mm": "uniform(0.1, 0.2)*roller_length_mm"}},
+            "can be 0.0231 to 0.0462 of pitch_diameter_mm",
+        ),
+        ({"level": {"kind": "physical", "background_m_s2": "uniform(1, 2, per=specimen)"}}, "of operation alone"),
+    ],
+)
+def test_a_key_that_would_not_act_as_it_says_is_refused(changes, sentence):
+    with pytest.raises(RecipeError) as error:
+        Recipe(small_with(changes))
+    assert sentence in str(error.value)
+
+
+def test_a_share_of_the_length_of_a_roller_is_one_of_the_pitch_circle_too():
+    Recipe(small_with({"bearing": ROLLERS | {"roller_diameter_mm": "uniform(0.6, 0.8)*roller_length_mm"}}))
+
+
+def test_records_are_counted_where_faults_have_defaults():
+    faults = {"defaults": {"width_mm": 1}, "entries": [{"kind": "inner"}, {"kind": "healthy"}]}
+    assert make_recipe(n=7, faults=faults).n_records == 14
