@@ -47,10 +47,6 @@ def combs_in(x: Signal, bands: list[np.ndarray], shaft_rate: Rates, rates: Rates
     return out
 
 
-def fixed_band(x: Signal, shaft_rate: Rates, rates: Rates) -> np.ndarray:
-    return combs_in(x, [np.array([DEFAULT_BAND])] * rates.shape[1], shaft_rate, rates)
-
-
 def kurtogram_band(x: Signal, shaft_rate: Rates, rates: Rates) -> np.ndarray:
     return combs_in(x, [signal.kurtogram(x, FS, narrowest=NARROWEST).best()] * rates.shape[1], shaft_rate, rates)
 

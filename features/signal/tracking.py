@@ -48,7 +48,6 @@ PADDING = 5  # bins of a spectrum over the resolution of a window
 FAINTEST = 1e-6  # least power over the highest one
 HALF = 4.0  # power over the usual one from which the evidence grows with its logarithm
 JUMP = 0.02  # cost of a jump of the path by one bin, in evidence; a jump of more bins costs its square
-CORRECTIONS = 4
 NEARBY = 13  # windows that are judged together
 LEAST = 1.75  # mean evidence that noise does not have, of many windows
 SHORT = 8.0  # windows that raise it by one in a record of one window

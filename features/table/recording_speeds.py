@@ -14,7 +14,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from features.signal.lines import Orders
 from features.signal.rows import FloatArray
 from features.signal.speed import DISAGREEMENT, EVIDENCE, ShaftSpeed, find_speed
 from features.table.channels import accelerations, orders_of
@@ -71,18 +70,14 @@ def block_sums(task: tuple[xr.Dataset, IntArray]) -> list[Sums]:
     """
     block, recording = task
     x, nominal = accelerations(block), orders_of(block)
-    fs, shaft_rate = (block[name].values for name in ("sample_rate", "shaft_rate"))
+    fs, shaft_rate = float(block["sample_rate"].values[0]), block["shaft_rate"].values
     # a recording of which no window is usable still counts its records
     counts = zip(*(values.tolist() for values in np.unique(recording, return_counts=True)), strict=True)
     sums = {number: Sums(number, records, 0, np.zeros((1, 1))) for number, records in counts}
-    # records of one batch share a sample rate
-    for rate in np.unique(fs[fs > 0]):
-        rows = np.flatnonzero(fs == rate)
-        orders = Orders(*(order[rows] for order in nominal))
-        for numbers, batch in line_levels(x[rows], float(rate), shaft_rate[rows], orders):
-            for number, level in zip(recording[rows[numbers]].tolist(), batch, strict=True):
-                # sums of windows can be added over blocks, medians could not
-                sums[number] = _added(sums[number], Sums(number, 0, 1, level))
+    for numbers, batch in line_levels(x, fs, shaft_rate, nominal):
+        for number, level in zip(recording[numbers].tolist(), batch, strict=True):
+            # sums of windows can be added over blocks, medians could not
+            sums[number] = _added(sums[number], Sums(number, 0, 1, level))
     return list(sums.values())
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.fft import irfft
 
 from features.signal.colour import centroid, roll_off, tonality
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
+from features.signal.demodulation import ZERO_PADDING, analytic_band, spectrum_over_floor
 from features.signal.impulsive import band_kurtosis, equal_bands
 from features.signal.lines import single_lines
 from features.signal.modulation import cyclostationarity, highest_place, phase_wander, sideband_ratio
@@ -117,8 +117,8 @@ def compute_measures(
     """
     envelope = _envelopes(x, fs, top, shaft_rate)
     by_name = _colour(x, fs, top) | _impulsiveness(x, fs, top)
-    weighted = weight_by_hann(np.sqrt(envelope.power))
-    *_, by_name["slow_share"] = envelope_shape(envelope.power, weighted, envelope.spectrum, envelope.rate, shaft_rate).T
+    shape = envelope_shape(envelope.power, envelope.weighted, envelope.spectrum, envelope.rate, shaft_rate)
+    *_, by_name["slow_share"] = shape.T
     if class_features(fault):
         by_name |= _lines(envelope, shaft_rate, orders, fault)
     missing = np.full(len(x), np.nan)
@@ -167,6 +167,8 @@ class _Envelopes(NamedTuple):
         Squared envelopes, shape (window, time).
     rate
         Their sample rate [Hz].
+    weighted
+        Envelopes under a Hann window, shape (window, time).
     spectrum, level
         Amplitude spectrum of the envelope on the fine grid, and its natural logarithm over the floor, shapes (window,
         frequency).
@@ -176,6 +178,7 @@ class _Envelopes(NamedTuple):
 
     power: FloatArray
     rate: float
+    weighted: FloatArray
     spectrum: FloatArray
     level: FloatArray
     step: float
@@ -187,10 +190,10 @@ def _envelopes(x: FloatArray, fs: float, top: float, shaft_rate: FloatArray) -> 
     whitened = whiten_by_psd(fourier_coefficients(x, fs, top), round(WHITENING_WIDTH * seconds))
     z = analytic_band(whitened, round(DEFAULT_BAND.low * seconds), round(top * seconds))
     power = squared_modulus(z)
-    spectrum = fine_amplitudes(weight_by_hann(np.sqrt(power)), ZERO_PADDING * z.shape[-1] // 2 + 1)
     step = 1 / (ZERO_PADDING * seconds)
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / step
-    return _Envelopes(power, z.shape[-1] / seconds, spectrum, log_level(spectrum, width, spectrum.shape[-1]), step)
+    whole = ZERO_PADDING * z.shape[-1] // 2 + 1
+    return _Envelopes(power, z.shape[-1] / seconds, *spectrum_over_floor(np.sqrt(power), width, whole), step)
 
 
 def _lines(envelope: _Envelopes, shaft_rate: FloatArray, orders: Orders, fault: str) -> dict[str, FloatArray]:

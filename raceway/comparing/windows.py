@@ -105,7 +105,7 @@ def measured_windows(folder: Path, name: str, common: CommonForm, most: int) -> 
         If the corpus cannot be read, or none of its records has a shaft rate and fault orders.
     """
     with open_corpus(folder, check="size") as corpus:
-        names = ("fault", "rig", "specimen", "sample_rate", "shaft_rate", *Orders._fields)
+        names, fs = ("fault", "rig", "specimen", "shaft_rate", *Orders._fields), float(corpus["sample_rate"].values[0])
         labels = DataFrame({key: corpus[key].values for key in names})
         # a line is looked up at a rate and at orders that are known
         needed = labels[["shaft_rate", *Orders._fields]]
@@ -116,11 +116,12 @@ def measured_windows(folder: Path, name: str, common: CommonForm, most: int) -> 
             )
             raise CorpusError(message)
         labelled = labels["fault"] != UNKNOWN_CODE
-        chosen = _chosen(labels[complete & labelled], corpus.sizes["elapsed_time"], common.window, most)
+        each = corpus.sizes["elapsed_time"] // window_length(common, fs)
+        chosen = _chosen(labels[complete & labelled], window_length(common, fs), each, most)
         values = np.full((len(chosen), len(NAMES)), np.nan)
-        # records of one class and sample rate at a time, so that memory does not grow with the corpus
-        groups: Any = chosen.groupby(["fault", "sample_rate"]).indices
-        for (code, fs), places in groups.items():
+        # records of one class at a time, so that memory does not grow with the corpus
+        groups: Any = chosen.groupby("fault").indices
+        for code, places in groups.items():
             for block in np.array_split(places, range(BLOCK, len(places), BLOCK)):
                 values[block] = _measure_block(corpus, chosen.iloc[block], common, FAULTS[code], fs)
     # a constant signal has no measures
@@ -129,11 +130,13 @@ def measured_windows(folder: Path, name: str, common: CommonForm, most: int) -> 
     return Windows(name, folder, record[usable], start[usable], fault[usable], values[usable], int((~labelled).sum()))
 
 
-def _chosen(labels: DataFrame, samples: int, window: float, most: int) -> DataFrame:
-    """Labels and first sample of the windows to measure, by the number of their record and in the order of the corpus."""
-    length = np.floor(window * labels["sample_rate"] * (1 + 1e-9)).astype(int)
-    cut = labels.assign(length=length).loc[labels.index.repeat(samples // length)]
-    cut["start"] = cut.groupby(level=0).cumcount() * cut["length"]
+def _chosen(labels: DataFrame, length: int, each: int, most: int) -> DataFrame:
+    """Labels and first sample of the windows to measure, by the number of their record and in the order of the corpus.
+
+    ``each`` record has so many windows of ``length`` samples.
+    """
+    cut = labels.loc[labels.index.repeat(each)]
+    cut["start"] = cut.groupby(level=0).cumcount() * length
     cut["place"] = np.arange(len(cut))
     # the first windows of all specimens come before the second ones, each in a random order
     shuffled = cut.iloc[np.random.default_rng(0).permutation(len(cut))]
