@@ -26,13 +26,12 @@ from gen.corpus import FAULTS
 from gen.corpus.fault_classes import HEALTHY
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.support.units import rpm_to_hertz
+from gen.support.units import STANDARD_GRAVITY, rpm_to_hertz
 from raceway.diagnosis import Given, diagnose_recording
 from raceway.importing.recorded import Recorded
 from raceway.kept_models import reference_model
 
 BEARING = "ER-12K"  # of the machine of limerick
-GRAVITY = 9.80665  # m s-2
 ALONE, ALL = "none", "all"  # kind of reference, and condition
 AXES = ("x", "y", "z")
 OUTCOMES = ("right", UNSURE, "called healthy", "wrong fault", "alarm")
@@ -73,7 +72,7 @@ def healthy_recordings(file: Path, axes: Iterable[str]) -> list[HealthyRecording
     with xr.open_dataset(file) as opened:
         for place in range(opened.sizes["recording"]):
             recording = opened.isel(recording=place)
-            signals = {axis: GRAVITY * recording["acceleration"].values[AXES.index(axis)] for axis in axes}
+            signals = {axis: STANDARD_GRAVITY * recording["acceleration"].values[AXES.index(axis)] for axis in axes}
             rate = rpm_to_hertz(float(recording["shaft_rpm"]))
             recorded = Recorded(signals, float(opened.attrs["sample_rate_hz"]), f"recording {place}")
             recordings.append(

@@ -73,9 +73,9 @@ def probability_in_words(probability: float) -> str:
     return "above 0.99" if probability > 0.99 else f"{probability:.2f}"
 
 
-def candidates(probabilities: Mapping[str, float], number: int = 2) -> str:
-    """Most probable classes, such as "inner 0.45, ball 0.38"."""
-    ranked = sorted(probabilities, key=lambda name: -probabilities[name])[:number]
+def candidates(probabilities: Mapping[str, float]) -> str:
+    """The two most probable classes, such as "inner 0.45, ball 0.38"."""
+    ranked = sorted(probabilities, key=lambda name: -probabilities[name])[:2]
     return ", ".join(f"{name} {probabilities[name]:.2f}" for name in ranked)
 
 

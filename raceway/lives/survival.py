@@ -37,9 +37,9 @@ class Survival(NamedTuple):
         place = np.minimum(np.searchsorted(-self.share, -half), len(self.time) - 1)
         return np.maximum(self.time[place] - age, 0.0)
 
-    def band(self, probability: float = 0.95) -> tuple[FloatArray, FloatArray]:
-        """Ends of the band that holds the true share at each time with a probability."""
-        away = ndtri((1 + probability) / 2) * self.spread
+    def band(self) -> tuple[FloatArray, FloatArray]:
+        """Ends of the band that holds the true share at each time with a probability of 95 %."""
+        away = ndtri(0.975) * self.spread
         with np.errstate(divide="ignore"):
             low, high = (self.share ** np.exp(side * away) for side in (1, -1))
         return low, high
