@@ -1,9 +1,10 @@
 """Compiled kernels on disk: numba's cache, in files that processes can write at the same time and that show whether they are damaged.
 
-Numba keeps compiled functions in the folder of the environment variable NUMBA_CACHE_DIR, else in ``__pycache__`` beside the source, else in
-one of the user. It looks for changes in the file of a function alone, not in those of the functions that it calls. It fails on a damaged
-file [1]_, and two processes that compile variants of a function at the same time can give both the same file [2]_. So each variant has a
-file of its own here, which begins with a hash of sources, types and content; any other file counts as missing and is replaced.
+Compiled functions are kept in the folder of the environment variable NUMBA_CACHE_DIR, else in the cache folder of the user, else in
+``__pycache__`` beside the source. Numba looks for changes in the file of a function alone, not in those of the functions that it calls. It
+fails on a damaged file [1]_, and two processes that compile variants of a function at the same time can give both the same file [2]_. So
+each variant has a file of its own here, which begins with a hash of sources, types and content; any other file counts as missing and is
+replaced.
 
 .. [1] https://github.com/numba/numba/issues/10128
 .. [2] https://github.com/numba/numba/issues/4807
@@ -15,7 +16,9 @@ from hashlib import sha256
 from typing import Any
 
 import numba
+from numba.core import config
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from platformdirs import user_cache_dir
 
 _HASH_BYTES = 32
 
@@ -46,7 +49,13 @@ class _KernelCache(FunctionCache):
     """Numba's cache of one function, whose ``sources`` have a hash."""
 
     def __init__(self, dispatcher: Any, sources: str) -> None:
-        super().__init__(dispatcher.py_func)
+        chosen = config.CACHE_DIR
+        # files beside the sources would stay when the package is removed, and hide one that is installed elsewhere
+        config.CACHE_DIR = chosen or user_cache_dir("raceway")
+        try:
+            super().__init__(dispatcher.py_func)
+        finally:
+            config.CACHE_DIR = chosen
         stamp = numba.__version__, sources, self._impl.locator.get_source_stamp()
         self._cache_file = _VariantFiles(self.cache_path, self._impl.filename_base, stamp)
 

@@ -20,6 +20,14 @@ def twice(tmp_path, monkeypatch):
     return lambda sources="sources": keep_on_disk(njit(__import__("kernel_of_a_test").twice), sources)
 
 
+def test_nothing_is_kept_beside_the_source_where_the_user_has_a_cache(twice, monkeypatch, tmp_path):
+    monkeypatch.setattr("numba.core.config.CACHE_DIR", "")
+    monkeypatch.setattr("gen.support.kernel_cache.user_cache_dir", lambda name: str(tmp_path / "of_user" / name))
+    assert twice()(1.5) == 3.0
+    assert list((tmp_path / "of_user" / "raceway").rglob("*.nbc"))
+    assert not (tmp_path / "__pycache__").is_dir() or not list((tmp_path / "__pycache__").glob("*.nbc"))
+
+
 def test_of_two_processes_that_compile_at_once_each_keeps_its_variant(twice, monkeypatch):
     first, second = twice(), twice()
     files = first._cache._cache_file
