@@ -3,6 +3,7 @@
 Records are drawn as :func:`gen.generate` draws them, and some of them checked as it checks them.
 """
 
+import time
 import zlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -13,6 +14,8 @@ from typing import Any
 import numpy as np
 
 from gen.corpus import CODECS, FAULTS, SPLITS
+from gen.generation.make_part import make_part
+from gen.generation.undetected import made_from
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios, scenario_texts
 from gen.simulation.compiled_kernel import is_compiled
@@ -23,6 +26,11 @@ from gen.support.errors import SimulationError
 
 MOST_DRAWN = 2000  # records, about 0.6 s; from a larger corpus whole parts are drawn, spread evenly over it
 MOST_CHECKED = 64  # of the drawn records; one of some seconds with a changing speed takes 10 ms
+TIMED, TIMED_AT_ONCE, TIMED_SIGNAL = (
+    4,
+    16,
+    16.0,
+)  # ranges of records that are made to time them; most records and seconds of each
 AT_ONCE = 8  # records: a schedule of a minute takes 10 MB
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
@@ -118,6 +126,32 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
         splits=_scaled((scenario.origin.split for scenario in drawn), SPLITS, of_drawn),
         steps_per_sample=_scaled(steps, sorted(set(steps)), of_checked),
     )
+
+
+def seconds_to_make(recipe: Recipe) -> float | None:
+    """CPU time of all records on this machine [s], by some of them, spread evenly: machines and speeds take different times.
+
+    None if the kernel is not compiled yet, or so few records are a minute of work.
+    """
+    count = min(TIMED_AT_ONCE, recipe.n_records, int(TIMED_SIGNAL / recipe.recording.duration_s))
+    if count < 1 or not is_compiled():
+        return None
+    # the first records of a life are there in any case
+    step = recipe.corpus.records_of_a_specimen
+    firsts = {round(part * (recipe.n_records - count)) // step * step for part in np.linspace(0, 1, TIMED)}
+    _make(recipe, 0, 1)  # loads the kernel
+    began = time.process_time()
+    for first in firsts:
+        _make(recipe, first, count)
+    return (time.process_time() - began) / (count * len(firsts)) * recipe.n_records
+
+
+def _make(recipe: Recipe, first: int, count: int) -> None:
+    """Make some records, of a life without the rest of it."""
+    if recipe.life is None:
+        make_part(recipe, range(first, min(first + count, recipe.n_records)))
+    else:
+        made_from(draw_scenarios(recipe, first, first + count))
 
 
 def steps_of(scenarios: Sequence[Scenario]) -> Iterator[int | str]:

@@ -96,30 +96,32 @@ def _show_keys(prefix: str, as_json: bool) -> None:
 @records_option
 @json_option
 def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> None:
-    """Show counts, size and steps of a corpus; write nothing.
+    """Show counts, size and time of a corpus; write nothing.
 
-    Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. generate shows the time that is
-    left as soon as some parts are done.
+    Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. The time is that of some records,
+    once this machine has the kernel; half of it and twice as much are common.
 
       raceway plan quickstart
       raceway plan my_recipe.yaml --records 100 --json
 
     Next: raceway generate RECIPE -o DIR
     """
-    from gen.recipe import find_recipe
+    from gen.recipe import find_recipe, read_recipe
 
     find_recipe(recipe)
     from gen.generation.plan import plan as plan_recipe
+    from gen.generation.plan import seconds_to_make
 
     planned = plan_recipe(recipe, seed=seed, records=records)
+    seconds = seconds_to_make(read_recipe(recipe, seed=seed, records=records))
     if as_json:
-        show.as_json(planned)
+        show.as_json(show.plain(planned) | {"seconds": seconds})
     else:
-        _show_plan(planned)
+        _show_plan(planned, seconds)
 
 
-def _show_plan(planned: "Plan") -> None:
-    steps, times = list(planned.steps_per_sample), planned.records / WORTH_WORKERS
+def _show_plan(planned: "Plan", seconds: float | None) -> None:
+    steps = list(planned.steps_per_sample)
     # a large corpus is counted on a part of it
     about, about_checked = (
         "" if count == planned.records else f" (scaled up from {count:,} {done} records)"
@@ -139,9 +141,7 @@ def _show_plan(planned: "Plan") -> None:
             "parts": f"{planned.parts:,}",
             "size": f"about {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",
-            "time": f"on one core about {times:,.1f} times that of generate --records {WORTH_WORKERS}"
-            if times > 1
-            else "",
+            "time": "" if seconds is None else f"roughly {show.duration(seconds)} on one core, by some of its records",
             "kernel": "compiled" if planned.compiled else "will be compiled for this machine, in 10 to 20 s",
         }
     )
