@@ -12,6 +12,11 @@ from .models import Model as Model
 from .own import EstimatorError as EstimatorError, load_maker as load_maker, unseeded as unseeded
 from .predictions import UNSURE as UNSURE, Predictions as Predictions
 from .records import DEFAULT_GROUPS as DEFAULT_GROUPS, count_unknown as count_unknown
-from .scores import Scores as Scores, interval_text as interval_text, percent_text as percent_text
+from .scores import (
+    Scores as Scores,
+    behind_text as behind_text,
+    interval_text as interval_text,
+    percent_text as percent_text,
+)
 from .splits import controls as controls, cross_validate as cross_validate
 from .submissions import check_submission as check_submission, write_submission as write_submission

@@ -19,6 +19,7 @@ from features.baselines.names import BASELINES, DEFAULT_ESTIMATOR, TRACKS, UNTRA
 from features.baselines.own import Maker
 from features.baselines.records import (
     DEFAULT_GROUPS,
+    FloatArray,
     Records,
     count_unknown,
     features_of,
@@ -27,7 +28,7 @@ from features.baselines.records import (
     records_of,
     seen_records,
 )
-from features.baselines.scores import Scores, interval_text
+from features.baselines.scores import Scores, ends_of, interval_text
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
 from features.baselines.tracks import Split
 from features.table.definitions import measured_quantity
@@ -61,12 +62,17 @@ class Content:
 
 @dataclass(frozen=True)
 class Baseline:
-    """Scores of one classifier: cross-validated on a track, of both controls, and on each of the other corpora."""
+    """Scores of one classifier: cross-validated on a track, of both controls, and on each of the other corpora.
+
+    ``behind`` is how far its balanced accuracy lies below that of the best classifier of the track, and the 95 % interval of this
+    difference over the same resampled specimens; None if a class has only one specimen. If 0 is in it, the two cannot be ranked.
+    """
 
     grouped: Scores
     leaky: Scores
     null: Scores
     tests: tuple[Scores, ...]
+    behind: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -236,12 +242,14 @@ def benchmark(
             done(1)
 
     def rows(track: str) -> dict[str, Baseline]:
+        best = max(chosen, key=lambda name: scores[name, track, "grouped"][0].balanced_accuracy)
         return {
             name: Baseline(
-                scores[name, track, "grouped"],
-                scores[name, first, "leaky"],
-                scores[name, track, "null"],
+                scores[name, track, "grouped"][0],
+                scores[name, first, "leaky"][0],
+                scores[name, track, "null"][0],
                 scores.get((name, track, "tests"), ()),
+                _behind(scores[best, track, "grouped"], scores[name, track, "grouped"]),
             )
             for name in chosen
         }
@@ -281,14 +289,23 @@ def _scores_of(
     groups: Sequence[str],
     seed: int,
     job: _Job,
-) -> Scores | tuple[Scores, ...]:
-    """Scores of one job; the first of the tables is that of the records, the others are tested on."""
+) -> tuple[Scores, FloatArray | None] | tuple[Scores, ...]:
+    """Scores of one job, as of `score_splits` or on each of the other corpora; the first of the tables is that of the records."""
     name, track, case = job
     estimator = estimators[name]
     if case != "tests":
         return score_splits(records, *cases[track][case], estimator, seed)
     model = Model(estimator, groups=groups, seed=seed).fit(tables[0])
     return tuple(model.score(test, seed=seed) for test in tables[1:])
+
+
+def _behind(
+    best: tuple[Scores, FloatArray | None], other: tuple[Scores, FloatArray | None]
+) -> tuple[float, float, float] | None:
+    (leader, of_leader), (scores, resampled) = best, other
+    if of_leader is None or resampled is None:
+        return None
+    return leader.balanced_accuracy - scores.balanced_accuracy, *ends_of(of_leader - resampled)
 
 
 def _importance(

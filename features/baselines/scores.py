@@ -233,9 +233,15 @@ def mean_recall(fault: IntArray, predicted: IntArray) -> float:
 
 
 def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> Interval | None:
-    """95 % percentile interval of the balanced accuracy, resampling the specimens of each class.
+    """95 % percentile interval of the balanced accuracy, as of `resampled_recall`."""
+    resampled = resampled_recall(fault, correct, specimen, seed)
+    return None if resampled is None else ends_of(resampled)
 
-    None if a class has only one specimen: every resample would repeat it, and the interval would be too narrow.
+
+def resampled_recall(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> FloatArray | None:
+    """Balanced accuracy of resamples of the specimens of each class, shape (resample,); those of one seed are the same ones.
+
+    None if a class has only one specimen: every resample would repeat it, and an interval would be too narrow.
     """
     rng = np.random.default_rng(seed)
     classes = np.unique(fault)
@@ -250,7 +256,12 @@ def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray,
         # as many specimens of the class as there are, with all their records
         drawn = rng.integers(len(records), size=(RESAMPLES, len(records)))
         recall += hits[drawn].sum(axis=1) / records[drawn].sum(axis=1)
-    low, high = np.quantile(recall / len(classes), INTERVAL)
+    return recall / len(classes)
+
+
+def ends_of(resampled: FloatArray) -> Interval:
+    """95 % percentile interval of a figure that was resampled."""
+    low, high = np.quantile(resampled, INTERVAL)
     return float(low), float(high)
 
 
@@ -263,6 +274,18 @@ def interval_text(interval: Interval | None, decimals: int = 3) -> str:
     if interval is None:
         return "not known: a class has one specimen"
     return " to ".join(f"{end:.{decimals}f}" for end in interval)
+
+
+def behind_text(behind: tuple[float, float, float] | None) -> str:
+    """Text of how far a classifier lies below the best, for people.
+
+    >>> behind_text((0.02, -0.01, 0.05)), behind_text((0.0, 0.0, 0.0)), behind_text(None)
+    ('0.02 (-0.01 to 0.05)', 'best', 'not known')
+    """
+    if behind is None:
+        return "not known"
+    difference, *interval = behind
+    return f"{difference:.2f} ({interval_text((interval[0], interval[1]), 2)})" if any(behind) else "best"
 
 
 def percent_text(share: float) -> str:

@@ -14,8 +14,8 @@ from features.baselines.fitting import fits
 from features.baselines.names import UNTRAINED, Track
 from features.baselines.own import Maker
 from features.baselines.predictions import fault_names, predictions
-from features.baselines.records import DEFAULT_GROUPS, IntArray, Records, records_of
-from features.baselines.scores import Scores, mean_recall, score
+from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
+from features.baselines.scores import Scores, mean_recall, resampled_recall, score
 from features.baselines.tracks import Split, check_taught, grouped_splits, track_splits
 from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS
@@ -58,7 +58,7 @@ def cross_validate(
         For an unknown estimator.
     """
     records = records_of(data, DEFAULT_GROUPS)
-    return score_splits(records, *grouped_case(records, track, folds, seed), estimator, seed)
+    return score_splits(records, *grouped_case(records, track, folds, seed), estimator, seed)[0]
 
 
 def controls(
@@ -75,7 +75,7 @@ def controls(
     """
     records = records_of(data, DEFAULT_GROUPS)
     cases = control_cases(records, track, folds, seed)
-    return {name: score_splits(records, *case, estimator, seed) for name, case in cases.items()}
+    return {name: score_splits(records, *case, estimator, seed)[0] for name, case in cases.items()}
 
 
 def grouped_case(records: Records, track: Track, folds: int, seed: int) -> Case:
@@ -115,8 +115,8 @@ def permuted_labels(records: Records, seed: int) -> IntArray:
 
 def score_splits(
     records: Records, labels: IntArray, splits: Sequence[Split], estimator: str | Maker, seed: int
-) -> Scores:
-    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once."""
+) -> tuple[Scores, FloatArray | None]:
+    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once, and `resampled_recall`."""
     classes = np.unique(labels)
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []
@@ -135,4 +135,6 @@ def score_splits(
     truth = np.searchsorted(classes, chosen.fault)
     calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(pooled, truth)
     together = predictions(pooled, fault_names(classes), recording, calibration)
-    return score(chosen, together, seed, folds=tuple(folds))
+    right = classes[pooled.argmax(axis=1)] == chosen.fault
+    resampled = resampled_recall(chosen.fault, right, chosen.specimen, seed)
+    return score(chosen, together, seed, folds=tuple(folds)), resampled

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from gen.support.sentences import sentences
 
 MOST_CHARACTERS = 20_000
-_EXAMPLES = "write 1.5, uniform(1, 2) or uniform(0.1, 0.2) * load_n."
+_EXAMPLES = "write 1.5, uniform(1, 2), or a share such as uniform(0.1, 0.2) * load_n, of another quantity."
 
 
 def read_expression(text: Any, kinds: Mapping[str, Any]) -> Any:
@@ -40,7 +40,7 @@ def read_expression(text: Any, kinds: Mapping[str, Any]) -> Any:
         named = {str(keyword.arg): _value(keyword.value) for keyword in tree.keywords}
     except (SyntaxError, TypeError, RecursionError, MemoryError):
         if text.count("(") > text.count(")"):
-            raise ValueError(f"{shown} ends too early; within braces a distribution needs quotes.") from None
+            raise ValueError(f"{shown} ends too early; close its bracket, and within braces give it quotes.") from None
         raise ValueError(f"{shown} is neither a number nor a distribution; {_EXAMPLES}") from None
     if kind not in kinds:
         # help with a misspelt name

@@ -248,11 +248,17 @@ def _show(results: "Results", tests: list[str]) -> None:
 
 
 def _show_baselines(baselines: "Mapping[str, Baseline]", tests: list[str]) -> None:
+    from features.baselines import behind_text
+
     rows = []
     for name, baseline in baselines.items():
         further = (baseline.leaky, baseline.null, *baseline.tests)
-        rows.append((name, *_figures(baseline.grouped), *(f"{scores.balanced_accuracy:.3f}" for scores in further)))
-    show.table(("baseline", "score", "95 %", "false alarms", "leaky split", "null labels", *tests), rows)
+        score, interval, alarms = _figures(baseline.grouped)
+        controls = (f"{scores.balanced_accuracy:.3f}" for scores in further)
+        rows.append((name, score, interval, behind_text(baseline.behind), alarms, *controls))
+    show.table(
+        ("baseline", "score", "95 %", "below the best", "false alarms", "leaky split", "null labels", *tests), rows
+    )
 
 
 def _show_submissions(submitted: "Mapping[str, Scores]") -> None:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from features.baselines import Results, Scores, interval_text, percent_text
+from features.baselines import Results, Scores, behind_text, interval_text, percent_text
 from features.baselines.names import UNTRAINED
 from features.baselines.tracks import NOVELTY
 from gen.corpus import (
@@ -115,6 +115,7 @@ def _scores(results: Results) -> dict[str, Any]:
         "test_titles": _test_titles(results),
         "untrained": UNTRAINED,
         "tracks": picture(draw_scores(led, chance, "groups"), "svg") if results.further else None,
+        "behind_text": behind_text,
         "interval_text": interval_text,
         "novelty": NOVELTY,
     }

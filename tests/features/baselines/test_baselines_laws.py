@@ -111,6 +111,21 @@ def test_a_benchmark_has_every_baseline_with_its_controls_and_is_tested_on_a_cor
         assert (found.tests[0].by_recording.records, found.tests[0].seen) == (16, 0)
 
 
+def test_classifiers_are_ranked_on_the_same_resampled_specimens():
+    table = make_table(40, 3, told=0.5)
+    estimators = dict.fromkeys(("one", "same"), "logistic_regression") | {"lines": "envelope_rule"}
+    found = benchmark(table, estimators=estimators, folds=3).baselines
+    assert found["one"].behind == found["same"].behind == (0, 0, 0)
+    difference, low, high = found["lines"].behind
+    assert difference == pytest.approx(
+        found["one"].grouped.balanced_accuracy - found["lines"].grouped.balanced_accuracy
+    )
+    # errors on the same specimens cancel: the two intervals alone would leave more
+    alone = [np.ptp(found[name].grouped.interval) for name in ("one", "lines")]
+    assert 0 < high - low < sum(alone)
+    assert low < difference < high
+
+
 def test_permuted_labels_of_a_rare_class_are_scored_although_a_fold_trains_none_of_it():
     table = make_table(40, 5, classes=5, rigs=8)
     rare = np.where(np.isin(table.specimen, [0, 20]), FAULTS.index("compound"), table.fault)
@@ -123,7 +138,8 @@ def test_permuted_labels_of_a_rare_class_are_scored_although_a_fold_trains_none_
             untrained += 1
             with pytest.raises(CorpusError, match="a fold has no compound record to train on"):
                 check_taught(labels, folds)
-            assert score_splits(records, labels, folds, "envelope_rule", seed).classes == FAULTS[:6]
+            scores, _ = score_splits(records, labels, folds, "envelope_rule", seed)
+            assert scores.classes == FAULTS[:6]
     assert untrained > 0
 
 

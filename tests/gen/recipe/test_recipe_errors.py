@@ -38,7 +38,7 @@ TABLE = [
     ("1500, ", "", "operation.shaft_rpm: high of uniform(low, high): is missing; give it."),
     # values
     ("0.5}", "1,5}", "faults[1]: 5 is not a key; keys are words, and decimals have a point, not a comma."),
-    ("0.5}", "uniform(1, 2)}", "faults[1].width_mm: 'uniform(1' ends too early; within braces a distribution needs quotes."),
+    ("0.5}", "uniform(1, 2)}", "faults[1].width_mm: 'uniform(1' ends too early; close its bracket, and within braces give it quotes."),
     # distributions
     ("1500, 1800", "1800, 1500", "operation.shaft_rpm: low 1800.0 is above high 1500.0; swap them."),
     ("uniform(1500", "loguniform(0", "operation.shaft_rpm: low 0.0 is not above 0;"),
