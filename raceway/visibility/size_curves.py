@@ -8,6 +8,7 @@ machine are alike, so intervals come from a bootstrap over units, such as rigs, 
 
 import numpy as np
 from sklearn.linear_model import LogisticRegression
+from threadpoolctl import threadpool_limits
 
 from features.baselines.detection import INTERVAL, RESAMPLES
 from features.baselines.records import FloatArray, IntArray
@@ -74,7 +75,9 @@ def sizes_seen(
         return weight
 
     once = np.ones(len(size))
-    curves = np.array([curve(once), *(curve(resampled()) for _ in range(RESAMPLES))])
+    # fits of some hundred records gain nothing from threads, and wait for them on a busy machine
+    with threadpool_limits(1):
+        curves = np.array([curve(once), *(curve(resampled()) for _ in range(RESAMPLES))])
     middle, slope = curves.T[..., None]
     sizes = middle * (SHARES / (1 - SHARES)) ** (1 / slope)
     ends = np.stack([sizes[0], *np.quantile(sizes[1:], INTERVAL, axis=0)], axis=-1)
