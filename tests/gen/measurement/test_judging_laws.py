@@ -149,7 +149,8 @@ def test_a_fault_is_seen_in_a_run_up_by_the_angle_of_the_shaft():
 
 @pytest.mark.parametrize("n", [64, 1000, 6001])
 def test_records_of_any_length_are_judged(n):
-    assert judged(noise(1, n), noise(2, n), angles=ANGLES[:1] + 2 * np.pi * RATE * np.arange(n) / FS) in (True, False)
+    angles = ANGLES[:1] + 2 * np.pi * RATE * np.arange(n) / FS
+    assert not judged(1e-6 * noise(1, n), noise(2, n), angles=angles)
 
 
 def test_what_is_judged_of_a_record_does_not_depend_on_the_others():
