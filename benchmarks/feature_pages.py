@@ -1,12 +1,11 @@
 """Tables and picture of docs/features.md: ``python -m benchmarks.feature_pages docs/features.md [PICTURE]``.
 
-A table stands between ``<!-- table: NAME -->`` and ``<!-- end of table -->``; a test compares the page with the definitions.
+A test compares the page with the definitions.
 """
 
-import re
 import sys
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import gen
+from benchmarks.page_tables import filled, markdown
 from features.signal.demodulation import analytic_band
 from features.signal.spectra import band_energies, fourier_coefficients, psd
 from features.table.band import DEFAULT_BAND
@@ -26,7 +26,6 @@ from features.table.record_batch import bands_of, levels_and_shape
 from gen.support.units import from_si
 from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, picture
 
-_TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 _HEADER = ("feature", "unit", "range", "meaning", "formula", "depends on", "source")
 TURNS, HIGHEST_ORDER = 2, 13.0  # drawn shaft revolutions and orders
 
@@ -40,8 +39,8 @@ TABLES: Mapping[str, Sequence[Feature]] = {
 def with_tables(page: str) -> str:
     """A page with its tables made again."""
     tables = {name: _features(features) for name, features in TABLES.items()}
-    tables["views"] = _markdown(("view", "meaning"), ((f"`{view}`", meaning) for view, meaning in VIEWS.items()))
-    return _TABLE.sub(lambda marker: f"{marker[1]}\n{tables[marker[2]]}\n{marker[3]}", page)
+    tables["views"] = markdown(("view", "meaning"), ((f"`{view}`", meaning) for view, meaning in VIEWS.items()))
+    return filled(page, tables.__getitem__)
 
 
 def _features(features: Sequence[Feature]) -> str:
@@ -51,7 +50,7 @@ def _features(features: Sequence[Feature]) -> str:
     same = "; ".join(f"{name} {cells[0]}" for name, cells in columns if len(set(cells)) == 1)
     names, values = zip(*varied, strict=True)
     above = textwrap.fill(f"In all rows: {same}", 120) + "\n\n" if same else ""
-    return above + _markdown(names, zip(*values, strict=True))
+    return above + markdown(names, zip(*values, strict=True))
 
 
 def _cells(feature: Feature) -> Sequence[str]:
@@ -65,10 +64,6 @@ def _cells(feature: Feature) -> Sequence[str]:
         feature.parameters,
         feature.source,
     )
-
-
-def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    return "".join(f"| {' | '.join(row)} |\n" for row in (header, ["---"] * len(header), *rows))
 
 
 @rc_context(STYLE)

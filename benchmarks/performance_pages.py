@@ -1,17 +1,16 @@
 """Tables of docs/running.md, made from the results of every processor.
 
-A table stands between ``<!-- table: NAME -->`` and ``<!-- end of table -->``. A test compares the page with the files.
+A test compares the page with the files.
 """
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from benchmarks.page_tables import filled, markdown
 from benchmarks.results import FOLDER, Rows, every_result
 
 PAGE = FOLDER.parent / "docs" / "running.md"
-_TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
 Results = Mapping[str, Rows]
 
@@ -65,7 +64,7 @@ def _targets(results: Results) -> str:
         aim = "-" if target.aim is None else f"{target.aim:g}"
         cells = [_reached(target, name, measured.get(target.row)) for name, measured in results.items()]
         rows.append([target.what, must, aim, *cells])
-    return _markdown(["", "must", "aim", *results], rows)
+    return markdown(["", "must", "aim", *results], rows)
 
 
 def _reached(target: Target, processor: str, row: Mapping[str, Any] | None) -> str:
@@ -87,7 +86,7 @@ def _rows(results: Results, words: Sequence[str]) -> str:
         first = next(rows[name] for rows in results.values() if name in rows)
         cells = [_cell(rows.get(name)) for rows in results.values()]
         lines.append([f"{name}: {first['what']}", first["alternative"], *cells])
-    return _markdown(["", "compared with", *results], lines)
+    return markdown(["", "compared with", *results], lines)
 
 
 def _cell(row: Mapping[str, Any] | None) -> str:
@@ -106,7 +105,7 @@ def _machines(results: Results) -> str:
             computer = tuple(str(row["facts"][key]) for key in ("processor", "cores", "python", "numba", "numpy"))
             counts[computer] = counts.get(computer, 0) + 1
         lines += [[name, *computer, str(count)] for computer, count in counts.items()]
-    return _markdown(["", "processor", "cores", "Python", "numba", "NumPy", "rows"], lines)
+    return markdown(["", "processor", "cores", "Python", "numba", "NumPy", "rows"], lines)
 
 
 def short(value: float) -> str:
@@ -121,11 +120,6 @@ def short(value: float) -> str:
     return f"{value:,.0f}" if value >= 1000 else f"{value:.3g}"
 
 
-def _markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [header, ["---"] * len(header), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
 def tables(results: Results) -> Iterator[tuple[str, Callable[[], str]]]:
     """Name and maker of every table."""
     yield "targets", lambda: _targets(results)
@@ -137,7 +131,7 @@ def tables(results: Results) -> Iterator[tuple[str, Callable[[], str]]]:
 def with_tables(page: str, results: Results) -> str:
     """A page with its tables made again."""
     makers = dict(tables(results))
-    return _TABLE.sub(lambda marker: f"{marker[1]}\n{makers[marker[2]]()}\n{marker[3]}", page)
+    return filled(page, lambda name: makers[name]())
 
 
 def write_page(page: Path = PAGE) -> None:

@@ -1,18 +1,18 @@
 """Tables of README.md and docs/transfer.md, made from ``benchmarks/transfer.json``.
 
-A table stands between ``<!-- table: NAME -->`` and ``<!-- end of table -->``. A test compares the pages with the file.
+A test compares the pages with the file.
 """
 
 import json
-import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.page_tables import RIGHT, filled, markdown
+
 RESULTS = Path(__file__).with_name("transfer.json")
 ROOT = RESULTS.parent.parent
 PAGES = ("README.md", "docs/transfer.md")
-_TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
 Results = Mapping[str, Any]
 NAMES = {
@@ -44,11 +44,6 @@ def _longest(results: Results) -> Mapping[str, Any]:
     return next(iter(results["windows"].values()))
 
 
-def _markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [header, ["---", *["---:"] * (len(header) - 1)], *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
 def _summary(results: Results) -> str:
     """The four sets in short: zero-shot, and with one healthy recording."""
     heads = {"wang": "CWRU, Wang's subset", "cwru": "CWRU, all 64", "mfpt": "MFPT, 2 classes", "uestc": "UESTC"}
@@ -61,7 +56,7 @@ def _summary(results: Results) -> str:
         ]
         of_reference = [spread(reference[test], "window") if test in reference else "-" for test in heads]
         rows.append([f"ensemble, with one healthy recording of the machine, {window} s", *of_reference])
-    return _markdown(["", *heads.values()], rows)
+    return markdown(["", *heads.values()], rows, RIGHT)
 
 
 def _zero_shot(results: Results) -> str:
@@ -76,7 +71,7 @@ def _zero_shot(results: Results) -> str:
         for window, its in results["windows"].items()
         for name, scores in its["zero_shot"].items()
     ]
-    return _markdown(header, rows)
+    return markdown(header, rows, RIGHT)
 
 
 def _details(results: Results) -> str:
@@ -106,7 +101,7 @@ def _details(results: Results) -> str:
         for way, scores in ways.items()
         if test in scores
     ]
-    return _markdown(header, rows)
+    return markdown(header, rows, RIGHT)
 
 
 def _teachers(results: Results) -> str:
@@ -121,13 +116,13 @@ def _teachers(results: Results) -> str:
         for test, teachers in its["teachers"].items()
         for teaching, scores in teachers.items()
     ]
-    return _markdown(["trained on", "tested on", "window", "recording", "false alarms", "AUC", "log-loss"], rows)
+    return markdown(["trained on", "tested on", "window", "recording", "false alarms", "AUC", "log-loss"], rows, RIGHT)
 
 
 def _confusion(results: Results, test: str) -> str:
     confusion = _longest(results)["confusion"][test]
     rows = [[name, *map(str, row)] for name, row in zip(confusion["true"], confusion["windows"], strict=True)]
-    return _markdown(["true", *confusion["predicted"]], rows)
+    return markdown(["true", *confusion["predicted"]], rows, RIGHT)
 
 
 TABLES: Mapping[str, Callable[[Results], str]] = {
@@ -141,7 +136,7 @@ TABLES: Mapping[str, Callable[[Results], str]] = {
 
 def with_tables(page: str, results: Results) -> str:
     """A page with its tables made again."""
-    return _TABLE.sub(lambda marker: f"{marker[1]}\n{TABLES[marker[2]](results)}\n{marker[3]}", page)
+    return filled(page, lambda name: TABLES[name](results))
 
 
 def read_results() -> Results:
