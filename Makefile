@@ -50,7 +50,7 @@ generated: $(VENV)/installed
 reference: $(VENV)/installed
 	$(BIN)/python -m benchmarks.reference_table
 
-# the site under out/docs; index.html opens it, search included, without a server. The tutorials run, which takes three to four minutes
+# the site under out/docs; index.html opens it, search included, without a server. The tutorials run, which takes about six minutes
 docs: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --editable '.[docs]'
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs/site -b html . out/docs

@@ -29,7 +29,8 @@ HDF5 ignores bytes behind its own, so [all readers](sharing.md#which-programs-re
 `gen.open_corpus` compares files with their hashes before any library opens them, and refuses a missing or altered file.
 A file that another program has rewritten, such as a copy by `nccopy`, has no such line: open it with
 `gen.open_corpus(path, check="size")`. `sha256` in `manifest.json` is that of its other keys, as
-`json.dumps(..., sort_keys=True)` writes them. `raceway validate` checks [everything](security.md).
+`json.dumps(..., sort_keys=True)` writes them. `raceway validate` checks
+[all but data card and pictures](security.md).
 
 Facts about the records are fields of `manifest.json`, and global attributes of `index.nc` and of a single file, there
 as JSON where they are not text. A fact without content is left out:
@@ -59,7 +60,8 @@ is missing or not a number.
 
 The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
 and netCDF4 apply when they read, or 32-bit floating point. Divided by `scale_factor` and rounded, the signal that these
-readers return gives the counts exactly. Text is stored as fixed-length characters. Every other variable has one value
+readers return gives the counts exactly. Text is stored as fixed-length characters. In Python write
+`corpus["load"]`: `corpus.load` is a method of xarray. Every other variable has one value
 per record, and a `role`:
 
 - `operating`: known to an analyst on site; features may use it,

@@ -222,7 +222,7 @@ def test_a_plugin_that_cannot_be_loaded_is_named_and_the_others_work(tmp_path):
 def test_the_page_shows_the_example():
     source = (SOURCE / "raceway_example.py").read_text() + (SOURCE / "pyproject.toml").read_text()
     shown = blocks("plugins.md") + blocks("plugins.md", "toml")
-    assert len(shown) == 6
+    assert len(shown) == 7
     assert [block for block in shown if block not in source] == []
 
 

@@ -95,7 +95,7 @@ def control_cases(records: Records, track: Track, folds: int, seed: int) -> dict
     """Labels and splits of the two controls of a track.
 
     ``leaky`` splits random records. ``null`` splits as the track does and permutes the labels among specimens: it must
-    be at chance, because all else that could tell the label of a specimen is on one side of each split.
+    be near chance, because all else that could tell the label of a specimen is on one side of each split.
     """
     leaky = grouped_splits(records.fault, np.arange(len(records.fault)), folds, seed)
     check_taught(records.fault, leaky)

@@ -134,7 +134,7 @@ def benchmark(
 
     Cross-validation keeps all records of a specimen on one side of each split, and all of a rig, bearing
     type or speed range with --track. Two controls are shown beside each score: a split of random records,
-    which leaks, and labels permuted among specimens, which must score at chance. With --test, models trained on all of DIR are also
+    which leaks, and labels permuted among specimens, which must score near chance. With --test, models trained on all of DIR are also
     scored on DIR2; --speed concerns DIR2 alone, --channel DIR alone (of DIR2 the first channel is taken).
 
     MODULE:NAME is an estimator as of scikit-learn, or a class or function that makes one; its code is run. MODULE is a file of the

@@ -183,7 +183,8 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     The bytes of the parts do not depend on the number of workers, which are processes: one up to 400 records, by default one per core
     beyond.
 
-    Exits with 1 if more than 1 % of the records cannot be used, because they are clipped, all zeros or not numbers; the corpus is kept.
+    Exits with 1 if more than 1 % of the records cannot be used, because more than 5 % of the samples of a channel are clipped, or all
+    are zeros, constant or not numbers; the corpus is kept. Records with fewer clipped samples are counted and can be used.
 
       raceway generate quickstart -o corpus
       raceway generate quickstart -o corpus.nc
@@ -275,10 +276,11 @@ def _kept(corpus: Path, recipe: "Recipe") -> "Callable[[], str]":
 @corpus_argument
 @json_option
 def validate(corpus: Path, as_json: bool) -> int:
-    """Check every byte of the corpus in DIR.
+    """Check the records of the corpus in DIR.
 
-    Exits with 1 if anything is wrong. The checks cover the hash of each file, the manifest, the format, the samples, and whether
-    index.nc agrees with manifest and parts, and croissant.json with the corpus. It warns of records whose step was too coarse, and of
+    Exits with 1 if anything is wrong. The checks cover the hash of each part, of index.nc and of the recipe, the manifest, the format,
+    all samples, and whether index.nc agrees with manifest and parts, and croissant.json with the corpus. They leave out README.md,
+    card.json, pictures and files that are no part of a corpus. It warns of records whose step was too coarse, and of
     splits of an imported corpus that can leak: one recording under two specimens, each file a specimen of its own, a class of one
     specimen.
 

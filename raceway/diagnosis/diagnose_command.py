@@ -85,7 +85,7 @@ def diagnose(
 ) -> None:
     """Diagnose the bearing in a vibration recording.
 
-    RECORDING is a .csv, .txt, .tsv, .dat, .lvm, .xlsx, .npy, .mat or .wav file of at least 0.05 s, better 10 s, at 10 kHz or more. The
+    RECORDING is a .csv, .txt, .tsv, .dat, .lvm, .xlsx, .npy, .mat or .wav file of at least 0.05 s and 3 kHz, better 10 s and 20 kHz. The
     answer is one sentence: what is wrong, how sure that is, and which lines of the signal tell it; or "unsure", with the reason and what
     would help. For a FOLDER it is a table with a row for each recording; a file that states another rate or unit than the options is read
     as it states.
@@ -93,7 +93,7 @@ def diagnose(
       raceway diagnose pump.csv --bearing 6205 --rpm 1772 --rate 12000 --unit g -o pump.html
       raceway diagnose fan.wav --bearing 6205 --rpm 1400-1600
       raceway diagnose fan.wav --bearing 6203 --bearing 6205 --rpm 1480
-      raceway diagnose motor.mat --channel X106_DE_time --bearing 6205 --rpm 1750 --rate 12000 --unit g
+      raceway diagnose motor.mat --channel '*_DE_time' --bearing 6205 --rpm 1750 --rate 12000 --unit g
       raceway diagnose volts.csv --channel x,y --unit V --sensitivity 100 --bearing 6308 --rpm 990 --rate 25600
       raceway diagnose pump.csv --healthy new.csv --bearing 6205 --rpm 1772 --rate 12000 --json
       raceway diagnose spring_campaign --channel 1 --bearing 6205 --rpm 1480 -o pages
