@@ -34,7 +34,8 @@ def rank_features(
     -------
     DataFrame
         One row per feature, by name, with its ``group``, its ``importance``, the balanced accuracy that extra trees lose when its
-        values are permuted among the tested records, and the ``deviation`` of that over the folds.
+        values are permuted among the tested records, and the ``deviation`` of that over the folds. Features that replace one
+        another share their importance, down to 0.
 
     Raises
     ------
