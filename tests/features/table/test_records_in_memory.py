@@ -96,6 +96,7 @@ def test_records_beyond_the_last_one_are_not_drawn():
 
 READ = """
 import os, sys
+import platformdirs  # loads other code on other systems
 for name in ("fork", "forkpty", "register_at_fork", "sched_getaffinity", "process_cpu_count", "getuid", "geteuid", "killpg"):
     if hasattr(os, name):
         delattr(os, name)
