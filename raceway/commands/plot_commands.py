@@ -61,8 +61,16 @@ def plot(
     varies, --rpm is its range; the speed is then found in the signal, and the lines are drawn over orders of the shaft.
     """
     check_speed(speeds, reading)
+    of_corpus = _is_corpus(source)
+    if record is not None and not of_corpus:
+        raise click.UsageError(f"--record is for a corpus, and {source} is a recording; leave it out")
+    # a number is a record of the same corpus, anything else a file
+    number = int(healthy) if of_corpus and healthy is not None and healthy.isdecimal() else None
+    under_path = None if healthy is None else source if number is not None else Path(healthy)
+    if of_corpus and (under_path is None or _is_corpus(under_path)):
+        _refuse_options_of_recordings(source)
     # without any choice: a record of each class
-    if _is_corpus(source) and (record, view, healthy, band) == (None,) * 4:
+    if of_corpus and not reading.channels and (record, view, healthy, band) == (None,) * 4:
         _draw_classes(source, output)
         return
     from gen.support.errors import CorpusError
@@ -70,12 +78,7 @@ def plot(
     from raceway.reports.views import draw_view
 
     shown = _shown(source, record, bearing, speeds, band, reading)
-    under = None
-    # a number is a record of the same corpus, anything else a file
-    if healthy is not None:
-        of_corpus = _is_corpus(source) and healthy.isdecimal()
-        path, number = (source, int(healthy)) if of_corpus else (Path(healthy), None)
-        under = _shown(path, number, bearing, speeds, band, reading)
+    under = None if under_path is None else _shown(under_path, number, bearing, speeds, band, reading)
     try:
         figure = draw_record(shown, under) if view is None else draw_view(view, shown, under)
     except ValueError as error:
@@ -83,6 +86,15 @@ def plot(
     write_picture(figure, output)
     what = source.name if record is None else f"record {record} of {source}"
     show.text(f"{output}: {what}.")
+
+
+def _refuse_options_of_recordings(corpus: Path) -> None:
+    """A corpus states what these options say, which would act on nothing."""
+    context = click.get_current_context()
+    names = {"bearing", "speeds", *Reading._fields} - {"channels"}
+    for option in context.command.params:
+        if option.name in names and context.params[option.name] is not None:
+            raise click.UsageError(f"{option.opts[0]} is for a recording, and {corpus} is a corpus; leave it out")
 
 
 def _draw_classes(corpus: Path, output: Path) -> None:

@@ -42,6 +42,28 @@ def test_what_a_picture_of_a_recording_lacks_is_told_in_one_sentence(run, record
     assert len(result.stderr.splitlines()) == 1
 
 
-def test_a_view_of_a_corpus_needs_the_number_of_a_record(run, tiny_corpus, tmp_path):
-    result = run("plot", tiny_corpus, "--view", "psd", "-o", tmp_path / "x.png")
-    assert (result.exit_code, "with --record" in result.stderr) == (2, True)
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--view", "psd"), "with --record"),
+        (("--channel", "nonsense"), "with --record"),
+        (("--bearing", "6205"), "--bearing is for a recording"),
+        (("--rpm", 100), "--rpm is for a recording"),
+        (("--record", 1, "--unit", "g"), "--unit is for a recording"),
+        (("--record", 1, "--healthy", 0, "--speed-column", "n"), "--speed-column is for a recording"),
+    ],
+)
+def test_options_that_do_not_act_on_a_corpus_are_refused(run, tiny_corpus, tmp_path, options, sentence):
+    result = run("plot", tiny_corpus, *options, "-o", tmp_path / "x.png")
+    assert (result.exit_code, sentence in result.stderr) == (2, True), result.stderr
+
+
+def test_the_number_of_a_record_is_refused_for_a_recording(run, recording, tmp_path):
+    result = run("plot", recording, *MACHINE, "--record", 3, "-o", tmp_path / "x.png")
+    assert (result.exit_code, "--record is for a corpus" in result.stderr) == (2, True), result.stderr
+
+
+def test_a_recording_is_drawn_under_a_record_of_a_corpus(run, recording, tiny_corpus, tmp_path):
+    machine = (*MACHINE, "--unit", "g")
+    result = run("plot", tiny_corpus, "--record", 1, "--healthy", recording, *machine, "-o", tmp_path / "x.png")
+    assert result.exit_code == 0, result.stderr
