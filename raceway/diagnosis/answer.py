@@ -31,7 +31,7 @@ from gen.corpus.fault_classes import HEALTHY
 from gen.support.errors import CorpusError
 from raceway.diagnosis.evidence import Line, find_evidence
 from raceway.diagnosis.levels import levels_of
-from raceway.diagnosis.quality import ENOUGH, Quality, quality_of
+from raceway.diagnosis.quality import Quality, enough, quality_of
 from raceway.diagnosis.result import Diagnosis
 from raceway.diagnosis.search import Given, Pair, find_pairs, mean_spectra, strange_comb
 from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
@@ -49,7 +49,8 @@ from raceway.diagnosis.wording import (
 )
 from raceway.importing.recorded import LONGEST, Recorded
 
-WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (healthy)."
+BY_HEALTHY = "(--healthy FILE; in Python healthy)"
+WATCH = f"The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one {BY_HEALTHY}."
 
 
 class Judged(NamedTuple):
@@ -73,7 +74,8 @@ def diagnose_recording(
     Parameters
     ----------
     recording
-        At least 0.05 s; of more than 60 s the first 60 s are used. Several channels are axes of one housing.
+        At least 8 turns of the shaft and 0.05 s, or the answer is unsure; of more than 60 s the first 60 s are used. Several channels are
+        axes of one housing.
     machine
         The bearings it may be of, and the lowest and highest shaft rate. One bearing and one speed are believed unless
         the lines clearly tell another speed within 8 %.
@@ -104,7 +106,7 @@ def diagnose_recording(
     judged = [_judge(used, pair, model, references) for pair in pairs]
     # strong lines of no part of this bearing: it may be another bearing
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
-    diagnosis = _conclude(used, machine, judged, elsewhere, strange, compared=bool(healthy))
+    diagnosis = _conclude(used, machine, model, judged, elsewhere, strange, compared=bool(healthy))
     return _with_levels(replace(diagnosis, warnings=(*quality.warnings, *diagnosis.warnings)), shown)
 
 
@@ -171,7 +173,7 @@ def _useless(machine: Given, model: Model, quality: Quality) -> Diagnosis:
         orders=orders,
         shaft_rate=machine.rates[0],
         evidence=(),
-        sentence=f"Unsure: {quality.useless}; {quality.advice}.",
+        sentence=f"Unsure: {quality.useless}.",
         advice=(f"{quality.advice[0].upper()}{quality.advice[1:]}.",),
     )
 
@@ -219,6 +221,7 @@ def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Mode
 def _conclude(
     used: Recorded,
     machine: Given,
+    model: Model,
     judged: list[Judged],
     elsewhere: tuple[Pair, ...],
     strange: float | None,
@@ -253,17 +256,20 @@ def _conclude(
     clauses = [answer, pair_in_words(first.pair, machine, [each.pair for each in judged[1:] if not differing])]
     if len(used.signals) > 1:
         clauses.append(f"channels {listed([*used.signals], 'and')}, as axes of one housing")
-    # a healthy verdict says how often such verdicts were wrong
-    missed, of = missed_faults(used.duration, compared=compared) if verdict == HEALTHY else (np.nan, 1)
-    if verdict == HEALTHY:
+    # a healthy verdict says how often such verdicts were wrong, which was counted for the reference model: it alone has a wide part
+    missed, of = np.nan, 1
+    if verdict == HEALTHY and model.wide is None:
+        clauses.append("how often this model calls faulty recordings healthy was not measured")
+    elif verdict == HEALTHY:
+        missed, of = missed_faults(used.duration, compared=compared)
         clauses.append(
             f"{missed} of {of} faulty recordings of about this length from three machines were called healthy"
         )
     if verdict in (UNSURE, DAMAGED, HEALTHY):
-        if used.duration < ENOUGH:
-            advice.append(f"Record longer: {ENOUGH:g} s instead of {used.duration:.2g} s.")
+        if used.duration < (seconds := enough(first.pair.rate)):
+            advice.append(f"Record longer: {seconds:,.0f} s instead of {used.duration:.2g} s.")
         if not compared:
-            advice.append("Give a recording of the machine with a healthy bearing (healthy).")
+            advice.append(f"Give a recording of the machine with a healthy bearing {BY_HEALTHY}.")
     return Diagnosis(
         verdict=verdict,
         probabilities=first.probabilities,

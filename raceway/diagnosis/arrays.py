@@ -30,7 +30,8 @@ def diagnose(
     Parameters
     ----------
     x
-        Acceleration [m s-2], shape (time,), or (channel, time) of several sensors on one housing; at least 0.05 s.
+        Acceleration [m s-2], shape (time,), or (channel, time) of several sensors on one housing; at least 8 turns
+        of the shaft and 0.05 s.
     fs
         Sample rate [Hz].
     orders

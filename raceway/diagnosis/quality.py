@@ -21,6 +21,7 @@ POSSIBLE = (
 )  # m s-2, spread of a signal in whatever unit; fourth powers of more leave the range of single precision
 ENOUGH = 10.0  # s, duration to be recorded
 TURNS = 20  # shaft revolutions to be recorded
+FEWEST_TURNS = 8  # shaft revolutions below which no verdict is given: a speed in Hz given as rpm leaves so few, too
 
 
 class Quality(NamedTuple):
@@ -37,13 +38,21 @@ def quality_of(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> Q
     return Quality(reason, advice, () if reason else tuple(_warnings(x, fs, len(x) / fs, shaft_rate)))
 
 
+def enough(shaft_rate: float) -> float:
+    """Duration to be recorded at a shaft rate [Hz], in s."""
+    return max(ENOUGH, math.ceil(TURNS / shaft_rate))
+
+
 def _useless(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> tuple[str, str]:
     """Reason why a signal tells nothing, and what would help; both empty if it tells something."""
-    duration, (turns, seconds) = len(x) / fs, SHORTEST
-    least = max(seconds, turns / shaft_rate)
+    duration, (_, seconds) = len(x) / fs, SHORTEST
+    least = max(seconds, FEWEST_TURNS / shaft_rate)
     if duration < least:
-        reason = f"the recording lasts {duration:.3g} s and {least:.3g} s are the least ({turns:g} shaft revolutions and {seconds:g} s)"
-        return reason, f"record {max(ENOUGH, math.ceil(TURNS / shaft_rate)):,.0f} s, and check speed and sample rate"
+        reason = (
+            f"the recording lasts {duration:.3g} s, in which the shaft turns {duration * shaft_rate:.2g} times at "
+            f"{from_si(shaft_rate, 'rpm'):,.4g} rpm, and {least:.3g} s are the least ({FEWEST_TURNS} turns and {seconds:g} s)"
+        )
+        return reason, f"record {enough(shaft_rate):,.0f} s, and check speed and sample rate"
     spread, largest = np.ptp(x), np.abs(x).max()
     # constant up to rounding
     if spread <= FLATTEST * largest:
@@ -83,10 +92,10 @@ def _warnings(x: FloatArray, fs: float, duration: float, shaft_rate: float) -> l
             f"The sample rate of {fs:,.0f} Hz leaves out part of the band up to {DEFAULT_BAND.high:,.0f} Hz that the classifier was "
             f"trained on; record at {2 * DEFAULT_BAND.high:,.0f} Hz or more."
         )
-    if duration < 1.0 or duration * shaft_rate < 20:
+    if duration < 1.0 or duration * shaft_rate < TURNS:
         warnings.append(
             f"The recording is short ({duration:.2g} s, {duration * shaft_rate:.0f} shaft revolutions), so that faint lines cannot be "
-            "told from noise; 10 s are better."
+            f"told from noise; {enough(shaft_rate):,.0f} s are better."
         )
     # a wrong unit is seen by a level that machines do not have
     rms = float(np.std(x))

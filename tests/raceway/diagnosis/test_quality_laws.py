@@ -27,6 +27,7 @@ def test_the_share_of_clipped_samples_is_told(limit):
     [
         (X[:600], FS, RATE, "the recording lasts 0.05 s", "record 10 s"),
         (X, FS, 10 / 60, "the recording lasts 3 s", "record 120 s"),
+        (X, FS, 2.6, "in which the shaft turns 7.8 times at 156 rpm, and 3.08 s are the least (8 turns", "record 10 s"),
         (0 * X, FS, RATE, "the signal is constant", "check sensor"),
         (0 * X + 3.7, FS, RATE, "the signal is constant", "check sensor"),
         (np.arange(X.size) / FS, FS, RATE, "only rise or only fall, as in a column of times", "another column"),
@@ -56,3 +57,9 @@ def test_a_signal_to_be_read_with_care_has_one_warning_and_others_have_none(x, f
     (warning,) = quality_of(x, fs, RATE, ORDERS).warnings
     assert sentence in warning
     assert quality_of(X, FS, RATE, ORDERS) == ("", "", ())
+
+
+def test_a_short_recording_of_a_slow_shaft_is_told_how_long_is_better():
+    (warning,) = quality_of(np.tile(X, 4), FS, 0.8, ORDERS).warnings
+    assert "(12 s, 10 shaft revolutions)" in warning
+    assert "25 s are better" in warning

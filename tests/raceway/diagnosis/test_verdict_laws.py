@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from features.baselines import Model
 from features.baselines.predictions import DAMAGED, UNSURE
 from features.table.durations import windows_of
 from features.table.indicators import Orders
@@ -102,7 +103,7 @@ def test_an_unsure_answer_is_damaged_if_a_fault_is_certain_at_every_pair(chances
             judged(name, pair(RATE + number))._replace(probabilities=chance(none))
             for number, (name, none) in enumerate(zip(names, healthy, strict=True))
         ]
-        return _conclude(USED, GIVEN, each, why.get("elsewhere", ()), why.get("strange"), compared=True)
+        return _conclude(USED, GIVEN, Model(), each, why.get("elsewhere", ()), why.get("strange"), compared=True)
 
     doubted, certain = answer(chances), answer([1 - CERTAIN] * len(chances))
     assert (doubted.verdict, certain.verdict) == (UNSURE, DAMAGED)
@@ -205,7 +206,7 @@ def pair(rate, bearing="6205"):
 
 def concluded(*names, elsewhere=(), strange=None, given=GIVEN):
     each = [judged(name, pair(RATE + number)) for number, name in enumerate(names)]
-    return _conclude(USED, given, each, elsewhere, strange, compared=True)
+    return _conclude(USED, given, Model(), each, elsewhere, strange, compared=True)
 
 
 def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
@@ -233,7 +234,7 @@ def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
 def test_the_first_three_of_the_bearings_that_no_line_tells_apart_are_named(alike, named):
     several = Given(dict.fromkeys(("6004", *alike, "other"), ORDERS), (RATE, RATE))
     each = [judged("outer", pair(RATE, "6004")._replace(alike=alike))]
-    answer = _conclude(USED, several, each, (), None, compared=True)
+    answer = _conclude(USED, several, Model(), each, (), None, compared=True)
     assert answer.sentence.endswith(f"; bearing {named} as found, shaft 1,500 rpm as labelled.")
 
 
@@ -251,7 +252,7 @@ def test_a_comb_that_is_not_explained_makes_every_verdict_unsure_and_names_what_
 
 def test_damaged_tells_the_probability_of_any_fault_and_why_no_part_is_named():
     answer = _conclude(
-        USED, GIVEN, [judged(UNSURE, pair(RATE))._replace(probabilities=chance(0.02))], (), None, compared=True
+        USED, GIVEN, Model(), [judged(UNSURE, pair(RATE))._replace(probabilities=chance(0.02))], (), None, compared=True
     )
     assert answer.sentence.startswith(
         "Damaged (probability of a fault 0.98), but the part is not known: no reason; shaft 1,500 rpm"
