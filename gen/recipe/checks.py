@@ -171,7 +171,7 @@ def _recorded_background(recipe: Sections) -> Iterator[str]:
     if recipe.n_specimens > recorded.stretches:
         yield (
             f"background.recording.stretches: {recorded.stretches} are too few for {recipe.n_specimens} specimens, each of which "
-            "has one of its own; lower corpus.rigs or records, or raise it if the recording is long enough."
+            "has one of its own; lower corpus.rigs or records, shorten recording.duration_s and raise it, or give a longer recording."
         )
 
 

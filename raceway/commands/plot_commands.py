@@ -30,7 +30,7 @@ VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "wat
 @picture_option
 @click.option("--healthy", metavar="I|FILE", help="Record of the same corpus, or recording, drawn under it as healthy.")
 @click.option("--bearing", metavar="BEARING", help="Of a recording: designation such as 6205, or a geometry.")
-@rpm_option
+@rpm_option("a recording needs it, or --speed-column")
 @band_option
 @reading_options
 def plot(

@@ -46,7 +46,7 @@ def _checked_output(context: click.Context, option: click.Parameter, path: Path 
     "that its maker prints: bpfo=3.585,bpfi=5.415,bsf=2.357,ftf=0.398. "
     "Repeat it for alternatives; without it, the whole catalogue is searched.",
 )
-@rpm_option
+@rpm_option("by default the one that the file states, or else 300 to 6,000 rpm are searched")
 @click.option(
     "--speed-table",
     "speed_table",

@@ -19,9 +19,9 @@ from raceway.importing.reading_options import Reading, Speeds, reading_options, 
     metavar="BEARING",
     help="Designation in the catalogue, such as 6205, or a geometry: n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938.",
 )
-@rpm_option
+@rpm_option("by default the one that the first file states")
 @click.option(
-    "--load-n", type=click.FloatRange(0, 1e9), callback=finite, metavar="N", help="Radial load of the bearing."
+    "--load-n", type=click.FloatRange(1, 1e7), callback=finite, metavar="N", help="Radial load of the bearing."
 )
 @click.option("--synthetic", is_flag=True, help="Estimate the background, and keep nothing of the recording.")
 @reading_options

@@ -117,6 +117,7 @@ def imitate(
             title=f"Bearing faults in the machine of {paths[0].name}"[:200],
             segments=len(segments),
             fs=first.fs,
+            rate_given=how.rate is not None,
             duration=duration,
             channels=[re.sub(r"[^A-Za-z0-9_.-]", "_", name)[:64] or "sensor" for name in first.signals],
             bearing=geometry or dict(part.split("=") for part in bearing.split(",")),
@@ -164,7 +165,9 @@ def _doubts(recordings: Sequence[Recorded], drawing: Bearing, speeds: Sequence[f
     for recorded in recordings:
         diagnosis, name = diagnose_recording(recorded, machine, model), Path(recorded.name).name
         if diagnosis.spectrum is None:
-            raise CorpusError(f"{recorded.name}: cannot be imitated. {diagnosis.sentence}")
+            raise CorpusError(
+                f"{recorded.name}: cannot be imitated. {' '.join((diagnosis.sentence, *diagnosis.advice))}"
+            )
         yield from (f"{name}: {warning}" for warning in diagnosis.warnings)
         # a comb that the given speed does not explain is that of a fault too
         if diagnosis.verdict not in (HEALTHY, UNSURE) or diagnosis.elsewhere:

@@ -8,7 +8,7 @@ import numpy as np
 
 from raceway.importing.axes import axes_of
 from raceway.importing.conversion import Unit
-from raceway.importing.header import SECONDS, Header, key_of, known_unit, rounded_rate
+from raceway.importing.header import SECONDS, Header, is_other_quantity, key_of, known_unit, rounded_rate
 from raceway.importing.refused_files import FloatArray, UnusableError
 from raceway.importing.table import NumberTable
 
@@ -71,9 +71,17 @@ class Values(NamedTuple):
         Raises
         ------
         UnusableError
-            If the file states another known unit than the given one, or a unit that is not known and none is given.
+            If the file states another known unit than the given one, a unit that is not known and none is given, or the unit of another
+            quantity such as a velocity.
         """
         stated = known_unit(self.unit)
+        # no option makes an acceleration of a velocity
+        if stated is None and is_other_quantity(self.unit):
+            message = (
+                f"states {self.named} in its header, which is no acceleration and cannot be used; correct the header if it is "
+                "wrong, or choose another column"
+            )
+            raise UnusableError(message, "column")
         if wanted is None and self.unit and stated is None:
             message = f"states {self.named} in its header, which is no unit that is read; give the unit of the values"
             raise UnusableError(message, "unit")

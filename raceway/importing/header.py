@@ -14,10 +14,11 @@ from raceway.importing.conversion import UNITS, Unit
 from raceway.importing.numerals import is_number, number_in
 
 SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "μs": 1e-6, "min": 60.0, "h": 3600.0}
-_OTHERS = re.compile(
-    r"velocity|displacement|temperature|speed|tacho|counts?|lsb|adc|raw|db|gal|ips|volts?|[mc]?m/s|in/s|[uμ]m|mm|mils?|rpm|k?hz|°c|k?pa|bar|k?n|%",
+_NO_ACCELERATION = re.compile(
+    r"velocity|displacement|temperature|speed|tacho|db|ips|[mc]?m/s|in/s|[uμ]m|mm|mils?|rpm|k?hz|°c|k?pa|bar",
     re.IGNORECASE,
-)  # as last word of a name
+)
+_OTHERS = re.compile(r"counts?|lsb|adc|raw|gal|volts?|k?n|%", re.IGNORECASE)  # both as last word of a name
 _NARROW = str.maketrans("（）［］：／", "()[]:/")  # marks of East Asia
 _COARSE = 1e-3  # of a rate, relative
 _LONGEST_UNIT = 12
@@ -176,8 +177,19 @@ def known_unit(unit: str) -> Unit | None:
     return UNITS.get(key_of(unit))
 
 
+def is_other_quantity(unit: str) -> bool:
+    """Whether a unit, as `unit_said` gives it, is one of a velocity, a displacement or another quantity that no acceleration has.
+
+    >>> is_other_quantity("mm/s"), is_other_quantity("x/in/s"), is_other_quantity("counts"), is_other_quantity("mm/s2")
+    (True, True, False, False)
+    """
+    last = re.split(r"[\s_,;]+", unit)[-1]
+    return any(_NO_ACCELERATION.fullmatch(key_of(text)) for text in (unit, last, last.partition("/")[2]))
+
+
 def _is_unit(text: str) -> bool:
-    return key_of(text) in UNITS or key_of(text) in SECONDS or _OTHERS.fullmatch(key_of(text)) is not None
+    key = key_of(text)
+    return key in UNITS or key in SECONDS or any(units.fullmatch(key) for units in (_NO_ACCELERATION, _OTHERS))
 
 
 def _common_unit(lines: Sequence[list[str]], names: tuple[str, ...]) -> str:

@@ -75,13 +75,12 @@ def mark_of(_context: click.Context, _option: click.Parameter, name: str | None)
     return MARKS.get(name or "")
 
 
-rpm_option: Decorator = click.option(
-    "--rpm",
-    "speeds",
-    callback=_speeds,
-    metavar="RPM",
-    help="Speed of the shaft during the recording, or a range such as 1400-1900; without it, 300 to 6,000 rpm are searched.",
-)
+def rpm_option(without: str) -> Decorator:
+    """Make the option of the speed; ``without`` says what holds without it."""
+    what = f"Speed of the shaft during the recording, or a range such as 1400-1900; {without}."
+    return click.option("--rpm", "speeds", callback=_speeds, metavar="RPM", help=what)
+
+
 _rate: Decorator = click.option(
     "--rate",
     type=click.FloatRange(1, 1e8),

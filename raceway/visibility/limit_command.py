@@ -46,7 +46,8 @@ def limit(
 
     says that spalls of 0.163 mm on the outer race are seen in 90 % of the records, and those of 0.131 mm in half of them. It holds for
     records of this length: change duration_s of the recipe for others. Draw widths from too faint to plain, such as loguniform(0.05, 2),
-    and make 100 or more records of each class, the healthy one too. The corpus of a recipe is not kept, and faults that cannot be seen
+    and make 100 or more records of each class, the healthy one too. With a recorded background, as of raceway imitate, the recording
+    must be long enough for them, or the records shorter. The corpus of a recipe is not kept, and faults that cannot be seen
     are not drawn again. The picture has the share seen over the size.
     """
     from features.baselines.records import HEALTHY_CODE
@@ -68,7 +69,7 @@ def limit(
     if healthy * FALSE_ALARMS < 1:
         notice(
             f"warning: {healthy} healthy records are too few for false alarms of 1 %: the classifier must exceed the highest of them; make "
-            f"100 or more."
+            "100 or more. On a recorded background this needs a longer recording, or shorter records."
         )
     if output is not None:
         from raceway.reports.pictures import write_picture

@@ -11,7 +11,7 @@ import raceway
 from features.baselines import Model
 from gen.corpus import sha256
 from gen.recipe import read_recipe
-from gen.support.errors import CorpusError
+from gen.support.errors import CorpusError, RecipeError
 from tests.diagnoses import FS
 
 RPM, G = 1772, 9.80665
@@ -113,6 +113,7 @@ def test_several_recordings_and_channels_are_kept_in_their_order(signals):
         np.savetxt(f"{number}.csv", x[:size], delimiter=",", header="x [m/s²],y [m/s²]", comments="", fmt="%.8g")
     keys = {"bearing": "n_balls=9,pitch_diameter_mm=39,ball_diameter_mm=7.9", "rate": FS}
     done = raceway.imitate(["0.csv", "1.csv"], "two.yaml", rpm=(1700, 1800), **keys)
+    assert f"sample_rate_hz: {FS}  # given" in done.recipe.read_text()
     recipe = read_recipe(done.recipe)
     assert [channel.name for channel in recipe.recording.channels] == ["x", "y"]
     assert recipe.operation.shaft_rpm.support() == (1700, 1800)
@@ -158,7 +159,11 @@ def test_what_cannot_be_imitated_gets_one_sentence_and_leaves_nothing(write, sig
             {},
             "b.csv: has another sample rate or other channels than",
         ),
-        (write("flat.csv", np.ones(24_000)), {}, "flat.csv: cannot be imitated. Unsure: the signal is constant"),
+        (
+            write("flat.csv", np.ones(24_000)),
+            {},
+            "flat.csv: cannot be imitated. Unsure: the signal is constant, as of a sensor or cable that is not connected. Check sensor,",
+        ),
         (write("speed.csv"), {"rpm": None}, "speed.csv: does not state its speed; give it with --rpm RPM."),
         ("none.csv", {}, "none.csv: could not be read (No such file or directory); check the path."),
         (
@@ -184,3 +189,12 @@ def test_a_speed_that_is_none_is_refused_before_anything_is_written(write, tmp_p
     with pytest.raises(CorpusError, match=r"rpm: .* is no speed and no range such as 1400-1900"):
         raceway.imitate(recording, tmp_path / "machine.yaml", bearing="6205", rpm=rpm)
     assert list(tmp_path.iterdir()) == [recording]
+
+
+@pytest.mark.parametrize("load", [0, 0.5, 2e7])
+def test_the_range_of_the_load_is_that_of_a_recipe(run, write, load):
+    # of the option, before anything is read
+    result = run("imitate", write(), "--bearing", "6205", "--rpm", RPM, "--load-n", load, "-o", "machine.yaml")
+    assert (result.exit_code, "'--load-n'" in result.stderr, "1<=x<=10000000.0" in result.stderr) == (2, True, True)
+    with pytest.raises(RecipeError, match=r"operation.load_n: .* is not in \[1, 1e\+07\]"):
+        gen.record(None, load_n=load)

@@ -308,12 +308,13 @@ REFUSED = {  # file, content or writer, what is given, part of the sentence
     "other_unit.csv": (THREE, {"column": 1, "unit": "m/s2"},
                        "states column 1 DE [g] in its header, and the unit m/s2 is given; correct what is given with --unit."),
     "volts.csv": (text(T, X, header="t [s];x [mV]\n"), {}, "the unit is mV and the sensitivity of the sensor is missing"),
-    "velocity.csv": (text(T, X, header="t [s];v [mm/s]\n"), {},
-        "states column 1 v [mm/s] in its header, which is no unit that is read; give the unit"),
+    **{f"quantity_{n}.csv": (text(T, X, header=f"t [s];{name}\n"), unit,
+        f"states column 1 {name} in its header, which is no acceleration and cannot be used; correct") for n, (name, unit) in enumerate(
+            (name, unit) for unit in ({}, {"unit": "g"}) for name in
+            ("v [mm/s]", "x (dB)", "x [in/s]", "x/in/s", "s (µm)", "Velocity", "x [m/s]", "p [kPa]"))},
     **{f"unit_{n}.csv": (text(T, X, header=f"t [s];{name}\n"), {}, UNIT) for n, name in enumerate(
-        ["x [counts]", "x (dB)", "x [A]", "x [Gal]", "x [in/s]", "x/in/s", "x [G]", "x [g rms]", "s (µm)", "x []", "accel_g", "Velocity",
-        "Beschl. m/s²",
-         "raw counts", "x (filtered)", "Acc V", "S/mV/g", "x [m/s]", "Spannung [Volt]"])},
+        ["x [counts]", "x [A]", "x [Gal]", "x [G]", "x [g rms]", "x []", "accel_g", "Beschl. m/s²",
+         "raw counts", "x (filtered)", "Acc V", "S/mV/g", "Spannung [Volt]"])},
     "unit_row.csv": (text(T, X, header="t;x\ns;counts\n"), {}, UNIT),
     "unit_line.csv": (text(T, X, header="Einheit: g\nt [s];x\n"), {}, UNIT),
     "sensitivity.txt": (text(X, header="Sensitivity: 100 mV/g\nx\n"), AT, UNIT),

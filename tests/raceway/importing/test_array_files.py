@@ -117,7 +117,7 @@ def test_scales_of_tdms_channels_are_applied(tmp_path):
 
 
 REFUSED = {
-    "pressure.tdms": (lambda path: tdms(path, ("p", "Pa", X)), "states column 0 p in Pa in its header, which is no unit that is read"),
+    "pressure.tdms": (lambda path: tdms(path, ("p", "Pa", X)), "states column 0 p in Pa in its header, which is no acceleration"),
     "several.tdms": (lambda path: tdms(path, ("p", "g", X), ("q", "g", Y)), "has 2 columns (0 p, 1 q) and none is chosen; choose one with"),
     "empty.tdms": (lambda path: tdms(path), "holds no column of numbers"),
     "damaged.tdms": (lambda path: path.write_bytes(b"TDSm" + bytes(40)), "is truncated, damaged or not a TDMS file"),

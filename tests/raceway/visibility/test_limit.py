@@ -120,6 +120,7 @@ def test_few_healthy_records_are_told_and_a_corpus_takes_no_number_of_records(ru
     sized(tmp_path / "corpus")
     result = run("limit", tmp_path / "corpus", "--workers", 1)
     assert "warning: 30 healthy records are too few for false alarms of 1 %" in result.stderr
+    assert "On a recorded background this needs a longer recording" in result.stderr
     assert result.stdout.splitlines()[-1] == "Records of 0.2 s."
     refused = run("limit", tmp_path / "corpus", "--records", 10)
     assert refused.exit_code == 2
