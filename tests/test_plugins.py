@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -217,6 +218,90 @@ def test_a_plugin_that_cannot_be_loaded_is_named_and_the_others_work(tmp_path):
         2,
         f"{sentence} (ModuleNotFoundError: No module named 'no_such_module'); install another version, or uninstall it.\n",
     )
+
+
+FAILING = """
+import click
+import numpy as np
+from raceway_example import Brinelled, CROSSINGS, Hiss, StuckBits
+from gen.corpus.fault_classes import BPFO, FaultClass
+from typing import Literal
+from features.table.feature_group import Feature, FeatureGroup
+from raceway.importing.assemble import Importer
+
+CRACKED = FaultClass("cracked", BPFO, words="Cracked outer race", companion="outer")
+
+class Cracked(Brinelled):
+    kind: Literal["cracked"]
+
+    def draw(self, of):
+        return of.nope
+
+class Leak(Hiss):
+    place = "leak"
+
+    def vibrations(self, angles, fs, stream):
+        return [self.si()["levl"]]
+
+class Bent(StuckBits):
+    place, labels = "bent", ()
+
+    def disturb(self, signal, fs, rng):
+        return {}["bend"]
+
+def count(batch):
+    return np.ones(3)[batch.x.shape[0] + 7]
+
+COUNTS = FeatureGroup((Feature("counts", "counts", "n"),), count)
+
+def read(source, output, *, window=0.5, progress=None):
+    raise ValueError("no header")
+
+READ = Importer("Recordings.", read)
+
+@click.command()
+def fall():
+    int("x")
+"""
+
+
+def test_an_error_in_the_code_of_a_plugin_names_it_and_its_line(installed, made, tmp_path):
+    (tmp_path / "failing_code.py").write_text(FAILING)
+    groups = {
+        "mechanisms": {"leak": "Leak", "cracked": "Cracked", "bent": "Bent"},
+        "classes": {"cracked": "CRACKED"},
+        "features": {"counts": "COUNTS"},
+        "importers": {"read": "READ"},
+        "commands": {"fall": "fall"},
+    }
+    entries = {
+        f"raceway.{group}": {name: f"failing_code:{of}" for name, of in names.items()}
+        for group, names in groups.items()
+    }
+    failing = distribution(tmp_path, "failing", "2.0", entries)
+    for name, (old, new) in {
+        "leak": ("hiss", "leak"),
+        "cracked": ("brinelled", "cracked"),
+        "bent": ("stuck_bits", "bent"),
+    }.items():
+        (tmp_path / f"{name}.yaml").write_text(RECIPE.replace(old, new))
+    folder, _ = made
+    told = {
+        "generate leak.yaml -o a --workers 1": "vibrations(): KeyError: 'levl'",
+        "generate leak.yaml -o b --workers 2": "vibrations(): KeyError: 'levl'",
+        "generate cracked.yaml -o c": "draw(): AttributeError: ",
+        "generate bent.yaml -o d": "disturb(): KeyError: 'bend'",
+        f"features {folder}/corpus --group counts -o f.nc": "count(): IndexError: ",
+        f"import read {folder}/recorded -o e": "read(): ValueError: no header",
+        "fall": "fall(): ValueError: invalid literal",
+    }
+    for (line, sentence), (code, said) in zip(told.items(), run(tmp_path, [*told], installed, failing), strict=True):
+        assert code == 2, (line, said)
+        last = said.splitlines()[-1]
+        assert re.match(r"failing 2\.0: failing_code\.py, line \d+, in ", last), (line, said)
+        assert sentence in last, (line, said)
+        number = int(re.search(r"line (\d+)", last)[1])
+        assert FAILING.splitlines()[number - 1].strip().startswith(("return", "raise", "int"))
 
 
 def test_the_page_shows_the_example():

@@ -93,14 +93,19 @@ def check_submission(
         raise CorpusError(
             f"{path}: is no table of predictions; give a file with the predictions of a submission."
         ) from None
-    # numbers, identities and folds prove that the tested records are those of the protocol
-    if not submitted.iloc[:, : len(TESTED)].equals(frame.astype(str).reset_index(drop=True)):
+    # numbers, identities and folds prove that the tested records are those of the protocol, in whatever order they stand
+    wanted = frame.astype(str).sort_values("record")
+    if "record" in submitted:
+        submitted = submitted.sort_values("record", ignore_index=True)
+    if not submitted.iloc[:, : len(TESTED)].equals(wanted.reset_index(drop=True)):
         raise CorpusError(
             f"{path}: does not have the {len(frame)} tested records of {folds} folds by {track} with seed {seed} of this corpus; "
             "give the options and the corpus that it was made with."
         )
     if len(submitted.columns) == len(TESTED):
         raise CorpusError(f"{path}: has no predictions; add a column of classes, named after the classifier.")
+    # in the order of the corpus, on which the bootstrap depends
+    submitted = submitted.set_index(wanted.index).loc[frame.index]
     tested = records.at(frame.index.to_numpy())
     return {str(name): _scores(tested, submitted[name], f"{path}: {name}", seed) for name in submitted.columns[3:]}
 

@@ -1,15 +1,19 @@
 """Plug-ins: what other distributions add to Raceway by entry points.
 
 The names of a group are known before anything of a plug-in is imported; its object is loaded when it is first used. Groups are
-``raceway.mechanisms``, ``raceway.classes``, ``raceway.features``, ``raceway.importers`` and ``raceway.commands``.
+``raceway.mechanisms``, ``raceway.classes``, ``raceway.features``, ``raceway.importers`` and ``raceway.commands``. An error in the code of a
+plug-in goes on to the command line, which names the plug-in (`error_of_plugin`).
 """
 
 import functools
+import traceback
 from collections.abc import Container, Iterable, Mapping
 from importlib.metadata import Distribution, EntryPoint, entry_points
 from typing import Any
 
 from gen.support.errors import RacewayError
+
+GROUPS = ("mechanisms", "classes", "features", "importers", "commands")
 
 
 @functools.cache
@@ -56,6 +60,25 @@ def unusable(group: str, name: str, reason: str) -> RacewayError:
         f"{_distribution(plugins(group)[name])}: its {name} in raceway.{group} cannot be used ({reason}); install another version, or "
         "uninstall it."
     )
+
+
+def error_of_plugin(error: BaseException) -> RacewayError | None:
+    """Error that names the plug-in, and the last line of its code, that another error came through; None if it came through none.
+
+    A plug-in is called in many places, and its line tells more than the place. The frames of a worker process are among those of the error.
+    """
+    entries = [entry for group in GROUPS for entry in entry_points(group=f"raceway.{group}")]
+    packages = {entry.module.partition(".")[0]: entry for entry in entries}
+    named = None
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        entry = packages.get(frame.f_globals.get("__name__", "").partition(".")[0])
+        if entry is not None:
+            place = f"{frame.f_code.co_filename.rpartition('/')[2]}, line {line}"
+            named = RacewayError(
+                f"{_distribution(entry)}: {place}, in {frame.f_code.co_name}(): {type(error).__name__}: {error}; correct the plug-in, or "
+                "uninstall it."
+            )
+    return named
 
 
 def plugin_versions(group: str, names: Container[str]) -> dict[str, str]:

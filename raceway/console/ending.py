@@ -77,6 +77,8 @@ def _verdict(error: BaseException) -> tuple[int, str]:
                 BAD_INPUT,
                 f"this needs the Python module {package}, which is not installed; install the package that has it.",
             )
+        case _ if (of_plugin := _error_of_plugin(error)) is not None:
+            return BAD_INPUT, str(of_plugin)
         case _:
             what = f"{type(error).__name__}: {error}"
             return INTERNAL_ERROR, f"internal error ({what}); please report it with the output of RACEWAY_TRACEBACK=1."
@@ -91,6 +93,12 @@ def _is_foreseen(error: BaseException) -> bool:
     """Whether ``gen`` or ``features`` raised the error on purpose; their errors exist only if ``gen.support.errors`` is loaded."""
     errors = sys.modules.get("gen.support.errors")
     return errors is not None and isinstance(error, errors.RacewayError)
+
+
+def _error_of_plugin(error: BaseException) -> Exception | None:
+    from gen.support.plugins import error_of_plugin  # not at the top: help needs nothing of gen
+
+    return error_of_plugin(error)
 
 
 def printable(text: str) -> str:

@@ -18,6 +18,7 @@ SECONDS_BETWEEN_LINES = 10.0
 SECONDS_BETWEEN_RENEWALS = 0.5
 BURST_S = 1.0  # records of a batch are reported together, and parts that were kept from before are too
 BURSTS_IN_SPEED = 32
+UNEVEN = ("scores", "corpora", "curves and classifiers")  # units of very different times, which tell no time left
 
 
 @contextmanager
@@ -79,7 +80,7 @@ def _notebook_line() -> Callable[[str], None] | None:
 
 
 def _pace(unit: str) -> Callable[[int, int], str]:
-    """Speed between the first and the last of the latest bursts of reports, and time left at that speed."""
+    """Speed between the first and the last of the latest bursts of reports, and time left at that speed if units take about the same."""
     bursts: deque[tuple[float, int]] = deque(maxlen=BURSTS_IN_SPEED)
 
     def pace(done: int, total: int) -> str:
@@ -92,7 +93,7 @@ def _pace(unit: str) -> Callable[[int, int], str]:
         if after == before:
             return "speed not known yet" if done < total else ""
         rate = (after - before) / (latest - then)
-        left = f", {show.duration((total - done) / rate)} left" if done < total else ""
+        left = f", {show.duration((total - done) / rate)} left" if done < total and unit not in UNEVEN else ""
         return f"{f'{rate:,.3g} {unit}'.rstrip()}/s{left}"
 
     return pace

@@ -122,6 +122,10 @@ def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, t
         same = ("balanced_accuracy", "false_alarms", "records")
         assert [checked[name][figure] for figure in same] == [getattr(scores, figure) for figure in same]
         assert checked[name]["interval"] == list(scores.interval)
+    # rows may stand in any order
+    header, *rows = file.read_text().splitlines()
+    (tmp_path / "reversed.csv").write_text("\n".join([header, *rows[::-1]]))
+    assert told("benchmark", tiny_corpus, *protocol, "--check", tmp_path / "reversed.csv") == checked
     # beside the baselines of a report
     line = (
         "benchmark",

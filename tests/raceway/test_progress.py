@@ -42,6 +42,13 @@ def test_speed_and_time_left_are_those_between_the_bursts(clock):
     assert said == "2 records/s, 25 s left"
 
 
+def test_units_of_very_different_times_tell_no_time_left(clock):
+    pace = progress_bar._pace("scores")
+    pace(10, 200)
+    clock[0] = 10.0
+    assert pace(20, 200) == "1 scores/s"
+
+
 def test_a_notebook_renews_one_line(clock, lines, monkeypatch):
     shown = []
     line = SimpleNamespace(update=lambda data, **_: shown.append(data["text/plain"]))
