@@ -193,7 +193,7 @@ def _read_manifest(path: Path, check: Check) -> Manifest:
     if path.is_file():
         # before a library opens it
         if check == "sha256" and not has_whole_bytes(path):
-            raise CorpusError(_altered(path))
+            raise CorpusError(_altered(path) if path.suffix == ".nc" else _other_form(path))
         return _manifest_of_file(path)
     if not path.is_dir():
         # a single file is generated from parts beside it
@@ -203,6 +203,8 @@ def _read_manifest(path: Path, check: Check) -> Manifest:
             f"{path}: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file."
         )
     if not (path / MANIFEST_NAME).exists():
+        if any(path.glob("data/*.parquet")):
+            raise CorpusError(_other_form(path))
         raise CorpusError(f"{path}: has no manifest.json, so it is not a corpus; make one with raceway generate.")
     place = plain_file(path, MANIFEST_NAME)
     # before memory is taken for it
@@ -296,6 +298,13 @@ def _altered(file: Path, place: str = "at its end") -> str:
     return (
         f"{file}: its bytes do not have the hash that Raceway stored {place}: it is another file, such as a feature table, or is altered, "
         f"cut off or rewritten by another program; give a corpus, copy it again, or make it again."
+    )
+
+
+def _other_form(path: Path) -> str:
+    return (
+        f"{path}: is no corpus, which is a folder with manifest.json or one .nc file; a copy in another form, such as .parquet, holds no "
+        "hashes to check, so compare the SHA-256 of its files with those that its maker states."
     )
 
 

@@ -103,17 +103,19 @@ def keys_of(name: str, stored: str) -> dict[str, float]:
 
 
 def shown_unit(name: str, stored: str) -> tuple[str, float]:
-    """Unit in which a quantity of a corpus is shown, and its factor: speeds in rpm, widths in mm, other lengths in um, angles in deg.
+    """Unit in which a quantity of a corpus is shown, and its factor.
 
-    >>> shown_unit("shaft_rate", "Hz"), shown_unit("depth", "m"), shown_unit("load", "N")
-    (('rpm', 0.016666666666666666), ('um', 1e-06), ('N', 1.0))
+    Speeds are shown in rpm, widths in mm, other lengths in um, angles in deg, and times, which are ages and lives, in h.
+
+    >>> shown_unit("shaft_rate", "Hz"), shown_unit("depth", "m"), shown_unit("load", "N"), shown_unit("rul", "s")
+    (('rpm', 0.016666666666666666), ('um', 1e-06), ('N', 1.0), ('h', 3600.0))
     """
     if name.endswith("shaft_rate"):
         unit = "rpm"
     elif stored == "m":
         unit = "mm" if name.endswith("width") else "um"
     else:
-        unit = "deg" if stored == "rad" else stored
+        unit = {"rad": "deg", "s": "h"}.get(stored, stored)
     return unit, READABLE.get(stored, {}).get(unit, 1.0)
 
 

@@ -45,7 +45,10 @@ WORTH_WORKERS = 400  # records; up to these, starting a process takes about as l
     help="List recipe keys that begin with PREFIX instead.",
 )
 @click.option(
-    "--schema", is_flag=True, help="Print the JSON schema of recipes instead, for editors that complete and check keys."
+    "--schema",
+    is_flag=True,
+    help="Print the JSON schema of recipes instead, for editors that complete and check keys; it checks no arguments of distributions "
+    "and no keys against each other, as raceway plan does.",
 )
 @json_option
 def recipes(prefix: str | None, schema: bool, as_json: bool) -> None:
@@ -286,11 +289,13 @@ def validate(corpus: Path, as_json: bool) -> int:
 
       raceway validate corpus && echo sound
     """
-    from gen.corpus import read_manifest, validate_corpus
+    from gen.corpus import is_single_file, read_manifest, validate_corpus
     from raceway.sharing import croissant_problems
 
-    if not corpus.is_file() and not (corpus / "manifest.json").exists():
-        read_manifest(corpus)  # raises: a folder without a manifest is bad input, not a damaged corpus
+    if not (corpus.is_file() and is_single_file(corpus)) and not (corpus / "manifest.json").exists():
+        read_manifest(
+            corpus
+        )  # raises: a folder without a manifest, or another file, is bad input, not a damaged corpus
     problems = validate_corpus(corpus) or croissant_problems(corpus)
     warnings: list[str] = []
     if not problems:

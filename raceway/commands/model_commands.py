@@ -174,9 +174,10 @@ def calibration_text(calibration: "Calibration") -> str:
         return "Not calibrated: every record is answered."
     from features.baselines import percent_text
 
+    least = f"at least {percent_text(calibration.threshold)}".replace("at least >", "more than")
     return (
         f"Calibrated on {calibration.by}s outside the training: answers {100 * calibration.coverage:.0f} % of their records, those with "
-        f"a largest probability of at least {percent_text(calibration.threshold)}, and is unsure of the others."
+        f"a largest probability of {least}, and is unsure of the others."
     )
 
 
@@ -257,4 +258,5 @@ def _figures(scores: "Scores") -> tuple[str, ...]:
 
 
 def _shown(figure: float | None) -> str:
-    return "none" if figure is None else f"{figure:.3f}"
+    """Figure, or that there are no records to tell it."""
+    return "not known" if figure is None else f"{figure:.3f}"

@@ -4,6 +4,7 @@
 """
 
 import os
+import re
 import sys
 import traceback
 from collections.abc import Callable
@@ -54,7 +55,7 @@ def _verdict(error: BaseException) -> tuple[int, str]:
             return BAD_INPUT, f"{ctx.command_path}: a model is no argument; give it with --model FILE.skops."
         case click.UsageError():
             command = error.ctx.command_path if error.ctx else "raceway"
-            return BAD_INPUT, f"{command}: {error.format_message().rstrip('.')}; see {command} --help."
+            return BAD_INPUT, f"{command}: {_in_plain_words(error.format_message().rstrip('.'))}; see {command} --help."
         case click.ClickException():
             return error.exit_code, error.format_message()
         case _ if _is_foreseen(error):
@@ -82,6 +83,16 @@ def _verdict(error: BaseException) -> tuple[int, str]:
         case _:
             what = f"{type(error).__name__}: {error}"
             return INTERNAL_ERROR, f"internal error ({what}); please report it with the output of RACEWAY_TRACEBACK=1."
+
+
+def _in_plain_words(message: str) -> str:
+    """Message of click, which calls a number by the type of its option.
+
+    >>> _in_plain_words("'12 kHz' is not a valid float range"), _in_plain_words("'2.5' is not a valid integer range")
+    ("'12 kHz' is no number; give it without a unit", "'2.5' is no whole number")
+    """
+    message = re.sub("is not a valid float( range)?", "is no number; give it without a unit", message)
+    return re.sub("is not a valid integer( range)?", "is no whole number", message)
 
 
 def _of_all_commands(context: click.Context) -> list[str]:

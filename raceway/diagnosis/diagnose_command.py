@@ -85,10 +85,10 @@ def diagnose(
 ) -> None:
     """Diagnose the bearing in a vibration recording.
 
-    RECORDING is a .csv, .txt, .tsv, .dat, .lvm, .xlsx, .npy, .mat or .wav file of at least 0.05 s and 3 kHz, better 10 s and 20 kHz. The
-    answer is one sentence: what is wrong, how sure that is, and which lines of the signal tell it; or "unsure", with the reason and what
-    would help. For a FOLDER it is a table with a row for each recording; a file that states another rate or unit than the options is read
-    as it states.
+    RECORDING is a .csv, .txt, .tsv, .dat, .lvm, .xlsx, .npy, .mat or .wav file of at least 8 turns of the shaft and 3 kHz, better 10 s and
+    20 kHz. The answer is one sentence: what is wrong, how sure that is, and which lines of the signal tell it; or "unsure", with the reason
+    and what would help. For a FOLDER it is a table with a row for each recording; a file that states another rate or unit than the options
+    is read as it states.
 
       raceway diagnose pump.csv --bearing 6205 --rpm 1772 --rate 12000 --unit g -o pump.html
       raceway diagnose fan.wav --bearing 6205 --rpm 1400-1600

@@ -106,9 +106,9 @@ _channels: Decorator = click.option(
     "channels",
     callback=lambda *arguments: names(*arguments) or (),
     metavar="A,B,C",
-    help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB or .npz file (* for any letters); "
-    "several are the axes of one housing. By default all axes of one sensor, as names or their absence tell: x, y, z, ch1, ch2, ch3, or "
-    "three columns.",
+    help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB or .npz file, also by a "
+    "pattern such as '*_DE_time'; several are the axes of one housing. By default all axes of one sensor, as names or their absence tell: "
+    "x, y, z, ch1, ch2, ch3, or three columns.",
 )
 _variable: Decorator = click.option(
     "--variable",

@@ -25,7 +25,9 @@ RING, HIGHEST = 0.45, 1.0  # thickness of a ring, and height of the load zone, i
 
 @rc_context(STYLE)
 def plot_bearing(bearing: str | Mapping[str, Any], load_n: float = 500.0, clearance_um: float = 0.0) -> Figure:
-    """Draw a bearing with its load zone, and the path of a point on a ball while the cage turns once; a notebook shows the figure.
+    """Draw a bearing with its load zone, and the path of a point on a ball while the cage turns once.
+
+    A notebook shows the figure, and ``figure.savefig("bearing.png")`` writes it; it is none of pyplot, so ``plt.savefig`` writes another.
 
     Parameters
     ----------

@@ -51,8 +51,8 @@ def draw_overview(corpus: xr.Dataset) -> Figure:
 
 def _example(corpus: xr.Dataset, code: int) -> tuple[DrawnRecord | None, str]:
     """Record whose level at the fault lines is the median over some records of the class, and its caption; None if none can be drawn."""
-    numbers = np.flatnonzero(corpus["fault"].values == code)
-    numbers = numbers[np.linspace(0, len(numbers) - 1, min(CANDIDATES, len(numbers))).astype(int)]
+    of_class = np.flatnonzero(corpus["fault"].values == code)
+    numbers = of_class[np.linspace(0, len(of_class) - 1, min(CANDIDATES, len(of_class))).astype(int)]
     several = corpus.sizes["channel"] > 1
     shown = {int(n): shown_of(corpus.isel(record=n), int(n), 0, named=several) for n in numbers}
     levels = {n: _line_level(record) for n, record in shown.items() if can_be_drawn(record)}
@@ -60,7 +60,9 @@ def _example(corpus: xr.Dataset, code: int) -> tuple[DrawnRecord | None, str]:
         return None, "No record of this class has a signal, a shaft rate and fault orders to draw."
     number = sorted(levels, key=lambda n: levels[n])[len(levels) // 2]
     conditions = _conditions(corpus.isel(record=number))
-    return shown[number], f"{conditions}; the median of {len(levels)} records by the level of the fault lines."
+    some = f"{len(levels)} of the " if len(levels) < len(of_class) else "the "
+    told = f"the median of {some}{len(of_class)} records of its class by the level of the fault lines"
+    return shown[number], f"{conditions}; {told}."
 
 
 def _conditions(record: xr.Dataset) -> str:

@@ -5,20 +5,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from features.signal.arguments import fault_orders
 from features.signal.cyclic import Coherence
 from features.signal.impulsive import BandTree
 from features.signal.orders import OrderMap
 from features.signal.rows import FloatArray
+from features.table.indicators import Orders
+from gen.corpus.fault_classes import UNKNOWN
 from gen.support.units import from_si
-from raceway.reports.pictures import VERMILION
+from raceway.reports.pictures import INK, VERMILION, fault_lines, highest_drawn_order, name_lines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+HIGHEST_ORDER = 20.0  # shown of an order map: three harmonics of the lines of most bearings
 BRIGHTEST_DB = 20.0  # level drawn black in an order map, above the median
 COLUMNS = 340  # of a map
 EMPTY = 1e-4  # of the highest amplitude of a window: the filter of resampling leaves less beyond half the sample rate
@@ -27,7 +32,13 @@ NEAR_ZERO = 12  # first cyclic frequencies, at which any signal is coherent with
 ONE_FALSE_ALARM = 0.01  # expected in a whole map of coherence of noise
 
 
-def plot(result: BandTree | OrderMap | Coherence, axes: Axes | None = None, *, record: int = 0) -> Axes:
+def plot(
+    result: BandTree | OrderMap | Coherence,
+    axes: Axes | None = None,
+    *,
+    record: int = 0,
+    orders: Sequence[float] | None = None,
+) -> Axes:
     """Draw a result of `features.signal.kurtogram`, `comb_bands`, `order_map` or `spectral_coherence`.
 
     Parameters
@@ -38,12 +49,19 @@ def plot(result: BandTree | OrderMap | Coherence, axes: Axes | None = None, *, r
         Axes of matplotlib; by default the current ones of pyplot.
     record
         Place of the drawn record among several.
+    orders
+        Nominal fault orders ``ftf, bpfo, bpfi, bsf`` whose lines are drawn over an order map, up to the third harmonics; without them it is
+        shown up to order 20, and ``axes.set_xlim`` shows more.
 
     Raises
     ------
     TypeError
         For another result.
+    ValueError
+        If orders are given with another result than an order map.
     """
+    if orders is not None and not isinstance(result, OrderMap):
+        raise ValueError("orders: are drawn over an order map alone; leave them out.")
     if axes is None:
         from matplotlib import pyplot as plt
 
@@ -56,7 +74,8 @@ def plot(result: BandTree | OrderMap | Coherence, axes: Axes | None = None, *, r
             amplitude = result.amplitude if result.amplitude.ndim == 2 else result.amplitude[record]
             level = level_over_median(amplitude[:, 1:])
             draw_grid(axes, (result.orders[1:], result.turns, level), (0.0, BRIGHTEST_DB), "dB above the median")
-            axes.set(xlabel="order of the shaft", ylabel="turns of the shaft")
+            top = HIGHEST_ORDER if orders is None else _draw_lines(axes, orders)
+            axes.set(xlabel="order of the shaft", ylabel="turns of the shaft", xlim=(0, min(top, result.orders[-1])))
         case Coherence():
             squared = result.squared if result.squared.ndim == 2 else result.squared[record]
             draw_coherence(axes, result, squared, NEAR_ZERO, 1.0, 1e3)
@@ -64,6 +83,17 @@ def plot(result: BandTree | OrderMap | Coherence, axes: Axes | None = None, *, r
         case _:
             raise TypeError(f"plot: {type(result).__name__} is not a BandTree, OrderMap or Coherence.")
     return axes
+
+
+def _draw_lines(axes: Axes, orders: Sequence[float]) -> float:
+    """Draw the fundamental lines of all classes with their names; return the order at which the axis ends."""
+    named = Orders(*(np.asarray(order, dtype=float) for order in fault_orders(orders, "orders")))
+    own, lines = fault_lines(named, UNKNOWN)
+    for order in lines.values():
+        axes.axvline(order, color=VERMILION, linewidth=0.7, linestyle=(0, (2, 2)))
+    top = highest_drawn_order(own, lines)
+    name_lines(axes, own, lines, INK, top)
+    return top
 
 
 def _draw_bands(axes: Axes, tree: BandTree, score: FloatArray) -> None:

@@ -57,7 +57,9 @@ def plot_record(
     channel: int | str = 0,
     band: tuple[float, float] = DEFAULT_BAND,
 ) -> Figure:
-    """Draw a record as ``raceway plot`` does; a notebook shows the figure.
+    """Draw a record as ``raceway plot`` does.
+
+    A notebook shows the figure, and ``figure.savefig("record.png")`` writes it; it is none of pyplot, so ``plt.savefig`` writes another.
 
     Parameters
     ----------

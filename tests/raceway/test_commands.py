@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from features.baselines.calibration import UNCALIBRATED
 from features.table.indicators import feature_names
 from features.table.table_files import read_table
 from gen.corpus import FAULTS, SIGNAL, open_corpus
 from gen.support.limits import VARIABLE
 from raceway.cli import GROUPS, cli
+from raceway.commands.model_commands import calibration_text
 from tests.command_tree import commands
 from tests.labels import write_labels
 
@@ -249,6 +251,29 @@ def test_evaluate_gives_the_figures_over_the_classes_present(run, told, tiny_cor
     assert line[2] == f"{scores['balanced_accuracy']:.3f}"
     (line,) = (line.split() for line in shown.splitlines() if line.startswith("false alarms on healthy"))
     assert line[4] == f"{scores['false_alarms']:.3f}"
+
+
+def test_figures_without_records_are_not_known_and_no_threshold_is_at_least_more(run, tiny_corpus, model, tmp_path):
+    faulty = tmp_path / "faulty.nc"
+    run("copy", tiny_corpus, "-o", faulty, "--where", "fault != 'healthy'")
+    shown = run("evaluate", faulty, "--model", model).stdout
+    (line,) = (line for line in shown.splitlines() if line.startswith("false alarms on healthy"))
+    assert line.split()[-2:] == ["not", "known"]
+    for threshold, words in ((0.9999, "of more than 99.9 %,"), (0.8, "of at least 80 %,")):
+        assert words in calibration_text(UNCALIBRATED._replace(by="rig", threshold=threshold))
+
+
+@pytest.mark.parametrize("form", [("copy.parquet",), ("hub", "--to", "huggingface")], ids=["parquet", "huggingface"])
+def test_a_copy_in_another_form_is_told_as_one_that_cannot_be_checked(run, tiny_corpus, tmp_path, form):
+    pytest.importorskip("pyarrow")
+    copied = tmp_path / form[0]
+    assert run("copy", tiny_corpus, "-o", copied, *form[1:]).exit_code == 0
+    result = run("validate", copied)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert (
+        "holds no hashes to check, so compare the SHA-256 of its files with those that its maker states"
+        in result.stderr
+    )
 
 
 def test_recordings_are_imported_and_counted(run, told, tmp_path):

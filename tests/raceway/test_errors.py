@@ -135,7 +135,7 @@ READERS = {
 }  # fmt: skip
 NO_CORPORA = {
     "nowhere": "nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file.",
-    "file": "file.txt: its bytes do not have the hash that Raceway stored",
+    "file": "file.txt: is no corpus, which is a folder with manifest.json or one .nc file; a copy in another form",
     "table": "table.nc: its bytes do not have the hash that Raceway stored at its end: it is another file, such as a feature table",
     "folder": "folder: has no manifest.json, so it is not a corpus; make one with raceway generate.",
     "no_json": "manifest.json: not the manifest of a corpus",

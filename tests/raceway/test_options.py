@@ -51,6 +51,8 @@ def test_an_option_refuses_what_is_no_value_of_it_in_one_sentence(run, line):
         )
         assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1), result.output
         assert f"'{option.opts[0]}'" in result.stderr or f" '{option.opts[0]}' /" in result.stderr
+        # no word of the library that reads the options
+        assert " is not a valid " not in result.stderr
 
 
 @pytest.mark.parametrize(

@@ -102,6 +102,20 @@ def test_schema_and_raceway_refuse_the_same_wrong_keys(keys):
     assert not SCHEMA.is_valid(FIRST | keys)
 
 
+@pytest.mark.parametrize(
+    ("fault", "path", "sentence"),
+    [
+        ({"kind": "innr", "width_mm": 1}, ["faults", 1, "kind"], r"'innr' is not one of \['ball', 'cage'"),
+        ({"kind": "inner", "width_mm": 1, "widht_mm": 1}, ["faults", 1], r"'widht_mm' was unexpected"),
+        ({"kind": "inner", "width_mm": -1}, ["faults", 1, "width_mm"], "-1 is not valid|-1 is less than"),
+    ],
+)
+def test_the_key_of_a_fault_that_is_wrong_is_named(fault, path, sentence):
+    error = jsonschema.exceptions.best_match(SCHEMA.iter_errors(FIRST | {"faults": [{"kind": "healthy"}, fault]}))
+    assert [*error.absolute_path] == path
+    assert re.search(sentence, error.message), error.message
+
+
 def places(value, path=()):
     """Path of each value of a recipe that holds no other values."""
     below = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()

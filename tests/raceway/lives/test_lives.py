@@ -8,6 +8,7 @@ from gen.corpus import open_corpus
 from gen.generation.corpus import generate
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
+from gen.support.units import range_text
 from raceway.lives.life_pictures import draw_life
 from tests.conftest import small_with
 from tests.recipes import LIVES
@@ -33,6 +34,13 @@ def test_a_picture_has_the_course_of_one_life(lives):
     assert all(float(number) > 0 for number in numbers)
     assert len(numbers) > 1
     assert figure.axes[3].get_ylabel() == "dB re 1 (m/s²)²/Hz"
+
+
+def test_lives_are_told_in_hours(run, told, lives):
+    (shown,) = re.findall(r"rul ([\d.,]+ to [\d.,]+ h \([\d.,]+ to [\d.,]+ s\))", run("info", lives).stdout)[:1]
+    low, high = told("info", lives)["severities"]["healthy"]["rul"]
+    assert shown == range_text("rul", low, high, "s")
+    assert float(shown.split()[2].replace(",", "")) == pytest.approx(high / 3600, rel=0.01)
 
 
 def test_a_bearing_that_is_not_there_is_named(lives, tiny_corpus):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+import gen
 import raceway
 from features import signal
 from tests.pulses import pulse_train
@@ -46,6 +47,19 @@ def test_the_coherence_of_an_impact_train_is_darkest_at_its_rate(records):
     edges = mesh.get_coordinates()[0, :, 0]
     darkest = edges[np.argmax(shade.max(axis=0))]
     assert darkest == pytest.approx(RATE * round(darkest / RATE), abs=2 * (edges[2] - edges[1]))
+
+
+def test_an_order_map_ends_behind_the_lines_of_the_faults_which_are_drawn_if_they_are_given(records):
+    result = signal.order_map(records[1], 100, 20)
+    assert raceway.plot(result, Figure().subplots()).get_xlim() == (0, 20)
+    orders = gen.bearing_orders("6205")
+    axes = raceway.plot(result, Figure().subplots(), orders=orders)
+    assert axes.get_xlim() == pytest.approx((0, 3.15 * orders.bpfi))
+    drawn_at = {line.get_xdata()[0] for line in axes.lines}
+    assert drawn_at >= {1.0, orders.ftf, orders.bpfo, orders.bpfi, 2 * orders.bsf}
+    assert {"BPFO", "BPFI"} <= {text.get_text() for text in axes.texts}
+    with pytest.raises(ValueError, match="orders: are drawn over an order map alone"):
+        raceway.plot(signal.kurtogram(records[1], FS), Figure().subplots(), orders=orders)
 
 
 def test_an_order_map_of_noise_is_as_dark_however_many_samples_a_turn_has():

@@ -182,7 +182,14 @@ def test_the_example_of_a_class_is_the_record_of_median_level(corpus, monkeypatc
         shown, caption = examples.examples_of(opened)["healthy"]
     assert shown.title.startswith("Record 12: ")
     assert caption.startswith("Specimen 4 of rig 1, ")
-    assert caption.endswith("; the median of 6 records by the level of the fault lines.")
+    assert caption.endswith("; the median of the 6 records of its class by the level of the fault lines.")
+
+
+def test_an_example_says_of_how_many_records_it_is_the_median(corpus, monkeypatch):
+    monkeypatch.setattr(examples, "CANDIDATES", 4)
+    with open_corpus(corpus) as opened:
+        _, caption = examples.examples_of(opened)["healthy"]
+    assert caption.endswith("; the median of 4 of the 6 records of its class by the level of the fault lines.")
 
 
 def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, page, folder):
