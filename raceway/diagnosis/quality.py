@@ -10,6 +10,7 @@ from features.table.band import DEFAULT_BAND
 from features.table.indicators import Orders
 from features.table.record_batch import LOWEST_RATE, SHORTEST
 from gen.support.units import from_si
+from raceway.importing.recorded import LONGEST
 
 CLIPPED_SHARE = 1e-3  # of the samples at the highest or lowest value, from which a signal counts as clipped
 CLIPPED_SAMPLES = 5  # at least so many of them
@@ -39,14 +40,18 @@ def quality_of(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> Q
 
 
 def enough(shaft_rate: float) -> float:
-    """Duration to be recorded at a shaft rate [Hz], in s."""
-    return max(ENOUGH, math.ceil(TURNS / shaft_rate))
+    """Duration to be recorded at a shaft rate [Hz], in s, of which no more than is used."""
+    return min(max(ENOUGH, math.ceil(TURNS / shaft_rate)), LONGEST)
 
 
 def _useless(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> tuple[str, str]:
     """Reason why a signal tells nothing, and what would help; both empty if it tells something."""
     duration, (_, seconds) = len(x) / fs, SHORTEST
     least = max(seconds, FEWEST_TURNS / shaft_rate)
+    if least > LONGEST:
+        speed = f"{from_si(shaft_rate, 'rpm'):,.3g} rpm"
+        reason = f"at {speed} the shaft turns fewer than {FEWEST_TURNS} times in the {LONGEST:g} s that are used"
+        return reason, "check the speed; slower shafts cannot be diagnosed"
     if duration < least:
         reason = (
             f"the recording lasts {duration:.3g} s, in which the shaft turns {duration * shaft_rate:.2g} times at "

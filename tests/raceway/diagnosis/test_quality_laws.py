@@ -26,7 +26,8 @@ def test_the_share_of_clipped_samples_is_told(limit):
     ("x", "fs", "rate", "sentence", "advice"),
     [
         (X[:600], FS, RATE, "the recording lasts 0.05 s", "record 10 s"),
-        (X, FS, 10 / 60, "the recording lasts 3 s", "record 120 s"),
+        (X, FS, 10 / 60, "the recording lasts 3 s", "record 60 s"),
+        (X, FS, 0.1, "at 6 rpm the shaft turns fewer than 8 times in the 60 s that are used", "check the speed"),
         (X, FS, 2.6, "in which the shaft turns 7.8 times at 156 rpm, and 3.08 s are the least (8 turns", "record 10 s"),
         (0 * X, FS, RATE, "the signal is constant", "check sensor"),
         (0 * X + 3.7, FS, RATE, "the signal is constant", "check sensor"),
