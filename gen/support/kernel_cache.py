@@ -16,9 +16,11 @@ from hashlib import sha256
 from typing import Any
 
 import numba
-from numba.core import config
+import numba.core.config
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from platformdirs import user_cache_dir
+
+_config: Any = numba.core.config  # its names are made when it is loaded
 
 _HASH_BYTES = 32
 
@@ -49,13 +51,13 @@ class _KernelCache(FunctionCache):
     """Numba's cache of one function, whose ``sources`` have a hash."""
 
     def __init__(self, dispatcher: Any, sources: str) -> None:
-        chosen = config.CACHE_DIR
+        chosen = _config.CACHE_DIR
         # files beside the sources would stay when the package is removed, and hide one that is installed elsewhere
-        config.CACHE_DIR = chosen or user_cache_dir("raceway")
+        _config.CACHE_DIR = chosen or user_cache_dir("raceway")
         try:
             super().__init__(dispatcher.py_func)
         finally:
-            config.CACHE_DIR = chosen
+            _config.CACHE_DIR = chosen
         stamp = numba.__version__, sources, self._impl.locator.get_source_stamp()
         self._cache_file = _VariantFiles(self.cache_path, self._impl.filename_base, stamp)
 
