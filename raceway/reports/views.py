@@ -92,13 +92,15 @@ def draw_view(view: str, shown: DrawnRecord, under: DrawnRecord | None = None) -
     Raises
     ------
     ValueError
-        If the record is too short for the view.
+        If the record is too short for the view, or a view of one record is asked for two.
     """
+    if under is not None and view in MAPS:
+        raise ValueError("it shows one record alone; leave out the healthy one, or draw both.")
     figure = Drawing(figsize=(WIDTH, HEIGHT), layout="constrained")
     write_title(figure, shown)
     axes = figure.subplots()
     VIEWS[view](axes, shown, under)
-    if under is not None and view not in MAPS:
+    if under is not None:
         figure.legend(*axes.get_legend_handles_labels(), loc="outside lower right", ncols=2)
     return figure
 
