@@ -175,7 +175,12 @@ def new_classifier(maker: Maker, seed: int, name: str) -> Any:
 
 
 def unseeded(maker: Maker, seed: int) -> list[str]:
-    """Parameters ``random_state`` of a classifier, or of parts of it, that are None: two fits may then differ."""
+    """Parameters ``random_state`` of a classifier, or of parts of it, that are None: two fits may then differ.
+
+    A function that takes a seed has set those that need one.
+    """
+    if callable(maker) and _seed_argument(maker, seed):
+        return []
     classifier = new_classifier(maker, seed, maker_name(maker))
     parameters = classifier.get_params() if hasattr(classifier, "get_params") else {}
     return [name for name, value in parameters.items() if name.endswith("random_state") and value is None]

@@ -166,8 +166,9 @@ def own_codes(
     own, unique, place_of = {name: code for code, name in FAULT_NAMES.items()}, *np.unique(codes, return_inverse=True)
     held = [names.get(int(code), "") for code in unique]
     if (foreign := next((name for name in held if name and name not in own), None)) is not None:
-        missing = missing_distributions(json.loads(attributes.get("versions", "{}")))
+        missing = " ".join(missing_distributions(json.loads(attributes.get("versions", "{}"))))
+        # a name in a stranger's file is no advice to install it
         raise CorpusError(
-            f"{place}: has records of the class {foreign}, which comes from a plug-in; pip install {' '.join(missing) or 'it'}."
+            f"{place}: has records of the class {foreign}, which comes from the plug-in {missing}; get it from the maker of the corpus."
         )
     return np.array([own.get(name, -1) for name in held], np.int8)[place_of]

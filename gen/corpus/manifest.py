@@ -296,8 +296,8 @@ def _file_problem(directory: Path, row: PartRow | None, check: Check) -> str | N
 
 def _altered(file: Path, place: str = "at its end") -> str:
     return (
-        f"{file}: its bytes do not have the hash that Raceway stored {place}: it is another file, such as a feature table, or is altered, "
-        f"cut off or rewritten by another program; give a corpus, copy it again, or make it again."
+        f"{file}: its bytes do not have the hash that Raceway stored {place}: it is altered, cut off or rewritten by another "
+        f"program, or is another file, such as a feature table; give a corpus, copy it again, or make it again."
     )
 
 

@@ -1,4 +1,4 @@
-"""Compiled code that a recipe needs, compiled before its first record; the kernel takes 10 to 20 s, once per machine."""
+"""Compiled code that a recipe needs, compiled before its first record; the kernel takes about half a minute, once per machine."""
 
 from collections.abc import Callable
 
@@ -18,5 +18,5 @@ def compile_kernels(recipe: Recipe, notice: Callable[[str], None] = lambda _: No
         for mechanism in (*machine_sources_of(recipe), *mechanisms_of(recipe.sensor_faults)):
             mechanism.compile()
     if not is_compiled():
-        notice("compiling the kernel for this machine, 10 to 20 s; it is kept for the next time.")
+        notice("compiling the kernel for this machine, half a minute or so; it is kept for the next time.")
         load_kernel()

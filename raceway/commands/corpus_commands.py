@@ -145,7 +145,7 @@ def _show_plan(planned: "Plan", seconds: float | None) -> None:
             "size": f"about {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",
             "time": "" if seconds is None else f"roughly {show.duration(seconds)} on one core, by some of its records",
-            "kernel": "compiled" if planned.compiled else "will be compiled for this machine, in 10 to 20 s",
+            "kernel": "compiled" if planned.compiled else "will be compiled for this machine, in half a minute or so",
         }
     )
     if planned.first_left_out is not None:

@@ -262,9 +262,8 @@ def _conclude(
         clauses.append("how often this model calls faulty recordings healthy was not measured")
     elif verdict == HEALTHY:
         missed, of = missed_faults(used.duration, compared=compared)
-        clauses.append(
-            f"{missed} of {of} faulty recordings of about this length from three machines were called healthy"
-        )
+        faulty = "comparisons of faulty recordings" if compared else "faulty recordings"
+        clauses.append(f"{missed} of {of} {faulty} of about this length from three machines were called healthy")
     if verdict in (UNSURE, DAMAGED, HEALTHY):
         if used.duration < (seconds := enough(first.pair.rate)):
             advice.append(f"Record longer: {seconds:,.0f} s instead of {used.duration:.2g} s.")

@@ -136,7 +136,7 @@ READERS = {
 NO_CORPORA = {
     "nowhere": "nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file.",
     "file": "file.txt: is no corpus, which is a folder with manifest.json or one .nc file; a copy in another form",
-    "table": "table.nc: its bytes do not have the hash that Raceway stored at its end: it is another file, such as a feature table",
+    "table": "table.nc: its bytes do not have the hash that Raceway stored at its end: it is altered, cut off or rewritten by",
     "folder": "folder: has no manifest.json, so it is not a corpus; make one with raceway generate.",
     "no_json": "manifest.json: not the manifest of a corpus",
     "vague": "manifest.json: not the manifest of a corpus (complete: input should be a valid boolean)",

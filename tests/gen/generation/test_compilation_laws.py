@@ -31,7 +31,10 @@ def test_the_kernel_is_announced_before_it_is_compiled(recipe_with, monkeypatch)
     monkeypatch.setattr(compilation, "is_compiled", lambda: False)
     monkeypatch.setattr(compilation, "load_kernel", lambda: done.append("compiled"))
     compile_kernels(recipe_with({}), done.append)
-    assert done == ["compiling the kernel for this machine, 10 to 20 s; it is kept for the next time.", "compiled"]
+    assert done == [
+        "compiling the kernel for this machine, half a minute or so; it is kept for the next time.",
+        "compiled",
+    ]
 
 
 def test_mechanisms_that_have_compiled_code_are_compiled_ahead_of_the_workers(recipe_with, monkeypatch):
