@@ -17,7 +17,7 @@ from gen.corpus import CODECS, FAULTS, SPLITS
 from gen.generation.make_part import make_part
 from gen.generation.undetected import made_from
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import Scenario, draw_scenarios, scenario_texts
+from gen.scenarios import Scenario, draw_scenarios, scenario_texts, split_of
 from gen.simulation.compiled_kernel import is_compiled
 from gen.simulation.inputs import kernel_inputs
 from gen.simulation.motion import draw_motion
@@ -123,7 +123,7 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
         left_out=round(len(failures) * of_checked),
         first_left_out=failures[0] if failures else None,
         classes=_scaled((scenario.fault for scenario in drawn), FAULTS, of_drawn),
-        splits=_scaled((scenario.origin.split for scenario in drawn), SPLITS, of_drawn),
+        splits=_splits(whole, drawn, count),
         steps_per_sample=_scaled(steps, sorted(set(steps)), of_checked),
     )
 
@@ -171,6 +171,14 @@ def steps_of(scenarios: Sequence[Scenario]) -> Iterator[int | str]:
                 if isinstance(kernel_input, SimulationError)
                 else steps_per_sample(kernel_input, scenario)
             )
+
+
+def _splits(recipe: Recipe, drawn: Sequence[Scenario], count: int) -> dict[str, int]:
+    """Number of records of each split; the specimens of a large corpus are counted, since a few rigs may all be in one split."""
+    if len(drawn) == count:
+        return _scaled((scenario.origin.split for scenario in drawn), SPLITS, 1.0)
+    specimens = range(recipe.n_specimens)
+    return _scaled((split_of(recipe, specimen) for specimen in specimens), SPLITS, count / len(specimens))
 
 
 def _scaled(values: Iterable[Any], order: Iterable[Any], scale: float) -> dict[Any, int]:

@@ -14,7 +14,7 @@ stored    write scenarios as the texts that a corpus stores, and read them
 """
 
 from gen.scenarios.classes import fault_of_each_specimen, first_records, first_specimens
-from gen.scenarios.draw import draw_scenarios, further_ratios
+from gen.scenarios.draw import draw_scenarios, further_ratios, split_of
 from gen.scenarios.scenario import Scenario, same_recording, scenario_of
 from gen.scenarios.stored import read_scenario, read_scenarios, scenario_texts
 
@@ -30,4 +30,5 @@ __all__ = [
     "same_recording",
     "scenario_of",
     "scenario_texts",
+    "split_of",
 ]

@@ -199,7 +199,7 @@ def _draw_specimen(recipe: Recipe, rig: Recipe, of_rig: Draws, draws: Draws, fau
         specimen=draws.of,
         record=0,
         entry=entry,
-        split=_draw_split(recipe, of_rig.of, draws.of % recipe.corpus.specimens_per_rig),
+        split=split_of(recipe, draws.of),
         fault_try=fault_try,
     )
     specimen, wholes = rig.model_copy(update=drawn), dict(built.wholes)
@@ -217,9 +217,10 @@ def _draw_specimen(recipe: Recipe, rig: Recipe, of_rig: Draws, draws: Draws, fau
     return specimen, wholes, faults, draw_life(recipe, specimen, built.bearing, conditions)
 
 
-def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
-    """Split of a specimen; if rigs are kept together, that of the rig."""
+def split_of(recipe: Recipe, specimen: int) -> str:
+    """Split of a specimen; if rigs are kept together, that of its rig."""
     split, corpus = recipe.corpus.split, recipe.corpus
+    rig, position = recipe.rig_of(specimen), specimen % corpus.specimens_per_rig
     if split.by == "rig":
         # the first of two or more rigs is in the test part, if there is one; rigs beyond them are divided in turns of as many
         turn, place = divmod(rig, corpus.rigs)

@@ -140,7 +140,7 @@ def _show_plan(planned: "Plan", seconds: float | None) -> None:
             "rigs": f"{planned.rigs:,}",
             "specimens": f"{planned.specimens:,}",
             "classes": show.counts(planned.classes) + about,
-            "splits": show.counts(planned.splits) + about,
+            "splits": show.counts(planned.splits),
             "parts": f"{planned.parts:,}",
             "size": f"about {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",

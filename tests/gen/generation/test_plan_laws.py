@@ -43,3 +43,10 @@ def test_the_size_of_a_plan_has_one_overhead_for_each_part_and_one_for_the_index
     lean, some = recipe_with({"storage.records_per_part": 1000}), draw_scenarios(recipe)
     assert plan_bytes(recipe, 24, some) - plan_bytes(lean, 24, some) == (recipe.n_parts - 1) * BYTES_PER_FILE
     assert plan_bytes(lean, 24, some) > 2 * BYTES_PER_FILE
+
+
+def test_splits_by_rig_of_a_large_corpus_are_those_that_it_will_have(recipe_with):
+    recipe = recipe_with({"corpus.rigs": 500, "corpus.split": {"by": "rig", "test": 0.2}})
+    planned = plan(recipe)
+    assert planned.drawn < planned.records
+    assert planned.splits == {"train": 3200, "test": 800}
