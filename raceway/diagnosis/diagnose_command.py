@@ -114,6 +114,8 @@ def diagnose(
     check_speed(speeds, reading, speed_table)
     candidates = _bearings(bearings, speed_known=speeds is not None or speed_table is not None)
     several = recording.is_dir()
+    if recording.resolve() in {path.resolve() for path in healthy}:
+        raise click.UsageError(f"--healthy: {recording} is the recording itself; give another of the same machine")
     unusable: dict[Path, str] = {}
     # a table of speeds may lie among the recordings
     tables = [] if speed_table is None else [speed_table]

@@ -172,6 +172,8 @@ def test_a_healthy_recording_has_the_channels_of_the_recording(model, recordings
     three = write_axes(tmp_path / "r.csv", "x,y,z", signal, signal, signal)
     two = write_axes(tmp_path / "h.csv", "x,y", signal, signal)
     assert told(two, *options, "--healthy", three)["channels"] == ["x", "y"]
+    itself = call(three, *options, "--healthy", three)
+    assert (itself.exit_code, "is the recording itself" in itself.stderr) == (2, True)
     result = call(three, *options, "--healthy", two)
     assert (result.exit_code, len(result.stderr.strip().splitlines())) == (2, 1)
     assert "h.csv: has other channels (x and y) than the recording (x, y and z)" in result.stderr
