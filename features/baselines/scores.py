@@ -280,12 +280,12 @@ def behind_text(behind: tuple[float, float, float] | None) -> str:
     """Text of how far a classifier lies below the best, for people.
 
     >>> behind_text((0.02, -0.01, 0.05)), behind_text((0.0, 0.0, 0.0)), behind_text(None)
-    ('0.02 (-0.01 to 0.05)', 'best', 'not known')
+    ('0.020 (-0.010 to 0.050)', 'best', 'not known')
     """
     if behind is None:
         return "not known"
     difference, *interval = behind
-    return f"{difference:.2f} ({interval_text((interval[0], interval[1]), 2)})" if any(behind) else "best"
+    return f"{difference:.3f} ({interval_text((interval[0], interval[1]))})" if any(behind) else "best"
 
 
 def percent_text(share: float) -> str:

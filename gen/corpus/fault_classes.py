@@ -169,6 +169,7 @@ def own_codes(
         missing = " ".join(missing_distributions(json.loads(attributes.get("versions", "{}"))))
         # a name in a stranger's file is no advice to install it
         raise CorpusError(
-            f"{place}: has records of the class {foreign}, which comes from the plug-in {missing}; get it from the maker of the corpus."
+            f"{place}: has records of the class {foreign}, which comes from a plug-in{missing and f', {missing}'}; get it from the maker "
+            "of the corpus."
         )
     return np.array([own.get(name, -1) for name in held], np.int8)[place_of]

@@ -26,11 +26,8 @@ from gen.support.errors import SimulationError
 
 MOST_DRAWN = 2000  # records, about 0.6 s; from a larger corpus whole parts are drawn, spread evenly over it
 MOST_CHECKED = 64  # of the drawn records; one of some seconds with a changing speed takes 10 ms
-TIMED, TIMED_AT_ONCE, TIMED_SIGNAL = (
-    4,
-    16,
-    16.0,
-)  # ranges of records that are made to time them; most records and seconds of each
+TIMED = 4  # ranges of records that are made to time them; of records longer than TIMED_SIGNAL one record alone
+TIMED_AT_ONCE, TIMED_SIGNAL = 16, 4.0  # most records of each, and most seconds of signal
 AT_ONCE = 8  # records: a schedule of a minute takes 10 MB
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
@@ -131,15 +128,19 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
 def seconds_to_make(recipe: Recipe) -> float | None:
     """CPU time of all records on this machine [s], by some of them, spread evenly: machines and speeds take different times.
 
-    None if the kernel is not compiled yet, or so few records are a minute of work.
+    None if the kernel is not compiled yet.
     """
-    count = min(TIMED_AT_ONCE, recipe.n_records, int(TIMED_SIGNAL / recipe.recording.duration_s))
-    if count < 1 or not is_compiled():
+    if not is_compiled():
         return None
-    # the first records of a life are there in any case
-    step = recipe.corpus.records_of_a_specimen
-    firsts = {round(part * (recipe.n_records - count)) // step * step for part in np.linspace(0, 1, TIMED)}
-    _make(recipe, 0, 1)  # loads the kernel
+    several, step = int(TIMED_SIGNAL / recipe.recording.duration_s), recipe.corpus.records_of_a_specimen
+    # records that are made together are timed together, and the first ones of a life are there in any case
+    together = step if recipe.truth.undetected == "redraw" else recipe.corpus.n_rungs
+    count = min(-(-min(TIMED_AT_ONCE, max(several, 1)) // together) * together, recipe.n_records)
+    firsts = {
+        round(part * (recipe.n_records - count)) // step * step for part in np.linspace(0, 1, TIMED if several else 1)
+    }
+    if several:
+        _make(recipe, 0, 1)  # loads the kernel, which counts for nothing beside a long record
     began = time.process_time()
     for first in firsts:
         _make(recipe, first, count)

@@ -293,9 +293,8 @@ def validate(corpus: Path, as_json: bool) -> int:
     from raceway.sharing import croissant_problems
 
     if not (corpus.is_file() and is_single_file(corpus)) and not (corpus / "manifest.json").exists():
-        read_manifest(
-            corpus
-        )  # raises: a folder without a manifest, or another file, is bad input, not a damaged corpus
+        # raises: a folder without a manifest, or another file, is bad input, not a damaged corpus
+        read_manifest(corpus)
     problems = validate_corpus(corpus) or croissant_problems(corpus)
     warnings: list[str] = []
     if not problems:
