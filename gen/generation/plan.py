@@ -26,8 +26,11 @@ from gen.support.errors import SimulationError
 
 MOST_DRAWN = 2000  # records, about 0.6 s; from a larger corpus whole parts are drawn, spread evenly over it
 MOST_CHECKED = 64  # of the drawn records; one of some seconds with a changing speed takes 10 ms
-TIMED = 4  # ranges of records that are made to time them; of records longer than TIMED_SIGNAL one record alone
-TIMED_AT_ONCE, TIMED_SIGNAL = 16, 4.0  # most records of each, and most seconds of signal
+TIMED, TIMED_AT_ONCE = (
+    4,
+    16,
+)  # ranges of records that are made to time them, and records of each: fewer do not fill the lanes of the kernel
+LONGEST_TIMED = 2.0  # s, of a record
 AT_ONCE = 8  # records: a schedule of a minute takes 10 MB
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
@@ -128,19 +131,16 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
 def seconds_to_make(recipe: Recipe) -> float | None:
     """CPU time of all records on this machine [s], by some of them, spread evenly: machines and speeds take different times.
 
-    None if the kernel is not compiled yet.
+    None if the kernel is not compiled yet, or if so many records would take long.
     """
-    if not is_compiled():
+    if not is_compiled() or recipe.recording.duration_s > LONGEST_TIMED:
         return None
-    several, step = int(TIMED_SIGNAL / recipe.recording.duration_s), recipe.corpus.records_of_a_specimen
+    step = recipe.corpus.records_of_a_specimen
     # records that are made together are timed together, and the first ones of a life are there in any case
     together = step if recipe.truth.undetected == "redraw" else recipe.corpus.n_rungs
-    count = min(-(-min(TIMED_AT_ONCE, max(several, 1)) // together) * together, recipe.n_records)
-    firsts = {
-        round(part * (recipe.n_records - count)) // step * step for part in np.linspace(0, 1, TIMED if several else 1)
-    }
-    if several:
-        _make(recipe, 0, 1)  # loads the kernel, which counts for nothing beside a long record
+    count = min(-(-TIMED_AT_ONCE // together) * together, recipe.n_records)
+    firsts = {round(part * (recipe.n_records - count)) // step * step for part in np.linspace(0, 1, TIMED)}
+    _make(recipe, 0, 1)  # loads the kernel
     began = time.process_time()
     for first in firsts:
         _make(recipe, first, count)

@@ -102,7 +102,7 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
     """Show counts, size and time of a corpus; write nothing.
 
     Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. The time is that of some records,
-    once this machine has the kernel; half of it and twice as much are common.
+    of 2 s at most, once this machine has the kernel; half of it and twice as much are common.
 
       raceway plan quickstart
       raceway plan my_recipe.yaml --records 100 --json
