@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from ruamel.yaml import YAML
 
 from features import feature_table
-from features.baselines.estimators import ESTIMATORS, RELATIVE_ESTIMATORS
+from features.baselines.estimators import MAKERS, logistic_regression
 from gen import generate
 from gen.drawing.section import plain
 from gen.recipe import Recipe
@@ -74,9 +74,8 @@ def few_trees() -> Iterator[None]:
 def quick_estimators() -> Iterator[None]:
     """Logistic regression in place of every baseline that takes longer to fit: what is tested is true for any classifier."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in ("svm", "random_forest", "extra_trees", "gradient_boosting", "ensemble"):
-            patch.setitem(ESTIMATORS, name, ESTIMATORS["logistic_regression"])
-        patch.setitem(RELATIVE_ESTIMATORS, "relative_ensemble", ESTIMATORS["logistic_regression"])
+        for name in MAKERS.keys() - {"majority", "envelope_rule"}:
+            patch.setitem(MAKERS, name, logistic_regression)
         patch.setattr("gen.support.executor.cores", lambda: 1)  # processes would fit the whole baselines
         yield
 
