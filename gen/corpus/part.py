@@ -139,11 +139,11 @@ def _declare(
     dtype, dimensions, attributes = variable.dtype, tuple(map(str, variable.dims)), dict(variable.attrs)
     storage: dict[str, Any] = {"fill_value": attributes.pop("_FillValue", False)}
     if name == SIGNAL:
-        storage |= {"chunksizes": (1, 1, variable.shape[2]), **CODECS[codec].options}
+        storage |= {"chunksizes": (1, 1, variable.shape[2]), **CODECS[codec]}
         if dtype.kind == "f":
             storage["fill_value"] = np.nan
     elif name == "elapsed_time":
-        storage |= CODECS["zlib"].options
+        storage |= CODECS["zlib"]
     elif (width := _width(dtype)) is not None:
         file.createDimension(f"{name}_length", width)
         dimensions += (f"{name}_length",)

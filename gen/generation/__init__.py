@@ -17,6 +17,7 @@ replaying      any record made again from the scenario that it stores, bit for b
 memory         records as one Dataset, from keys or from scenarios made by hand
 stream         records without end, straight into training
 torch_items    the same for the data loader of PyTorch
+trial          some records made, for time, size and visible faults of all
 plan           counts, size and steps of a corpus before it is made
 writing        a Dataset of records as a corpus
 ============== =============================================================================

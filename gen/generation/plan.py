@@ -1,9 +1,8 @@
-"""Plan of a corpus: counts, size and steps, without generating it.
+"""Plan of a corpus: counts, size, steps and time, without generating it.
 
-Records are drawn as :func:`gen.generate` draws them, and some of them checked as it checks them.
+Records are drawn as :func:`gen.generate` draws them, some of them checked as it checks them, and a few made.
 """
 
-import time
 import zlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -13,30 +12,26 @@ from typing import Any
 
 import numpy as np
 
-from gen.corpus import CODECS, FAULTS, SPLITS
-from gen.generation.make_part import make_part
-from gen.generation.undetected import made_from
+from gen.corpus import FAULTS, SPLITS
+from gen.generation.trial import try_some
+from gen.mechanisms.faults.bearing_fault import BALL_SPACING
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios, scenario_texts, split_of
 from gen.simulation.compiled_kernel import is_compiled
 from gen.simulation.inputs import kernel_inputs
 from gen.simulation.motion import draw_motion
 from gen.simulation.steps import steps_per_sample
+from gen.simulation.truth import width_share
 from gen.support.errors import SimulationError
 
 MOST_DRAWN = 2000  # records, about 0.6 s; from a larger corpus whole parts are drawn, spread evenly over it
 MOST_CHECKED = 64  # of the drawn records; one of some seconds with a changing speed takes 10 ms
-TIMED, TIMED_AT_ONCE = (
-    4,
-    16,
-)  # ranges of records that are made to time them, and records of each: fewer do not fill the lanes of the kernel
-LONGEST_TIMED = 2.0  # s, of a record
 AT_ONCE = 8  # records: a schedule of a minute takes 10 MB
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
-BYTES_PER_RECORD = 250  # labels
+BYTES_PER_RECORD = 760  # labels, in a part and in the index
 SCENARIOS = 256  # whose stored text is compressed to estimate its size
-BYTES_PER_FILE = 80_000  # overhead of a part or of the index
+BYTES_PER_FILE = 115_000  # overhead of a part or of the index
 
 
 @dataclass(frozen=True)
@@ -45,7 +40,7 @@ class Plan:
 
     ``classes``, ``splits`` and ``steps_per_sample`` count records; the last does not count the ``left_out`` records, which cannot be
     simulated. If fewer records were ``drawn`` than the corpus has, classes and splits are scaled up; if fewer were ``checked``, steps and
-    records left out are. A record whose fault cannot be seen is left out too, which only :func:`gen.generate` finds.
+    records left out are. A record whose fault cannot be seen may be left out too, which only :func:`gen.generate` counts.
     """
 
     recipe: str
@@ -63,12 +58,19 @@ class Plan:
     steps_per_sample: dict[int, int]
     compiled: bool
     """Whether this machine has the kernel already."""
-    bytes: int
     drawn: int
     checked: int
     left_out: int
     first_left_out: str | None
-    """The sentence about the first record that cannot be simulated."""
+    """The sentence about the first record that is left out."""
+    wide_spall: str | None
+    """A sentence about the first spall that is wider than the distance between two balls."""
+    bytes: int
+    """Size by a few records; if none were made, because they are long or the kernel is not compiled, without compression."""
+    seconds: float | None
+    """CPU time of all records on this machine, by the same records [s]."""
+    seen: dict[str, tuple[int, int]]
+    """Number of these records whose fault can be seen, and of all that were judged, by class."""
 
 
 def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int | None = None) -> Plan:
@@ -102,7 +104,7 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
     failures = [outcome for outcome in outcomes if isinstance(outcome, str)]
     if not steps:
         raise SimulationError(failures[0])
-    recording = whole.recording
+    recording, trial = whole.recording, try_some(whole)
     # counts of what was drawn become counts of the corpus
     of_drawn, of_checked = count / len(drawn), count / len(places)
     return Plan(
@@ -117,42 +119,18 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
         duration=recording.duration_s,
         channels=tuple(channel.name for channel in recording.channels),
         compiled=is_compiled(),
-        bytes=_bytes(whole, count, drawn[:SCENARIOS]),
+        bytes=_bytes(whole, count, drawn[:SCENARIOS], trial and trial.bytes),
+        seconds=trial and trial.seconds * count,
+        seen=trial.seen if trial else {},
         drawn=len(drawn),
         checked=len(places),
         left_out=round(len(failures) * of_checked),
-        first_left_out=failures[0] if failures else None,
+        first_left_out=next(iter(failures), trial and trial.failure),
+        wide_spall=next(filter(None, map(_wide_spall, drawn)), None),
         classes=_scaled((scenario.fault for scenario in drawn), FAULTS, of_drawn),
         splits=_splits(whole, drawn, count),
         steps_per_sample=_scaled(steps, sorted(set(steps)), of_checked),
     )
-
-
-def seconds_to_make(recipe: Recipe) -> float | None:
-    """CPU time of all records on this machine [s], by some of them, spread evenly: machines and speeds take different times.
-
-    None if the kernel is not compiled yet, or if so many records would take long.
-    """
-    if not is_compiled() or recipe.recording.duration_s > LONGEST_TIMED:
-        return None
-    step = recipe.corpus.records_of_a_specimen
-    # records that are made together are timed together, and the first ones of a life are there in any case
-    together = step if recipe.truth.undetected == "redraw" else recipe.corpus.n_rungs
-    count = min(-(-TIMED_AT_ONCE // together) * together, recipe.n_records)
-    firsts = {round(part * (recipe.n_records - count)) // step * step for part in np.linspace(0, 1, TIMED)}
-    _make(recipe, 0, 1)  # loads the kernel
-    began = time.process_time()
-    for first in firsts:
-        _make(recipe, first, count)
-    return (time.process_time() - began) / (count * len(firsts)) * recipe.n_records
-
-
-def _make(recipe: Recipe, first: int, count: int) -> None:
-    """Make some records, of a life without the rest of it."""
-    if recipe.life is None:
-        make_part(recipe, range(first, min(first + count, recipe.n_records)))
-    else:
-        made_from(draw_scenarios(recipe, first, first + count))
 
 
 def steps_of(scenarios: Sequence[Scenario]) -> Iterator[int | str]:
@@ -196,9 +174,21 @@ def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
     return [(first, min(first + min(size, MOST_DRAWN), recipe.n_records)) for first in firsts]
 
 
-def _bytes(recipe: Recipe, records: int, some: Sequence[Scenario]) -> int:
+def _wide_spall(scenario: Scenario) -> str | None:
+    """Sentence about a spall under two balls at once."""
+    for spall in scenario.spalls:
+        if (share := width_share(scenario, spall)) > 1:
+            return (
+                f"record {scenario.origin.record}: a spall of {1e3 * spall.width:.3g} mm is wider than the "
+                f"{1e3 * spall.width / share:.3g} mm from ball to ball on the {spall.site} race; lower width_mm, or give it as a share "
+                f"of {BALL_SPACING}."
+            )
+    return None
+
+
+def _bytes(recipe: Recipe, records: int, some: Sequence[Scenario], of_signals: float | None) -> int:
     """Estimated size of the corpus [B]; the text of each scenario is in its part and in the index."""
     of_text = 2 * len(zlib.compress("".join(scenario_texts(some)).encode(), 1)) / len(some)
-    samples = records * recipe.n_samples * len(recipe.recording.channels)
-    of_signals = samples * STORED_BYTES[recipe.recording.converter.kind] * CODECS[recipe.storage.codec].share
-    return round(of_signals + records * (BYTES_PER_RECORD + of_text)) + (recipe.n_parts + 1) * BYTES_PER_FILE
+    if of_signals is None:
+        of_signals = recipe.n_samples * len(recipe.recording.channels) * STORED_BYTES[recipe.recording.converter.kind]
+    return round(records * (of_signals + BYTES_PER_RECORD + of_text)) + (recipe.n_parts + 1) * BYTES_PER_FILE

@@ -50,7 +50,8 @@ def _of_widest(value: Callable[[Scenario, Spall], float], without: float = 0.0) 
     return of_run
 
 
-def _width_share(scenario: Scenario, spall: Spall) -> float:
+def width_share(scenario: Scenario, spall: Spall) -> float:
+    """Width of a spall over the distance from ball to ball, or round a ball [1]."""
     bearing = scenario.bearing
     circumference = 2 * math.pi * bearing.radius(spall.site)
     return spall.width / (circumference if spall.site == "ball" else circumference / bearing.n_balls)
@@ -80,7 +81,7 @@ LABELS = (
     Variable("largest_drop", "f8", "m", "label", "largest drop of a rigid ball over the widest spall, 0 without a spall",
         _of_widest(lambda scenario, spall: largest_drop_over(scenario, scenario.spalls.index(spall)))),
     Variable("width_share", "f8", "1", "label", "width of the widest spall over that from ball to ball, or round a ball; 0 without",
-        _of_widest(_width_share)),
+        _of_widest(width_share)),
     *(
         Variable(f"true_{name}", "f8", "1", "latent", f"mean {meaning}", lambda run, name=name: getattr(run.motion.means[1], name))
         for name, meaning in (

@@ -101,35 +101,35 @@ def _show_keys(prefix: str, as_json: bool) -> None:
 def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> None:
     """Show counts, size and time of a corpus; write nothing.
 
-    Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. The time is that of some records,
-    of 2 s at most, once this machine has the kernel; half of it and twice as much are common.
+    Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. Time, size and visible faults are
+    those of some records that are made, of 2 s at most, once this machine has the kernel; half of the time and twice as much are common.
 
       raceway plan quickstart
       raceway plan my_recipe.yaml --records 100 --json
 
     Next: raceway generate RECIPE -o DIR
     """
-    from gen.recipe import find_recipe, read_recipe
+    from gen.recipe import find_recipe
 
     find_recipe(recipe)
     from gen.generation.plan import plan as plan_recipe
-    from gen.generation.plan import seconds_to_make
 
     planned = plan_recipe(recipe, seed=seed, records=records)
-    seconds = seconds_to_make(read_recipe(recipe, seed=seed, records=records))
     if as_json:
-        show.as_json(show.plain(planned) | {"seconds": seconds})
+        show.as_json(planned)
     else:
-        _show_plan(planned, seconds)
+        _show_plan(planned)
 
 
-def _show_plan(planned: "Plan", seconds: float | None) -> None:
+def _show_plan(planned: "Plan") -> None:
     steps = list(planned.steps_per_sample)
     # a large corpus is counted on a part of it
     about, about_checked = (
         "" if count == planned.records else f" (scaled up from {count:,} {done} records)"
         for count, done in ((planned.drawn, "drawn"), (planned.checked, "checked"))
     )
+    seconds = planned.seconds
+    visible = ", ".join(f"{fault} {seen} of {judged}" for fault, (seen, judged) in planned.seen.items())
     without = f", without {planned.left_out:,} that cannot be simulated{about_checked}" if planned.left_out else ""
     show.text(planned.title, "")
     show.facts(
@@ -142,14 +142,17 @@ def _show_plan(planned: "Plan", seconds: float | None) -> None:
             "classes": show.counts(planned.classes) + about,
             "splits": show.counts(planned.splits),
             "parts": f"{planned.parts:,}",
-            "size": f"about {show.size(planned.bytes)}",
+            "visible": visible and f"{visible} faults in the records that were made",
+            "size": f"{'about' if seconds else 'up to'} {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",
-            "time": "" if seconds is None else f"roughly {show.duration(seconds)} on one core, by some of its records",
+            "time": f"roughly {show.duration(seconds)} on one core, by some of its records" if seconds else "",
             "kernel": "compiled" if planned.compiled else "will be compiled for this machine, in half a minute or so",
         }
     )
     if planned.first_left_out is not None:
         show.text("", f"The first record that is left out: {planned.first_left_out}")
+    if planned.wide_spall is not None:
+        notice(f"warning: {planned.wide_spall}")
 
 
 def _range_of(_context: click.Context, _option: click.Parameter, text: str | None) -> range | None:

@@ -5,6 +5,7 @@ classifier sees it where the probability of a fault, by a training without the r
 records. Both sizes hold for records of this length.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -167,11 +168,11 @@ def corpus_of(
         yield path
         return
     from gen.generation.corpus import generate  # the simulator, which takes a second to load
-    from gen.generation.plan import plan
+    from gen.scenarios import draw_scenarios
 
     truth = {"truth": {"twins": True, "undetected": "keep"}}
     recipe = Recipe(plain(read_recipe(source, records=records)) | truth)
-    check_counts(plan(recipe).classes, str(source))
+    check_counts(Counter(scenario.fault for scenario in draw_scenarios(recipe)), str(source))
     with temporary_folder() as folder:
         yield generate(recipe, folder / "corpus", workers=workers, progress=progress).path
 

@@ -144,7 +144,7 @@ def test_the_plan_tells_the_time_once_the_kernel_is_compiled(run, told, tiny_rec
     few, many = (told("plan", tiny_recipe, "--records", count)["seconds"] for count in (1_000, 10_000))
     assert 3 < many / few < 30
     assert " on one core, by some of its records\n" in run("plan", tiny_recipe).stdout
-    monkeypatch.setattr("gen.generation.plan.is_compiled", lambda: False)
+    monkeypatch.setattr("gen.generation.trial.is_compiled", lambda: False)
     assert told("plan", tiny_recipe)["seconds"] is None
 
 

@@ -6,9 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gen.generation.plan import BYTES_PER_FILE, MOST_CHECKED, MOST_DRAWN, plan, some_ranges
-from gen.generation.plan import _bytes as plan_bytes
-from gen.scenarios import draw_scenarios
+from gen.generation.corpus import generate
+from gen.generation.plan import MOST_CHECKED, MOST_DRAWN, plan, some_ranges
 
 
 @given(per_part=st.integers(1, 20_000), rigs=st.integers(1, 5000))
@@ -37,12 +36,29 @@ def test_a_plan_checks_some_of_its_records_and_says_so(write_recipe, tmp_path):
     assert planned.left_out > 0
 
 
-@pytest.mark.parametrize("per_part", [1, 5, 24])
-def test_the_size_of_a_plan_has_one_overhead_for_each_part_and_one_for_the_index(recipe_with, per_part):
-    recipe = recipe_with({"storage.records_per_part": per_part})
-    lean, some = recipe_with({"storage.records_per_part": 1000}), draw_scenarios(recipe)
-    assert plan_bytes(recipe, 24, some) - plan_bytes(lean, 24, some) == (recipe.n_parts - 1) * BYTES_PER_FILE
-    assert plan_bytes(lean, 24, some) > 2 * BYTES_PER_FILE
+@pytest.mark.parametrize("converter", [{"kind": "adc", "full_scale_m_s2": 20}, {"kind": "adc"}, {"kind": "float32"}])
+@pytest.mark.parametrize("storage", [{"records_per_part": 9}, {"codec": "zstd"}, {"codec": "none"}])
+def test_a_plan_tells_the_size_of_the_corpus(recipe_with, tmp_path, converter, storage):
+    recipe = recipe_with({"recording.converter": converter, "storage": storage, "corpus.rigs": 6})
+    made = generate(recipe, tmp_path / "corpus").path
+    size = sum(file.stat().st_size for file in made.rglob("*") if file.is_file())
+    assert plan(recipe).bytes == pytest.approx(size, rel=0.1)
+
+
+def test_a_plan_that_makes_no_records_tells_at_most_too_much(recipe_with, monkeypatch):
+    sizes = [plan(recipe_with({})).bytes]
+    monkeypatch.setattr("gen.generation.trial.is_compiled", lambda: False)
+    assert plan(recipe_with({})).bytes > sizes[0]
+
+
+def test_a_plan_tells_faults_that_cannot_be_seen_and_spalls_under_two_balls(recipe_with):
+    faults = [{"kind": "inner", "width_mm": 0.0005}, {"kind": "outer", "width_mm": 20, "profile": "half_sine"}]
+    planned = plan(recipe_with({"faults": faults}))
+    assert planned.seen["inner"][0] == 0 < planned.seen["inner"][1]
+    assert planned.seen["outer"][0] == planned.seen["outer"][1] > 0
+    assert "20 mm is wider than the 16.4 mm from ball to ball on the outer race" in planned.wide_spall
+    redrawn = {"faults": [{"kind": "healthy"}, faults[0]], "truth.undetected": "redraw"}
+    assert "faults of class inner can be seen" in plan(recipe_with(redrawn)).first_left_out
 
 
 def test_splits_by_rig_of_a_large_corpus_are_those_that_it_will_have(recipe_with):
