@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from gen.drawing import Distribution, Number, Section, within
 
@@ -37,7 +37,7 @@ class LifeSection(Section):
     """Age at which a bearing is taken out although it works: the same for all, or of each its own."""
     end: LifeEnd = LifeEnd()
     """Failure of a bearing."""
-    accelerated: bool = False
+    accelerated: StrictBool = False
     """Allows loads beyond the dynamic rating, as in overload tests; ISO 281 says nothing about lives there."""
     a_iso: Distribution = within(1e-3, 50, default=1.0)
     """Life modification factor of ISO 281: lubrication, contamination and material."""

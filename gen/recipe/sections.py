@@ -6,7 +6,7 @@ Keys end in their unit; most numbers can be distributions. Each section is drawn
 from itertools import pairwise
 from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, model_validator
+from pydantic import BeforeValidator, Field, StrictBool, StrictInt, StringConstraints, model_validator
 
 from gen.corpus import Codec
 from gen.drawing import Count, Name, Number, Section
@@ -42,7 +42,7 @@ class Split(Section):
 class TruthSection(Section):
     """What is known of the faults of each record."""
 
-    twins: bool = True
+    twins: StrictBool = True
     """Simulates each record with a fault once more without it, to know what the fault adds to it; `false` takes less time."""
     undetected: Literal["redraw", "keep", "healthy"] = "keep"
     """What becomes of a record in which its fault cannot be seen. `keep`: it keeps its label. `redraw`: its level is drawn again, then the

@@ -10,7 +10,6 @@ from pydantic.fields import FieldInfo
 
 _MOST_SENTENCES = 20
 _LONGEST_KEY = 60  # characters shown
-_FORMS = ("[key]",)  # steps of a location that are no keys
 
 
 def sentences(error: ValidationError, model: type[BaseModel]) -> list[str]:
@@ -94,14 +93,15 @@ _ALLOWED = {
 def _place(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
     """Path of a value in the file; the names of union branches, which pydantic inserts, are left out."""
     place, node = "", _Cursor(model)
-    for step in location:
+    # pydantic marks a key that is wrong as a value: the place is that of its section
+    for step in location[:-2] if location[-1:] == ("[key]",) else location:
         if isinstance(step, int):
             place += f"[{step}]"
         elif node.branches(step):
             node = node.of_kind(step)
         elif place and any(step in getattr(section, "arguments", ()) for section in node.models):
             node = node.into(step)  # a number, or a list, that stands for a distribution without its key
-        elif node.knows(step) or (step not in _FORMS and (not node.models or step not in _branches())):
+        elif node.knows(step) or not node.models or step not in _branches():
             shown = step if step.isprintable() and len(step) <= _LONGEST_KEY else reprlib.repr(step)
             place += f".{shown}" if place else shown
             node = node.into(step)

@@ -59,7 +59,7 @@ def _verdict(error: BaseException) -> tuple[int, str]:
         case click.ClickException():
             return error.exit_code, error.format_message()
         case _ if _is_foreseen(error):
-            return BAD_INPUT, str(error)
+            return BAD_INPUT, _with_options(str(error))
         case _ if type(error).__name__ == "KilledWorker":
             return BAD_INPUT, "several workers of the cluster died; use fewer workers, or fewer records per part."
         case MemoryError():
@@ -93,6 +93,16 @@ def _in_plain_words(message: str) -> str:
     """
     message = re.sub("is not a valid float( range)?", "is no number; give it without a unit", message)
     return re.sub("is not a valid integer( range)?", "is no whole number", message)
+
+
+def _with_options(sentence: str) -> str:
+    """Sentence about a choice from a corpus, with options in place of parameters.
+
+    >>> _with_options("corpus: channels: there is no channel 'x'; ..."), _with_options("where: there is no column x; ...")
+    ("corpus: --channels: there is no channel 'x'; ...", '--where: there is no column x; ...')
+    """
+    sentence = re.sub("(^|: )(where|to|channels(?=: there is no)): ", r"\1--\2: ", sentence)
+    return re.sub("^rename: ", "--rename-channel: ", sentence)
 
 
 def _of_all_commands(context: click.Context) -> list[str]:

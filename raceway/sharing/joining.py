@@ -32,7 +32,7 @@ def check_fit(first: Named, other: Named, *, float32: bool) -> None:
         example = f"{(own or channel_names(tested))[0]}={(missing or channel_names(wanted))[0]}"
         raise CorpusError(
             f"{other_name}: has the channels {', '.join(channel_names(tested))}, and {name} has {', '.join(channel_names(wanted))}; give "
-            f"channels of one sensor one name (rename {example}), or choose common ones (channels)."
+            f"channels of one sensor one name (--rename-channel {example}; in Python rename), or choose common ones (--channels)."
         )
     for (what, of_other, advice), (_, of_first, _) in zip(_form(tested), _form(wanted), strict=True):
         if of_other != of_first and not (float32 and what.startswith("storage")):

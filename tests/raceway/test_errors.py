@@ -85,6 +85,9 @@ TABLE = [
     # where results go
     ("generate {recipe} -o /proc/corpus", "/proc/corpus: could not be written"),
     ("explore {corpus} -o {new}.html --features {model}", "not a readable netCDF file"),
+    ("copy {corpus} -o {new} --where x", "--where: there is no column x"),
+    ("copy {corpus} -o {new} --channels nose", ": --channels: there is no channel 'nose'"),
+    ("copy {corpus} -o {new} --rename-channel nose=ear", "--rename-channel: there is no channel 'nose'"),
     ("explore {corpus} -o {new}.html --channel nose", "no channel 'nose'; give one of"),
     # recipes
     ("plan {nowhere}", "nowhere: neither a file nor one of the recipes dirty_sensors, domain_randomised"),

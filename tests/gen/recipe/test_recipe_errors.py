@@ -48,7 +48,8 @@ TABLE = [
     # choices
     ("kind: outer", "kind: gear", "faults[1].kind: 'gear' is not one of healthy, inner, outer, ball, cage, distributed, compound."),
     ('["6205"]', '["6299"]', "bearing.designations: '6299' is neither in the catalogue nor in entries; did you mean "),
-    ("{name: sensor,", "{name: sensor, body: table,", "recording.channels[0].body.table: "),
+    ("{name: sensor,", "{name: sensor, body: table,", "recording.channels[0].body: 'table' is not allowed here; it must be"),
+    ("machine: {", "truth: {twins: 'yes'}\nmachine: {", "truth.twins: 'yes' is not allowed here; it must be true or false."),
     # keys that contradict each other
     ("weight: 1}\n  - {kind: outer,", "weight: 0}\n  - {kind: outer, weight: 0,", "faults all have weight 0; give at least one"),
     ("test: 0.25", "test: 0.6, validation: 0.4", "corpus.split: validation and test leave nothing to train on"),

@@ -103,7 +103,10 @@ def test_records_of_silence_may_be_alike(tmp_path):
 @pytest.mark.parametrize(
     ("changed", "sentence"),
     [
-        ({"channels": ("a", "c")}, r"has the channels a, c, and .*c has a, b; .*\(rename c=b\).*\(channels\)"),
+        (
+            {"channels": ("a", "c")},
+            r"has the channels a, c, and .*c has a, b; .*\(--rename-channel c=b;.*\(--channels\)",
+        ),
         ({"samples": 40}, "has the record length 40 samples, and .* has 50 samples; make both with records of one"),
         ({"kind": "float32"}, r"has the storage of the signals float32, and .* m s-2; .*\(float32\)"),
     ],
@@ -192,7 +195,7 @@ def test_simulated_and_imported_records_join_with_unknown_values_marked(simulate
     time, channels, rates = columns(simulated[1], "elapsed_time", "channel", "sample_rate")
     imported(tmp_path / "measured", float(rates[0]), len(time), "accelerometer")
     sources = [(simulated[1], tmp_path / "measured")[place] for place in order]
-    with pytest.raises(CorpusError, match=r"rename (accelerometer=sensor|sensor=accelerometer)"):
+    with pytest.raises(CorpusError, match=r"rename-channel (accelerometer=sensor|sensor=accelerometer)"):
         copy(sources, tmp_path / "both", float32=True)
     made = copy(sources, tmp_path / "both.nc", float32=True, rename={"accelerometer": str(channels[0])})
     assert {"draws", "true_shaft_rate", "detectable", "pair", "loaded_hits"} <= set(made.filled)
