@@ -100,6 +100,7 @@ def made(installed, tmp_path_factory):
     lines = [
         "--help",
         "recipes --keys sensor_faults.stuck",
+        "doctor",
         "generate dented.yaml -o corpus",
         "validate corpus",
         "info corpus --json",
@@ -124,6 +125,7 @@ def made(installed, tmp_path_factory):
 def test_a_fault_class_of_a_plugin_goes_all_the_way_to_scores_and_pages(made):
     folder, said = made
     assert "stuck_bits" in said["recipes --keys sensor_faults.stuck"]
+    assert "\nfine     plug-in brinelled: raceway.classes of raceway-example 0.1\n" in said["doctor"]
     assert "identical" in said["replay corpus --record 5"]
     facts = json.loads(said["info corpus --json"])
     assert facts["classes"] == {"healthy": 6, "inner": 6, "brinelled": 6}

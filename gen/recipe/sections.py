@@ -145,7 +145,7 @@ class Sections(Section):
     """Transfer path from bearing to sensor, common to all channels without their own."""
     background: BackgroundSection = BackgroundSection()
     """Vibration of the machine without the bearing."""
-    level: Annotated[PhysicalLevel | SnrLevel, Field(discriminator="kind")] = PhysicalLevel()
+    level: Annotated[PhysicalLevel | SnrLevel, Field(discriminator="kind")] = PhysicalLevel(kind="physical")
     """Level of bearing signal and background."""
     sensor_faults: SensorFaultsSection = SensorFaultsSection()
     """Faults of mount, cable, amplifier and data transfer; none if left out."""

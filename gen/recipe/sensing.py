@@ -32,7 +32,7 @@ Bodies = Annotated[
 class Converter(Section):
     """A 16-bit analogue-to-digital converter."""
 
-    kind: Literal["adc"] = "adc"
+    kind: Literal["adc"]
     """Stores the signal as 16-bit counts."""
     full_scale_m_s2: Annotated[Number, Field(ge=1e-6, le=1e6)] = 500.0
     """Largest acceleration that the converter measures; samples beyond it are clipped, and counted per record."""
@@ -87,7 +87,7 @@ class RecordingSection(Section):
     """Frequency at which the sensors have lost 3 dB on the way down to 0 Hz, drawn per rig: 0.3 to 5 for piezoelectric ones, 0 for none."""
     offset_m_s2: Distribution = within(-1e4, 1e4, default=0.0)
     """Constant that amplifier and converter add to the signal of all channels, drawn per rig."""
-    converter: Annotated[Converter | FloatConverter, Field(discriminator="kind")] = Converter()
+    converter: Annotated[Converter | FloatConverter, Field(discriminator="kind")] = Converter(kind="adc")
     """Conversion of the signal to stored numbers."""
 
     @property
@@ -101,7 +101,7 @@ class PhysicalLevel(Section):
 
     drawn_per = "rig"
 
-    kind: Literal["physical"] = "physical"
+    kind: Literal["physical"]
     """Keeps the level of the simulation, so that a larger fault gives a larger signal."""
     gain: Distribution = within(0, 1e12, open_low=True, default=1.0)
     """Factor on bearing signal and background, such as the sensitivity of a sensor."""

@@ -29,7 +29,7 @@ def plugins(group: str) -> Mapping[str, EntryPoint]:
     for entry in sorted(entry_points(group=f"raceway.{group}"), key=lambda entry: entry.name):
         if (other := entries.setdefault(entry.name, entry)) is not entry:
             raise RacewayError(
-                f"{_distribution(entry)}: its {entry.name} in raceway.{group} is also in {_distribution(other)}; uninstall one of them."
+                f"{distribution(entry)}: its {entry.name} in raceway.{group} is also in {distribution(other)}; uninstall one of them."
             )
     return entries
 
@@ -57,7 +57,7 @@ def plugin(group: str, name: str, of_type: type) -> Any:
 def unusable(group: str, name: str, reason: str) -> RacewayError:
     """Error about an object of a plug-in that breaks a rule of its group."""
     return RacewayError(
-        f"{_distribution(plugins(group)[name])}: its {name} in raceway.{group} cannot be used ({reason}); install another version, or "
+        f"{distribution(plugins(group)[name])}: its {name} in raceway.{group} cannot be used ({reason}); install another version, or "
         "uninstall it."
     )
 
@@ -75,7 +75,7 @@ def error_of_plugin(error: BaseException) -> RacewayError | None:
         if entry is not None:
             place = f"{frame.f_code.co_filename.rpartition('/')[2]}, line {line}"
             named = RacewayError(
-                f"{_distribution(entry)}: {place}, in {frame.f_code.co_name}(): {type(error).__name__}: {error}; correct the plug-in, or "
+                f"{distribution(entry)}: {place}, in {frame.f_code.co_name}(): {type(error).__name__}: {error}; correct the plug-in, or "
                 "uninstall it."
             )
     return named
@@ -92,5 +92,6 @@ def missing_distributions(versions: Iterable[str]) -> list[str]:
     return [name for name in versions if not any(Distribution.discover(name=name))]
 
 
-def _distribution(entry: EntryPoint) -> str:
+def distribution(entry: EntryPoint) -> str:
+    """Name and version of the distribution of an entry point."""
     return "a plug-in" if entry.dist is None else f"{entry.dist.name} {entry.dist.version}"

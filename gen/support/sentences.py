@@ -2,6 +2,7 @@
 
 import difflib
 import functools
+import re
 import reprlib
 from typing import Any, get_args
 
@@ -36,7 +37,9 @@ def _sentence(item: Any, model: type[BaseModel]) -> str | None:
     match kind:
         case "extra_forbidden":
             guess, allowed = _guess(item["loc"], model), ", ".join(_siblings(item["loc"], model))
-            return f"{place}: no such key; " + (f"did you mean {guess}?" if guess else f"allowed are {allowed}.")
+            return f"{place}: no such key; " + (
+                f"did you mean {guess}?" if guess else f"allowed are {allowed}{_others(place)}."
+            )
         case "invalid_key":
             section = _place(item["loc"][:-1], model)
             return f"{section}: {reprlib.repr(value)} is not a key; keys are words, and decimals have a point, not a comma."
@@ -44,7 +47,7 @@ def _sentence(item: Any, model: type[BaseModel]) -> str | None:
             return f"{place}: is missing; give it."
         case "union_tag_invalid":
             expected = context["expected_tags"].replace("'", "")
-            return f"{place}.kind: {reprlib.repr(context['tag'])} is not one of {expected}."
+            return f"{place}.kind: {reprlib.repr(context['tag'])} is not one of {expected}{_others(place)}."
         case "union_tag_not_found":
             kinds = ", ".join(_kinds(item["loc"], model))
             return f"{place}: {shown} needs a kind: {kinds}."
@@ -71,6 +74,12 @@ def _sentence(item: Any, model: type[BaseModel]) -> str | None:
         case _:
             allowed = _ALLOWED.get(kind) or item["msg"].replace("Input should be ", "")
             return f"{place}: {shown} is not allowed here; it must be {allowed}."
+
+
+def _others(place: str) -> str:
+    """Where a section can be that plug-ins add, the way to see which are installed."""
+    may_be = re.fullmatch(r"faults\[\d+\]|(background|machine_conditions|sensor_faults)\.\w+", place)
+    return "; one of a plug-in needs it installed, and raceway doctor lists those" if may_be else ""
 
 
 _ALLOWED = {

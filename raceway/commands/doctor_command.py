@@ -18,7 +18,7 @@ EXTRAS = ("files", "parquet")
 @click.command()
 @json_option
 def doctor(as_json: bool) -> int:
-    """Show installed versions.
+    """Show installed versions and plug-ins.
 
     Exits with 1 if a package that Raceway needs is missing or too old; a line that begins with "note" is of an optional one.
 
@@ -42,6 +42,8 @@ def _findings() -> Iterator[dict[str, str]]:
     """Versions of Python, Raceway and its requirements; the state of each, and advice where it is not ``fine``."""
     from packaging.requirements import Requirement
 
+    from gen.support.plugins import GROUPS, distribution, plugins  # not at the top: help needs nothing of gen
+
     yield _finding("Python", f"{platform.python_version()} ({sys.executable})")
     yield _finding("raceway", version("raceway"))
     # extras that nobody asked for may be missing, and two of them may need one library
@@ -58,6 +60,9 @@ def _findings() -> Iterator[dict[str, str]]:
             present, is_met = "missing", False
         advice = "" if is_met else f"pip install '{str(needed).partition(';')[0].strip()}'."
         yield _finding(needed.name, present, "fine" if is_met else "note" if needed.marker else "problem", advice)
+    for group in GROUPS:
+        for name, entry in plugins(group).items():
+            yield _finding(f"plug-in {name}", f"raceway.{group} of {distribution(entry)}")
 
 
 def _finding(subject: str, value: str, state: str = "fine", advice: str = "") -> dict[str, str]:

@@ -46,7 +46,8 @@ TABLE = [
     ("uniform", "gaussian", "operation.shaft_rpm: 'gaussian' is no distribution; choose from constant, uniform, loguniform"),
     ("uniform(1500, 1800)", "choice(1, 2, weights=(1,))", "operation.shaft_rpm: 1 weights for 2 values; give one"),
     # choices
-    ("kind: outer", "kind: gear", "faults[1].kind: 'gear' is not one of healthy, inner, outer, ball, cage, distributed, compound."),
+    ("kind: outer", "kind: gear", "faults[1].kind: 'gear' is not one of healthy, inner, outer, ball, cage, distributed, compound; one of"),
+    ("machine: {", "background: {hiss: {}}\nmachine: {", "; one of a plug-in needs it installed, and raceway doctor lists those."),
     ('["6205"]', '["6299"]', "bearing.designations: '6299' is neither in the catalogue nor in entries; did you mean "),
     ("{name: sensor,", "{name: sensor, body: table,", "recording.channels[0].body: 'table' is not allowed here; it must be"),
     ("machine: {", "truth: {twins: 'yes'}\nmachine: {", "truth.twins: 'yes' is not allowed here; it must be true or false."),
