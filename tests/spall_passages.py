@@ -101,7 +101,7 @@ def contact_speed(bearing: Bearing, shaft_rate: float) -> float:
 def _starts(scenario: Scenario, given: KernelInput, axis: Timeline, n: int) -> list[int]:
     """Samples at which a ball comes to the first place of ``ENTRY``, of those passages whose middle is near the direction of the load."""
     spall, turning, bearing = given.spalls[0], given.turning, given.bearing
-    turned = 2 * math.pi * turning.shaft_rate * (axis.response_times() + axis.settle / axis.fs)
+    turned = 2 * math.pi * turning.shaft_rate * (axis.dropped + np.arange(axis.returned)) / axis.fs
     middle = spall.angle + (turning.shaft_angle + turned if spall.site == "inner" else 0.0 * turned)
     near = np.abs(wrapped(middle - scenario.machine["load_angle"])) < NEAR_THE_LOAD
     found = []

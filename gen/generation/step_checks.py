@@ -42,11 +42,8 @@ def checked_places(recipe: Recipe, numbers: range, faults: Sequence[str], groups
     part the first records that share their kernel and step, as many as a batch has lanes. They do not depend on the number of records of
     the corpus.
     """
-    begun = {fault for fault, number in first_records(recipe).items() if number in numbers}
-    first: dict[str, int] = {}
-    for place, fault in enumerate(faults):
-        first.setdefault(fault, place)
-    chosen = [place for fault, place in first.items() if fault in begun]
+    begun = [fault for fault, number in first_records(recipe).items() if number in numbers]
+    chosen = [faults.index(fault) for fault in begun if fault in faults]
     if groups and numbers.start % (CHECKED_PARTS * recipe.storage.records_per_part) == 0:
         chosen += [place for place, group in enumerate(groups) if group == groups[0]][:LANES]
     return dict.fromkeys(chosen)

@@ -42,11 +42,11 @@ def find_recipe(recipe: Path | str) -> Path:
     if path.is_file():
         return path
     shipped = shipped_recipes()
-    if str(recipe) in shipped:
-        return shipped[str(recipe)]
+    if text in shipped:
+        return shipped[text]
     if path.is_dir():
         raise RecipeError(f"{recipe}: is a folder; give a recipe file, or the name of one of {', '.join(shipped)}.")
     # help with a misspelt name
-    near = difflib.get_close_matches(str(recipe), shipped, 1)
+    near = difflib.get_close_matches(text, shipped, 1)
     guess = f"did you mean {near[0]}?" if near else "raceway recipes lists the names."
     raise RecipeError(f"{recipe}: neither a file nor one of the recipes {', '.join(shipped)}; {guess}")

@@ -15,7 +15,7 @@ from gen.drawing import DISTRIBUTIONS, Section, interval
 from gen.recipe.changes import Changes
 from gen.recipe.model import Recipe
 from gen.support.errors import RecipeError
-from gen.support.sentences import models_in
+from gen.support.sentences import kinds_of, models_in
 from gen.support.units import UNITS, unit_suffix
 
 
@@ -84,11 +84,6 @@ def fields_below(
                 below.update(inner)
             steps = {tuple: (f"{name}[]",), dict: (name, "NAME")}.get(get_origin(field.annotation) or type, (name,))
             yield from fields_below(inner, (*path, *steps), below)
-
-
-def kinds_of(model: type[BaseModel]) -> tuple[str, ...]:
-    """Values of ``kind`` of a section; none if it has no kinds."""
-    return get_args(model.model_fields["kind"].annotation) if "kind" in model.model_fields else ()
 
 
 def _sections_of(field: FieldInfo) -> list[type[Section]]:

@@ -11,9 +11,10 @@ from typing import Any
 
 from gen.drawing import Section, plain
 from gen.recipe.faults import OF_KIND
-from gen.recipe.keys import fields_below, kinds_of
+from gen.recipe.keys import fields_below
 from gen.recipe.model import Recipe
 from gen.support.errors import RecipeError
+from gen.support.sentences import kinds_of
 
 DEFAULTS: Mapping[str, Any] = {
     "name": "records",

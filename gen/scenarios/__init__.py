@@ -13,7 +13,7 @@ stored    write scenarios as the texts that a corpus stores, and read them
 ========= =================================================================
 """
 
-from gen.scenarios.classes import fault_of_each_specimen, first_records, first_specimens
+from gen.scenarios.classes import fault_of_each_specimen, first_records
 from gen.scenarios.draw import draw_scenarios, further_ratios, split_of
 from gen.scenarios.scenario import Scenario, same_recording, scenario_of
 from gen.scenarios.stored import read_scenario, read_scenarios, scenario_texts
@@ -23,7 +23,6 @@ __all__ = [
     "draw_scenarios",
     "fault_of_each_specimen",
     "first_records",
-    "first_specimens",
     "further_ratios",
     "read_scenario",
     "read_scenarios",

@@ -84,31 +84,21 @@ def _share_out(shares: dict[str, float], count: int, offset: float) -> list[str]
 
 
 @functools.lru_cache(maxsize=16)
-def first_specimens(recipe: Recipe) -> dict[str, int]:
-    """Number of the first specimen of each fault class in the corpus; the search stops when it has found every class."""
-    n_classes = len(class_shares(recipe))
-    first_of: dict[str, int] = {}
-    for rig in range(recipe.n_rigs):
-        first = rig * recipe.corpus.specimens_per_rig
-        faults = fault_of_each_specimen(recipe, rig)
-        for number, fault in enumerate(faults[: recipe.n_specimens - first], first):
-            first_of.setdefault(fault, number)
-        if len(first_of) == n_classes:
-            break
-    return first_of
-
-
 def first_records(recipe: Recipe) -> dict[str, int]:
-    """Number of the first record of each fault class in the corpus; a record at rung 0 is healthy."""
-    corpus = recipe.corpus
+    """Number of the first record of each fault class in the corpus, where a record at rung 0 is healthy."""
+    corpus, classes = recipe.corpus, class_shares(recipe).keys()
     before_damage = corpus.rungs is not None and corpus.rungs[0] == 0
     first_of: dict[str, int] = {}
-    for fault, specimen in sorted(first_specimens(recipe).items(), key=lambda item: item[1]):
-        first = recipe.records_of(specimen).start
-        # the first record of a damaged specimen is the one before its damage
-        if before_damage and fault != "healthy":
-            first_of.setdefault("healthy", first)
-            first += 1
-        if first < recipe.n_records:
-            first_of.setdefault(fault, first)
+    for rig in range(recipe.n_rigs):
+        specimens = range(rig * corpus.specimens_per_rig, recipe.n_specimens)
+        for specimen, fault in zip(specimens, fault_of_each_specimen(recipe, rig), strict=False):
+            first = recipe.records_of(specimen).start
+            # the first record of a damaged specimen is the one before its damage
+            if before_damage and fault != "healthy":
+                first_of.setdefault("healthy", first)
+                first += 1
+            if first < recipe.n_records:
+                first_of.setdefault(fault, first)
+        if classes <= first_of.keys():
+            break
     return first_of

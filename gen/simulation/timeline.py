@@ -59,10 +59,6 @@ class Timeline(NamedTuple):
         """Times of all knots, shape (knot,), 0 at the start of the record [s]."""
         return (np.arange(self.knots) - self.settle) / self.fs
 
-    def response_times(self) -> FloatArray:
-        """Times of the samples of a response, shape (time,), 0 at the start of the record [s]."""
-        return np.arange(self.returned) / self.fs - LEAD_S
-
 
 def timeline(recipe: Recipe) -> Timeline:
     """Time axis of the records of a recipe."""

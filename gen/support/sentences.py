@@ -49,8 +49,8 @@ def _sentence(item: Any, model: type[BaseModel]) -> str | None:
             expected = context["expected_tags"].replace("'", "")
             return f"{place}.kind: {reprlib.repr(context['tag'])} is not one of {expected}{_others(place)}."
         case "union_tag_not_found":
-            kinds = ", ".join(_kinds(item["loc"], model))
-            return f"{place}: {shown} needs a kind: {kinds}."
+            kinds = [kind for section in _last(item["loc"], model).models for kind in kinds_of(section)]
+            return f"{place}: {shown} needs a kind: {', '.join(kinds)}."
         case "value_error":
             text = item["msg"].removeprefix("Value error, ")
             if place.endswith("width_mm") and "is not in" in text:
@@ -120,11 +120,10 @@ def _place(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
 @functools.cache
 def _branches() -> set[str]:
     """Values of ``kind`` of every section and distribution, which are steps of a location, and no keys."""
-    models: list[type[BaseModel]] = [BaseModel]
+    models = BaseModel.__subclasses__()
     for model in models:  # the list grows
         models += model.__subclasses__()
-    kinds = [model.model_fields["kind"].annotation for model in models[1:] if "kind" in model.model_fields]
-    return {value for kind in kinds for value in get_args(kind)}
+    return {kind for model in models for kind in kinds_of(model)}
 
 
 class _Cursor:
@@ -145,9 +144,7 @@ class _Cursor:
         return _Cursor(*(model for field in fields for model in models_in(field.annotation)))
 
     def of_kind(self, kind: str) -> "_Cursor":
-        sections = [
-            m for m in self.models if "kind" in m.model_fields and kind in get_args(m.model_fields["kind"].annotation)
-        ]
+        sections = [model for model in self.models if kind in kinds_of(model)]
         return _Cursor(*sections) if sections else self
 
     def keys(self) -> list[str]:
@@ -180,11 +177,9 @@ def _last(location: tuple[int | str, ...], model: type[BaseModel]) -> _Cursor:
     return node
 
 
-def _kinds(location: tuple[int | str, ...], model: type[BaseModel]) -> list[str]:
-    """Values of ``kind`` of the sections that are allowed at ``location``."""
-    node = _last(location, model)
-    fields = [section.model_fields["kind"] for section in node.models if "kind" in section.model_fields]
-    return [kind for field in fields for kind in get_args(field.annotation)]
+def kinds_of(model: type[BaseModel]) -> tuple[str, ...]:
+    """Values of ``kind`` of a section; none if it has no kinds."""
+    return get_args(model.model_fields["kind"].annotation) if "kind" in model.model_fields else ()
 
 
 def _guess(location: tuple[int | str, ...], model: type[BaseModel]) -> str | None:

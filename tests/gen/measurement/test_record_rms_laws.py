@@ -50,7 +50,8 @@ def check(acceleration, scenarios):
 def lines_of_the_shaft(recipe, scenarios, orders, seed):
     """Bearings that vibrate at multiples of the shaft rate alone, shape (record, channel, time) [m s-2]."""
     rng = np.random.default_rng(seed)
-    turns = np.outer([scenario.conditions["shaft_rate"] for scenario in scenarios], timeline(recipe).response_times())
+    times = np.arange(timeline(recipe).returned) / recipe.recording.sample_rate_hz
+    turns = np.outer([scenario.conditions["shaft_rate"] for scenario in scenarios], times)
     phases = rng.uniform(0, 2 * np.pi, (len(orders), len(scenarios), len(recipe.recording.channels), 1))
     waves = (np.cos(2 * np.pi * n * turns[:, None] + phase) for n, phase in zip(orders, phases, strict=True))
     return sum(waves).astype(np.float32)
