@@ -77,7 +77,7 @@ def network_scores(cnn: ModuleType, taught: Known, seed: int, tests: dict[str, K
         with cnn.torch.no_grad():
             parts = [network(part).softmax(1).numpy() for part in cnn.torch.from_numpy(levels).split(256)]
         rows = labelled_records(table, ())
-        values += figures(score(rows, predictions(np.concatenate(parts), CLASSES, rows.recording, UNCALIBRATED)))
+        values += figures(score(rows, predictions(np.concatenate(parts), CLASSES, rows.recording, UNCALIBRATED))[0])
     return values
 
 

@@ -244,7 +244,7 @@ class Model(Shown):
             records = labelled_records(data, model.features)
             tested = data.isel(record=data["fault"].values != UNKNOWN_CODE)
             seen = seen_records(records.features.to_numpy()[:, : len(model.features)], model.digests)
-        return score(records, predict(tested, self, healthy), seed, seen=seen, reference=reference)
+        return score(records, predict(tested, self, healthy), seed, seen=seen, reference=reference)[0]
 
     def _tables(self, data: Data, reference: Data | None) -> tuple[Any, xr.Dataset | None]:
         """Feature tables of the data and of its reference, with ``bands`` if there is one; waveforms as they are."""

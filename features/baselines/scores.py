@@ -129,8 +129,8 @@ class Scores(Shown):
         }
 
 
-def score(records: Records, predictions: Predictions, seed: int = 0, **told: Any) -> Scores:
-    """Scores by record and by recording.
+def score(records: Records, predictions: Predictions, seed: int = 0, **told: Any) -> tuple[Scores, FloatArray | None]:
+    """Scores by record and by recording, and the balanced accuracies by record of `resampled_recall`.
 
     Parameters
     ----------
@@ -152,18 +152,21 @@ def score(records: Records, predictions: Predictions, seed: int = 0, **told: Any
     if (whole := predictions.by_recording) is not None:
         healthy = np.array(whole.answers) == HEALTHY
         share = _share(records.fault[first][healthy] != HEALTHY_CODE)
-        of_whole = _score(records.fault[first], records.specimen[first], whole, seed, faulty_among_healthy=share)
+        of_whole, _ = _score(records.fault[first], records.specimen[first], whole, seed, faulty_among_healthy=share)
         told |= {"faulty_among_healthy": share, "by_recording": of_whole}
     return _score(records.fault, records.specimen, predictions, seed, **told)
 
 
-def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: int, **told: Any) -> Scores:
+def _score(
+    fault: IntArray, specimen: IntArray, predictions: Predictions, seed: int, **told: Any
+) -> tuple[Scores, FloatArray | None]:
     probabilities, model_classes = predictions.probabilities, np.array([FAULTS.index(c) for c in predictions.classes])
     predicted = model_classes[probabilities.argmax(axis=1)]
     present, right, answered = np.unique(fault), predicted == fault, predictions.answered
     matrix = confusion_matrix(fault, predicted, labels=range(len(FAULTS)))[np.ix_(present, model_classes)]
     bins = reliability_bins(probabilities.max(axis=1), right)
-    return Scores(
+    resampled = resampled_recall(fault, right, specimen, seed)
+    scores = Scores(
         mean_recall(fault, predicted),
         float(f1_score(fault, predicted, labels=present, average="macro")),
         float(right.mean()),
@@ -171,7 +174,7 @@ def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: 
         model_classes=predictions.classes,
         confusion=tuple(tuple(row) for row in matrix.tolist()),
         records=len(fault),
-        interval=bootstrap_interval(fault, right, specimen, seed),
+        interval=None if resampled is None else ends_of(resampled),
         false_alarms=_share(predicted[fault == HEALTHY_CODE] != HEALTHY_CODE),
         log_loss=balanced_log_loss(fault, probabilities, model_classes),
         auc=area(fault, probabilities, model_classes),
@@ -181,6 +184,7 @@ def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: 
         answered_accuracy=_share(right[answered]),
         **told,
     )
+    return scores, resampled
 
 
 def _share(true: np.ndarray) -> float | None:
@@ -230,12 +234,6 @@ def expected_calibration_error(bins: Sequence[Bin]) -> float:
 def mean_recall(fault: IntArray, predicted: IntArray) -> float:
     """Mean recall of the classes present, the balanced accuracy; other classes may be predicted."""
     return float(recall_score(fault, predicted, labels=np.unique(fault), average="macro"))
-
-
-def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> Interval | None:
-    """95 % percentile interval of the balanced accuracy, as of `resampled_recall`."""
-    resampled = resampled_recall(fault, correct, specimen, seed)
-    return None if resampled is None else ends_of(resampled)
 
 
 def resampled_recall(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> FloatArray | None:

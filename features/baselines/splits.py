@@ -15,7 +15,7 @@ from features.baselines.names import UNTRAINED, Track
 from features.baselines.own import Maker
 from features.baselines.predictions import fault_names, predictions
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
-from features.baselines.scores import Scores, mean_recall, resampled_recall, score
+from features.baselines.scores import Scores, mean_recall, score
 from features.baselines.tracks import Split, check_taught, grouped_splits, track_splits
 from features.table.waveforms import Waveforms
 from gen.corpus import FAULTS
@@ -116,7 +116,7 @@ def permuted_labels(records: Records, seed: int) -> IntArray:
 def score_splits(
     records: Records, labels: IntArray, splits: Sequence[Split], estimator: str | Maker, seed: int
 ) -> tuple[Scores, FloatArray | None]:
-    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once, and `resampled_recall`."""
+    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once, as of `score`."""
     classes = np.unique(labels)
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []
@@ -135,6 +135,4 @@ def score_splits(
     truth = np.searchsorted(classes, chosen.fault)
     calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(pooled, truth)
     together = predictions(pooled, fault_names(classes), recording, calibration)
-    right = classes[pooled.argmax(axis=1)] == chosen.fault
-    resampled = resampled_recall(chosen.fault, right, chosen.specimen, seed)
-    return score(chosen, together, seed, folds=tuple(folds)), resampled
+    return score(chosen, together, seed, folds=tuple(folds))

@@ -144,4 +144,4 @@ def _scores(tested: Records, predicted: pd.Series, where: str, seed: int) -> Sco
     codes = np.array([FAULTS.index(name) for name in predicted])
     _, recording = np.unique(tested.recording, return_inverse=True)
     told = predictions(np.eye(len(FAULTS))[codes], fault_names(np.arange(len(FAULTS))), recording, UNCALIBRATED)
-    return score(tested, told, seed)
+    return score(tested, told, seed)[0]

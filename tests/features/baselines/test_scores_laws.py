@@ -18,10 +18,11 @@ from features.baselines.records import Records
 from features.baselines.scores import (
     area,
     balanced_log_loss,
-    bootstrap_interval,
+    ends_of,
     expected_calibration_error,
     interval_text,
     reliability_bins,
+    resampled_recall,
     score,
 )
 from gen.corpus import FAULTS
@@ -46,7 +47,7 @@ def made_records(fault, specimen, recording):
 
 def scores_of(fault, predicted, specimen):
     records = made_records(fault, specimen, np.arange(len(fault)))
-    return score(records, predictions(np.eye(4)[predicted], FAULTS[:4], records.recording, UNCALIBRATED))
+    return score(records, predictions(np.eye(4)[predicted], FAULTS[:4], records.recording, UNCALIBRATED))[0]
 
 
 @given(labelled())
@@ -90,7 +91,7 @@ def test_a_recording_is_decided_by_the_geometric_mean_of_its_windows():
     records = made_records(fault, np.array([0, 0, 0, 1]), np.array([0, 0, 0, 1]))
     unsure, sure = [0.4, 0.6], [1.0, 0.0]
     probabilities = np.array([unsure, unsure, sure, [0.0, 1.0]])
-    found = score(records, predictions(probabilities, FAULTS[1:3], records.recording, UNCALIBRATED))
+    found, _ = score(records, predictions(probabilities, FAULTS[1:3], records.recording, UNCALIBRATED))
     assert found.by_recording is not None
     assert found.balanced_accuracy == pytest.approx((1 / 3 + 1) / 2)
     assert found.by_recording.balanced_accuracy == 1.0
@@ -101,8 +102,8 @@ def test_a_recording_is_decided_by_the_geometric_mean_of_its_windows():
 def test_more_records_of_the_same_specimens_do_not_narrow_the_interval(case):
     fault, predicted, specimen = (np.concatenate([values, values]) for values in case)
     specimen = specimen + 10 * (np.arange(len(specimen)) // len(case[0]))  # at least two specimens of each class
-    once = bootstrap_interval(fault, predicted == fault, specimen, 0)
-    thrice = bootstrap_interval(*(np.repeat(values, 3) for values in (fault, predicted == fault, specimen)), 0)
+    once = ends_of(resampled_recall(fault, predicted == fault, specimen, 0))
+    thrice = ends_of(resampled_recall(*(np.repeat(values, 3) for values in (fault, predicted == fault, specimen)), 0))
     assert once == pytest.approx(thrice)
     assert 0 <= once[0] <= once[1] <= 1
 
@@ -126,7 +127,7 @@ def test_the_interval_leaves_out_two_and_a_half_per_cent_at_each_end(monkeypatch
     hits = np.bincount(specimen, weights=correct)
     share = hits.sum() / records.sum()
     deviation = np.sqrt(np.sum((hits - share * records) ** 2)) / records.sum()  # of a ratio of two sums
-    low, high = bootstrap_interval(np.ones(len(specimen), int), correct, specimen, 0)
+    low, high = ends_of(resampled_recall(np.ones(len(specimen), int), correct, specimen, 0))
     # 20,000 resamples determine the quantile to 1 %; a 94 % interval is 4 % narrower
     assert (share - low) / deviation == pytest.approx(1.96, rel=0.03)
     assert (high - share) / deviation == pytest.approx(1.96, rel=0.03)
