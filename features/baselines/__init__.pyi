@@ -3,6 +3,7 @@ from .results import (
     Results as Results,
     TrackResults as TrackResults,
     benchmark as benchmark,
+    leaky_text as leaky_text,
 )
 from .calibration import Calibration as Calibration
 from .estimators import ESTIMATORS as ESTIMATORS
@@ -16,6 +17,7 @@ from .scores import (
     Scores as Scores,
     behind_text as behind_text,
     interval_text as interval_text,
+    no_width_text as no_width_text,
     percent_text as percent_text,
 )
 from .splits import controls as controls, cross_validate as cross_validate

@@ -5,7 +5,7 @@ score of a random split of records, which leaks; the grouped score with labels p
 at chance; and the scores on other corpora.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from importlib.metadata import version
@@ -270,6 +270,13 @@ def benchmark(
         left_out=left_out,
         importance=_importance(records, names, chosen[leading], splits, seed) if led else {},
     )
+
+
+def leaky_text(baselines: Iterable[Baseline]) -> str:
+    """Sentence on scores of the leaky split below those of the track; empty without one."""
+    if not any(of.leaky.balanced_accuracy < of.grouped.balanced_accuracy for of in baselines):
+        return ""
+    return "A leaky split that scores lower does so by chance, since its folds are others, and shows no leak."
 
 
 _Job = tuple[str, str, str]

@@ -5,10 +5,11 @@ prediction of an absent class counts as an error; the absent class itself is not
 from a bootstrap [1]_ over specimens, because the records of one specimen are strongly correlated.
 
 .. [1] B. Efron, R. J. Tibshirani, *An Introduction to the Bootstrap*, Chapman & Hall, 1993, chapter 8.
+.. [2] J. A. Hanley, A. Lippman-Hand, "If nothing goes wrong, is everything all right?", *JAMA* 249 (1983) 1743-1745.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,6 +82,8 @@ class Scores(Shown):
         What the records were compared with, in one sentence; empty without a reference.
     seen
         Number of tested records that the model was trained on, 0 in a fair test.
+    specimens
+        Number of tested specimens of the class with the fewest.
     """
 
     balanced_accuracy: float
@@ -105,6 +108,7 @@ class Scores(Shown):
     faulty_among_healthy: float | None = None
     reference: str = ""
     seen: int = 0
+    specimens: int = 0
 
     def _heading(self) -> str:
         return f"Scores of {self.records:,} records: balanced accuracy {self.balanced_accuracy:.3f}"
@@ -182,6 +186,7 @@ def _score(
         reliability=bins,
         coverage=float(answered.mean()),
         answered_accuracy=_share(right[answered]),
+        specimens=min(len(np.unique(specimen[fault == c])) for c in present),
         **told,
     )
     return scores, resampled
@@ -272,6 +277,19 @@ def interval_text(interval: Interval | None, decimals: int = 3) -> str:
     if interval is None:
         return "not known: a class has one specimen"
     return " to ".join(f"{end:.{decimals}f}" for end in interval)
+
+
+def no_width_text(scored: Iterable[Scores]) -> str:
+    """Sentence on intervals from 1 to 1, which tell nothing of specimens that were not tested [2]_; empty without one."""
+    fewest = min((scores.specimens for scores in scored if scores.interval == (1, 1)), default=0)
+    return (
+        ""
+        if not fewest
+        else (
+            f"An interval from 1 to 1 says no more than that all tested specimens are right: with {fewest} of a class, "
+            f"its true share of errors may be up to {percent_text(1 - 0.05 ** (1 / fewest))}."
+        )
+    )
 
 
 def behind_text(behind: tuple[float, float, float] | None) -> str:

@@ -230,6 +230,8 @@ def benchmark(
 
 def _show(results: "Results", tests: list[str]) -> None:
     """Show the scores on each track and on other corpora, and those of trained models."""
+    from features.baselines import leaky_text, no_width_text
+
     show.text(f"Balanced accuracy on {results.corpus.title}, {results.folds} folds by {results.track}:", "")
     _show_baselines(results.baselines, tests)
     if results.submissions:
@@ -245,6 +247,11 @@ def _show(results: "Results", tests: list[str]) -> None:
         _show_baselines(of_track.baselines, [])
     for track, reason in results.left_out.items():
         show.text("", f"No scores by {track}. {reason}")
+    # what figures above may be misread for
+    baselines = [baseline for of in (results, *results.further.values()) for baseline in of.baselines.values()]
+    scored = [*(baseline.grouped for baseline in baselines), *results.submissions.values()]
+    for sentence in filter(None, (no_width_text(scored), leaky_text(baselines))):
+        show.text("", sentence)
 
 
 def _show_baselines(baselines: "Mapping[str, Baseline]", tests: list[str]) -> None:

@@ -210,6 +210,8 @@ def _span(durations: tuple[float, ...]) -> str:
 
 
 def _show_scores(scores: "Scores") -> None:
+    from features.baselines import no_width_text
+
     whole = scores.by_recording
     compared = [scores] if whole is None or whole.records == scores.records else [scores, whole]
     header = ("", "by record", "by recording")[: 1 + len(compared)]
@@ -219,6 +221,13 @@ def _show_scores(scores: "Scores") -> None:
         ("true \\ predicted", *scores.model_classes),
         zip(scores.classes, *zip(*scores.confusion, strict=True), strict=True),
     )
+    # what the tables do not tell
+    untested = [name for name in scores.model_classes if name not in scores.classes]
+    absent = (
+        f"No tested record is of class {' or '.join(untested)}, of which the scores tell nothing." if untested else ""
+    )
+    for sentence in filter(None, (no_width_text(compared), absent)):
+        show.text("", sentence)
 
 
 FIGURES = (

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from features.baselines import Results, Scores, behind_text, interval_text, percent_text
+from features.baselines import Results, Scores, behind_text, interval_text, leaky_text, no_width_text, percent_text
 from features.baselines.names import UNTRAINED
 from features.baselines.tracks import NOVELTY
 from gen.corpus import (
@@ -175,7 +175,8 @@ def _findings(results: Results, chance: float) -> list[str]:
             f"On the other corpus {title}, it reaches {_with_interval(test)} by record{whole}; "
             f"the envelope rule reaches {of_rule.balanced_accuracy:.3f}."
         )
-    return sentences
+    # and what scores may be misread for
+    return [*sentences, *filter(None, (leaky_text([baseline]), no_width_text([baseline.grouped, *baseline.tests])))]
 
 
 def _false_alarms(scores: Scores) -> str:

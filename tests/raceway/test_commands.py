@@ -259,6 +259,7 @@ def test_figures_without_records_are_not_known_and_no_threshold_is_at_least_more
     shown = run("evaluate", faulty, "--model", model).stdout
     (line,) = (line for line in shown.splitlines() if line.startswith("false alarms on healthy"))
     assert line.split()[-2:] == ["not", "known"]
+    assert "No tested record is of class healthy, of which the scores tell nothing." in shown
     for threshold, words in ((0.9999, "of more than 99.9 %,"), (0.8, "of at least 80 %,")):
         assert words in calibration_text(UNCALIBRATED._replace(by="rig", threshold=threshold))
 

@@ -1,5 +1,6 @@
 """Laws of scores and detection: counts, invariances, and intervals that only independent specimens narrow."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from features.baselines.scores import (
     ends_of,
     expected_calibration_error,
     interval_text,
+    no_width_text,
     reliability_bins,
     resampled_recall,
     score,
@@ -115,6 +117,17 @@ def test_the_interval_is_not_known_exactly_where_a_class_has_one_specimen(case):
     found = scores_of(fault, predicted, specimen)
     assert (found.interval is None) == alone
     assert (interval_text(found.interval) == "not known: a class has one specimen") == alone
+
+
+@pytest.mark.parametrize("specimens", [2, 7, 300])
+def test_specimens_that_are_all_right_bound_the_error_of_the_smallest_class(specimens):
+    fault = np.repeat([0, 1], [specimens, specimens + 5])
+    found = scores_of(fault, fault, np.arange(len(fault)))
+    bound = re.search(
+        rf"with {specimens} of a class, its true share of errors may be up to (\S+) %", no_width_text([found])
+    )
+    assert binom.pmf(0, specimens, float(bound[1]) / 100) == pytest.approx(0.05, rel=0.02)
+    assert no_width_text([scores_of(fault, 0 * fault, np.arange(len(fault))), replace(found, interval=None)]) == ""
 
 
 def test_the_interval_leaves_out_two_and_a_half_per_cent_at_each_end(monkeypatch):

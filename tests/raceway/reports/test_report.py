@@ -222,6 +222,17 @@ def test_a_score_above_chance_with_permuted_labels_is_reported_as_a_leak(results
     assert "at chance, as expected" in _findings(fine, 0.25)[3]
 
 
+@pytest.mark.parametrize(("leaky", "told"), [(0.5, True), (1.0, False)])
+def test_a_leaky_split_below_the_score_and_an_interval_without_width_are_explained(results, leaky, told):
+    found = results.baselines["ensemble"]
+    row = replace(
+        found, leaky=replace(found.leaky, balanced_accuracy=leaky),
+        grouped=replace(found.grouped, balanced_accuracy=0.9, interval=(leaky + 0.5, 1.0)),
+    )  # fmt: skip
+    findings = " ".join(_findings(replace(results, baselines=results.baselines | {"ensemble": row}), 0.25))
+    assert [text in findings for text in ("does so by chance", "interval from 1 to 1")] == [told, told]
+
+
 @pytest.mark.parametrize(("suffix", "start"), [(".svg", b"<?xml"), (".pdf", b"%PDF"), (".PNG", b"\x89PNG")])
 def test_a_record_is_drawn_reproducibly_in_the_format_of_the_suffix_and_replaces_its_picture(
     corpus, tmp_path, suffix, start
