@@ -93,15 +93,21 @@ def check_submission(
         raise CorpusError(
             f"{path}: is no table of predictions; give a file with the predictions of a submission."
         ) from None
+    if [*submitted.columns[: len(TESTED)]] != TESTED:
+        raise CorpusError(
+            f"{path}: does not begin with the columns {', '.join(TESTED)}; give the file of a submission."
+        )
     # numbers, identities and folds prove that the tested records are those of the protocol, in whatever order they stand
     wanted = frame.astype(str).sort_values("record")
-    if "record" in submitted:
-        submitted = submitted.sort_values("record", ignore_index=True)
-    if not submitted.iloc[:, : len(TESTED)].equals(wanted.reset_index(drop=True)):
-        raise CorpusError(
-            f"{path}: does not have the {len(frame)} tested records of {folds} folds by {track} with seed {seed} of this corpus; "
-            "give the options and the corpus that it was made with."
-        )
+    submitted = submitted.sort_values("record", ignore_index=True)
+    reasons = (
+        f"does not have the {len(frame)} records that are tested",
+        "has records of another corpus",
+        f"has other folds than the {folds} by {track} with seed {seed}",
+    )
+    for column, reason in zip(TESTED, reasons, strict=True):
+        if not submitted[column].equals(wanted[column].reset_index(drop=True)):
+            raise CorpusError(f"{path}: {reason}; give the corpus and the options that it was made with.")
     if len(submitted.columns) == len(TESTED):
         raise CorpusError(f"{path}: has no predictions; add a column of classes, named after the classifier.")
     # in the order of the corpus, on which the bootstrap depends

@@ -35,6 +35,7 @@ _CHECKSUM_BYTES = 73
 _HOST = re.sub(r"[^\w-]", "-", platform.node())
 _READ_BYTES = 1_000_000
 _unfinished: set[Path] = set()
+_perhaps_empty: set[Path] = set()
 
 
 def stamp(path: Path | str) -> Stamp:
@@ -278,10 +279,25 @@ def temporary_folder() -> Iterator[Path]:
         _unfinished.discard(folder)
 
 
+@contextmanager
+def removed_if_empty(folder: Path) -> Iterator[None]:
+    """Remove a folder at the end if nothing is in it, also if a signal ends the process."""
+    _perhaps_empty.add(folder)
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            folder.rmdir()
+        _perhaps_empty.discard(folder)
+
+
 def remove_unfinished() -> None:
-    """Remove all temporary files and folders of this process, just before it ends."""
+    """Remove all temporary files and folders of this process, and those without content, just before it ends."""
     for temporary in tuple(_unfinished):
         _remove(temporary)
+    for folder in tuple(_perhaps_empty):
+        with suppress(OSError):
+            folder.rmdir()
 
 
 def remove_temporary_files(directory: Path) -> None:

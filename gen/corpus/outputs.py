@@ -3,11 +3,19 @@
 import json
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
-from gen.corpus.disk import INDEX_NAME, check_name, corpus_around, place_of, write_text_durably, writing
+from gen.corpus.disk import (
+    INDEX_NAME,
+    check_name,
+    corpus_around,
+    place_of,
+    removed_if_empty,
+    write_text_durably,
+    writing,
+)
 from gen.corpus.locking import lock
 from gen.support.errors import CorpusError
 
@@ -115,12 +123,8 @@ def result_folder(path: Path) -> Iterator[None]:
     """
     is_new = not path.exists()
     make_result_folder(path)
-    with lock(path):
-        try:
-            yield
-        finally:
-            if is_new and not any(path.iterdir()):
-                path.rmdir()
+    with lock(path), removed_if_empty(path) if is_new else nullcontext():
+        yield
 
 
 def write_numbers(content: Mapping[str, Any], path: Path) -> None:

@@ -47,7 +47,8 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 @pages_option("OUTDIR", "Folder for report.html and results.json.", required=False)
 @file_option(
     "FILE.csv",
-    "Write the predictions of the classifiers on the first track, which --check scores again, and nothing else.",
+    f"Write the predictions on the first track of each --estimator, or else of the {DEFAULT_ESTIMATOR}, which --check scores again, and "
+    "nothing else.",
     (".csv",),
     required=False,
     flags=("--submit",),
@@ -189,7 +190,10 @@ def benchmark(
         return
     assert output is not None  # noqa: S101 - neither of the others is given alone
     # a wrong model file is told before the features are computed
-    loaded = {str(path or REFERENCE_MODEL): open_model(path)[0] for path in dict.fromkeys(models)}
+    loaded = {
+        f"./{path}" if path == Path(REFERENCE_MODEL) else str(path or REFERENCE_MODEL): open_model(path)[0]
+        for path in dict.fromkeys(models)
+    }
     with result_folder(output):
         groups = analysis.with_groups(DEFAULT_GROUPS)
         table = table_of(corpus, "off", team, analysis)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @corpus_argument
-@file_option("MODEL", "Model file.", kind="model")
+@file_option("MODEL", "Model file: .skops.", (".skops",), kind="model")
 @click.option(
     "--estimator",
     type=click.Choice(BASELINES),

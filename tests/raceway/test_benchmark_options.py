@@ -164,10 +164,15 @@ def test_a_missing_submission_is_told_before_any_feature_is_computed(run, tiny_c
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        (lambda text: text.replace(",0,", ",1,", 1), "does not have the 48 tested records of 2 folds by rig with"),
-        (lambda text: "\n".join(text.splitlines()[:-1]), "does not have the 48 tested records"),
+        (lambda text: text.replace(",0,", ",1,", 1), "has other folds than the 2 by rig with seed 0; give"),
+        (lambda text: "\n".join(text.splitlines()[:-1]), "does not have the 48 records that are tested"),
+        (
+            lambda text: re.sub(r"^(\d+),[^,]*", r"\1,other", text, count=1, flags=re.MULTILINE),
+            "records of another corpus",
+        ),
+        (lambda text: text.replace("identity", "name", 1), "does not begin with the columns record, identity, fold"),
         (lambda text: text.replace("healthy", "wealthy"), "'wealthy' is no class; allowed are healthy, inner"),
-        (lambda text: text + text.splitlines()[-1], "does not have the 48 tested records"),
+        (lambda text: text + text.splitlines()[-1], "does not have the 48 records that are tested"),
         (lambda text: "\n".join(line.rsplit(",", 1)[0] for line in text.splitlines()), "has no predictions"),
         (lambda _: "", "is no table of predictions"),
         (lambda text: text.replace("healthy", "x" * 4000, 1), "has 4,000 bytes or more; give a file of"),

@@ -131,7 +131,7 @@ def test_bad_usage_or_input_ends_in_one_sentence_and_exit_code_2(run, places, li
 # commands that read a corpus, and what they say of places that hold none
 READERS = {
     "info": "info {}", "validate": "validate {}", "replay": "replay {} --record 0", "plot": "plot {} --record 0 -o {new}.png",
-    "explore": "explore {} -o {new}.html", "features": "features {} -o {new}.nc", "train": "train {} -o {new}",
+    "explore": "explore {} -o {new}.html", "features": "features {} -o {new}.nc", "train": "train {} -o {new}.skops",
     "evaluate": "evaluate {} --model {model}", "benchmark": "benchmark {} -o {new}", "compare": "compare {} {corpus} -o {new}",
     "copy": "copy {} -o {new}", "card": "card {} --license MIT", "life": "life {} -o {new}.png", "prognose": "prognose {}",
     "limit": "limit {}",

@@ -88,16 +88,20 @@ def test_evaluate_takes_the_reference_model_by_name_and_by_default(run, tiny_cor
     assert (file.exit_code, "reference: not a readable model" in file.stderr) == (2, True)
 
 
-def test_benchmark_scores_trained_models_as_evaluate_does(run, tiny_corpus, tiny_table, trainings, tmp_path):
+def test_benchmark_scores_trained_models_as_evaluate_does(
+    run, tiny_corpus, tiny_table, trainings, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
     path = tmp_path / "own.skops"
-    kept_models.train_and_score(tiny_table, "logistic_regression")[0].save(path)
-    models = ("--model", "reference", "--model", path)
+    for name in (path, Path("reference")):
+        kept_models.train_and_score(tiny_table, "logistic_regression")[0].save(name)
+    models = ("--model", "reference", "--model", path, "--model", "./reference")
     line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--estimator", "majority")
     done = run(*line, *models, "--json")
     assert done.exit_code == 0, done.output
     assert len(trainings) == 1
     found = json.loads(done.stdout)["models"]
-    assert found.keys() == {"reference", str(path)}
+    assert found.keys() == {"reference", str(path), "./reference"}
     for name, (scores,) in found.items():
         alone = json.loads(run("evaluate", tiny_corpus, "--model", name, "--json").stdout)
         assert scores == {key: alone[key] for key in scores}

@@ -94,7 +94,7 @@ def test_benchmark_passes_on_grouping_folds_and_seed(run, given, tiny_corpus, tm
     ("command", "more"),
     [
         ("features", ("-o", "new.nc")),
-        ("train", ("-o", "new")),
+        ("train", ("-o", "new.skops")),
         ("evaluate", ("--model", "model")),
         ("benchmark", ("-o", "new")),
     ],

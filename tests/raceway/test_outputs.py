@@ -12,7 +12,7 @@ import xarray as xr
 from features.baselines import Model
 from gen import generate, write_corpus
 from gen.corpus import corpus_files, result_folder
-from gen.corpus.disk import _HOST
+from gen.corpus.disk import _HOST, remove_unfinished
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
 from raceway import copy
@@ -120,8 +120,8 @@ def test_a_place_that_cannot_hold_the_result_is_refused(run, places, line, tmp_p
         refused = {
             tmp_path / f"folder{name.suffix}": "is a folder; give a file",
             tmp_path / "none" / name: "there is no folder",
+            tmp_path / "result.bmp": "does not end in ",
         }
-        refused |= {} if line.startswith("train") else {tmp_path / "result.bmp": "does not end in "}
     for place, sentence in refused.items():
         result = run(*line.format(**places).split(), "-o", place)
         assert (result.exit_code, result.stderr.count("\n")) == (2, 1), result.output
@@ -229,3 +229,13 @@ def test_of_two_benchmarks_into_one_folder_the_second_is_refused(run, places, tm
         assert result.exit_code == 2
         assert "report: another raceway command is writing into it; wait until it ends" in result.stderr
     assert not (tmp_path / "report").exists()
+
+
+def test_a_new_folder_in_which_nothing_is_written_is_gone_when_a_signal_ends_the_process(tmp_path):
+    for name, is_left in (("old", True), ("full", True), ("new", False)):
+        (tmp_path / "old").mkdir(exist_ok=True)
+        with result_folder(tmp_path / name):
+            if name == "full":
+                (tmp_path / name / "report.html").touch()
+            remove_unfinished()
+            assert (tmp_path / name).exists() == is_left
