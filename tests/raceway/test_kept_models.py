@@ -2,6 +2,7 @@
 
 import json
 import threading
+from pathlib import Path
 from importlib.metadata import version
 
 import numpy as np
