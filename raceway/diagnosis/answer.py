@@ -151,8 +151,10 @@ def _reference(healthy: Recorded, recording: Recorded, used: Recorded, machine: 
         )
         raise CorpusError(
             f"{healthy.name}: has other channels ({their}) than the recording ({own}), and cannot be used as the healthy recording; "
-            "choose channels that both have."
+            "choose channels that both have, or write both as .csv with the same names of columns."
         )
+    if all(np.array_equal(signal, healthy.signals[name]) for name, signal in recording.signals.items()):
+        raise CorpusError(f"{healthy.name}: is the recording itself; give a healthy one of the same machine, or none.")
     reference, quality = _usable(healthy, machine)
     if quality.useless or not set(used.signals) <= set(reference.signals):
         why = quality.useless or " ".join(quality.warnings)

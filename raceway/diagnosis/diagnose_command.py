@@ -17,6 +17,7 @@ from raceway.importing.reading_options import Reading, Speeds, check_speed, read
 if TYPE_CHECKING:
     from gen.physics.bearing import Bearing
     from raceway.diagnosis import Given
+    from raceway.importing.recorded import Recorded
 
 ONE_TURN = 60.0  # rpm; lower speeds may be meant in Hz
 
@@ -109,13 +110,11 @@ def diagnose(
     docs/diagnose.md tells how to record and how to read the page.
     """
     from gen.corpus import make_result_folder
-    from raceway.importing.user_folder import read_as_stated, read_recording, readings_of, recordings_in, set_aside
+    from raceway.importing.user_folder import readings_of, recordings_in, set_aside
 
     check_speed(speeds, reading, speed_table)
     candidates = _bearings(bearings, speed_known=speeds is not None or speed_table is not None)
     several = recording.is_dir()
-    if recording.resolve() in {path.resolve() for path in healthy}:
-        raise click.UsageError(f"--healthy: {recording} is the recording itself; give another of the same machine")
     unusable: dict[Path, str] = {}
     # a table of speeds may lie among the recordings
     tables = [] if speed_table is None else [speed_table]
@@ -126,7 +125,7 @@ def diagnose(
     if first is None:
         raise click.UsageError(f"no recording can be used; the first of {len(paths)}: {next(iter(unusable.values()))}")
     # healthy recordings are read before the model, so that a wrong file is told at once
-    compared = [(read_as_stated if several else read_recording)(path, reading) for path in healthy]
+    compared = [_read_healthy(path, recording, reading) for path in healthy]
     references = [recorded for recorded, *_ in compared]
     doubts = _doubts(speeds) + tuple(note for *_, notes in compared for note in notes)
     for sentence in doubts:
@@ -184,6 +183,20 @@ def diagnose(
         show.text(answers[0]["sentence"], *(f"- {sentence}" for sentence in answers[0]["advice"]))
     if output is not None:
         show.text("", f"{output / INDEX if several else output}: pictures, evidence and what was assumed.")
+
+
+def _read_healthy(path: Path, recording: Path, reading: Reading) -> "tuple[Recorded, Reading, tuple[str, ...]]":
+    """Healthy recording, read with the options of the recording, or of a folder as it states."""
+    from gen.support.errors import CorpusError
+    from raceway.importing.user_folder import read_as_stated, read_recording
+
+    try:
+        return (read_as_stated if recording.is_dir() else read_recording)(path, reading)
+    except CorpusError as error:
+        if recording.suffix == path.suffix:
+            raise
+        message = f"{error} It is read as {recording.name} is: write both in one form, such as .csv with the same names of columns."
+        raise CorpusError(message) from None
 
 
 def _speeds_by_file(

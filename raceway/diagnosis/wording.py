@@ -3,7 +3,8 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from features.signal.speed import DISAGREEMENT
+from features.baselines.predictions import UNSURE
+from features.signal.speed import DISAGREEMENT, RIVALS_BEYOND
 from gen.corpus.fault_classes import HEALTHY, SIDES, families, fault_class
 from gen.support.units import from_si
 from raceway.diagnosis.evidence import LEAST_LEVEL, Line
@@ -111,7 +112,8 @@ def _pair(pair: Pair, machine: Given) -> str:
     bearing = "" if len(machine.bearings) == 1 else f"bearing {_bearing(pair)} as found, "
     low, high = (f"{from_si(rate, 'rpm'):,.0f}" for rate in machine.rates)
     if low != high:
-        return f"{bearing}shaft {from_si(pair.rate, 'rpm'):,.0f} rpm as found between {low} and {high} rpm"
+        beyond = f"or up to {100 * RIVALS_BEYOND:g} % beyond"
+        return f"{bearing}shaft {from_si(pair.rate, 'rpm'):,.0f} rpm as found between {low} and {high} rpm, {beyond}"
     if pair.rate != machine.rates[0]:
         return f"{bearing}shaft {from_si(pair.rate, 'rpm'):,.0f} rpm as found, {low} rpm as labelled"
     return f"{bearing}shaft {low} rpm as labelled"
@@ -138,7 +140,7 @@ def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
 
 def different_classes(judged: Sequence[tuple[Pair, str]]) -> str:
     """Clause on pairs that cannot be told apart and give different classes."""
-    each = [f"{_place(pair)} ({verdict})" for pair, verdict in judged]
+    each = [f"{_place(pair)} ({'no answer' if verdict == UNSURE else verdict})" for pair, verdict in judged]
     return f"the lines cannot tell apart {listed(each, 'and')}"
 
 

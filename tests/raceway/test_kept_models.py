@@ -2,8 +2,8 @@
 
 import json
 import threading
-from pathlib import Path
 from importlib.metadata import version
+from pathlib import Path
 
 import numpy as np
 import pytest

@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -170,10 +171,13 @@ def test_a_healthy_recording_has_the_channels_of_the_recording(model, recordings
     signal, rpm = recordings["outer"][0][:FS], recordings["outer"][1]
     options = ("--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model, "--unit", "g")
     three = write_axes(tmp_path / "r.csv", "x,y,z", signal, signal, signal)
-    two = write_axes(tmp_path / "h.csv", "x,y", signal, signal)
+    two = write_axes(tmp_path / "h.csv", "x,y", signal, np.roll(signal, 9))
     assert told(two, *options, "--healthy", three)["channels"] == ["x", "y"]
-    itself = call(three, *options, "--healthy", three)
-    assert (itself.exit_code, "is the recording itself" in itself.stderr) == (2, True)
+    copied = shutil.copy(three, tmp_path / "copied.csv")
+    itself = call(three, *options, "--healthy", copied)
+    assert (itself.exit_code, "copied.csv: is the recording itself" in itself.stderr) == (2, True)
+    form = call(three, *options, "--channel", "y", "--healthy", write_wav(tmp_path / "h.wav", signal))
+    assert (form.exit_code, "read as r.csv is: write both in one form, such as .csv with" in form.stderr) == (2, True)
     result = call(three, *options, "--healthy", two)
     assert (result.exit_code, len(result.stderr.strip().splitlines())) == (2, 1)
     assert "h.csv: has other channels (x and y) than the recording (x, y and z)" in result.stderr
@@ -230,7 +234,7 @@ def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
     diagnosis = raceway.diagnose(signal, FS, rpm=rpm, **known)
     assert diagnosis.sentence == found["sentence"]
     assert diagnosis.probabilities == found["probabilities"]
-    axes = raceway.diagnose([signal, signal], FS, rpm=(0.9 * rpm, 1.1 * rpm), healthy=[[signal, signal]], **known)
+    axes = raceway.diagnose([signal, signal], FS, rpm=(0.9 * rpm, 1.1 * rpm), healthy=[[signal, signal[::-1]]], **known)
     assert [levels.channel for levels in axes.levels] == ["0", "1", "0", "1"]
     several = raceway.diagnose(
         signal, FS, rpm=rpm, model=model, orders={"6205": bearing_orders("6205"), "other": "6308"}

@@ -214,12 +214,14 @@ def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
     same = concluded("outer", "outer", "outer", given=given)
     assert same.verdict == "outer"
     assert same.sentence.endswith(
-        "; shaft 1,500 rpm as found between 1,500 and 3,000 rpm, and the lines fit 6205 at 1,560 rpm and 6205 at 1,620 rpm as well."
+        "; shaft 1,500 rpm as found between 1,500 and 3,000 rpm, or up to 2.5 % beyond, and the lines fit 6205 at 1,560 rpm and 6205 at "
+        "1,620 rpm as well."
     )
     found = concluded("outer", "inner", given=given)
     assert found.verdict == UNSURE
     assert "as well" not in found.sentence
     assert "cannot tell apart 6205 at 1,500 rpm (outer) and 6205 at 1,560 rpm (inner)" in found.sentence
+    assert "6205 at 1,560 rpm (no answer)" in concluded("outer", UNSURE, given=given).sentence
 
 
 @pytest.mark.parametrize(
