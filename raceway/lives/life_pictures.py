@@ -18,6 +18,9 @@ from gen.support.units import from_si
 from raceway.lives.prognosis import FIRST, check_lives
 from raceway.reports.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
 
+ABOVE: Any = {"loc": "lower left", "bbox_to_anchor": (0, 1), "ncols": 2, "borderaxespad": 0}
+"""Place of a legend above its panel, where no curve crosses it."""
+
 
 @rc_context(STYLE)
 def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None) -> Figure:
@@ -58,7 +61,7 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
             if at <= age[-1]:
                 for axes in panels[1:3]:
                     axes.axvline(at, color=INK, linestyle=style, linewidth=0.8, label=name.replace("_", " "))
-                panels[2].legend(loc="upper left")
+                panels[1].legend(**ABOVE)
         # all lives beside those of the other corpus
         if like is not None:
             with open_corpus(like) as other:
@@ -98,7 +101,7 @@ def _draw_courses(axes: Any, own: xr.Dataset, other: xr.Dataset) -> None:
     axes.axhline(1, color=FAINT, linewidth=0.6)
     axes.set(xlabel="share of life [%]", ylabel="rms over\nits start")
     _plain_ticks(axes)
-    axes.legend(loc="upper left")
+    axes.legend(**ABOVE)
 
 
 def _life(records: xr.Dataset, corpus: Path, bearing: str | None) -> xr.Dataset:

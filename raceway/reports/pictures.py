@@ -99,6 +99,11 @@ class DrawnRecord(NamedTuple):
     angle: FloatArray | None = None
 
     @property
+    def recorded_band(self) -> Band:
+        """The band below half the sample rate [Hz]."""
+        return Band(self.band.low, min(self.band.high, self.fs / 2))
+
+    @property
     def turns(self) -> FloatArray:
         """Turns of the shaft since the first sample, shape (time,)."""
         if self.angle is None:
@@ -197,7 +202,7 @@ def draw_density(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = Non
             axes.plot(
                 from_si(frequencies, "khz"), 10 * np.log10(np.maximum(density[0], faintest)), linewidth=0.8, **look
             )
-    low, high = (from_si(edge, "khz") for edge in (shown.band.low, min(shown.band.high, shown.fs / 2)))
+    low, high = (from_si(edge, "khz") for edge in shown.recorded_band)
     axes.axvspan(low, high, color=FAINT, alpha=0.12, linewidth=0)
     axes.set(xlabel="frequency [kHz]", ylabel="PSD [dB]", xlim=(0, shown.fs / 2e3))
     axes.set_title(f"Power spectral density, dB re 1 ({shown.unit})²/Hz; envelope of {low:.3g}-{high:.3g} kHz shaded")
@@ -211,11 +216,8 @@ def draw_envelope_spectrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | 
             order, spectrum = squared_envelope(record)
             axes.plot(order[order <= top], spectrum[order <= top], linewidth=0.8, **look)
     axes.set(ylabel="envelope² / mean", ylim=(0, None))
-    low, high = shown.band
-    axes.set_title(
-        f"Squared envelope spectrum of the whitened band {from_si(low, 'khz'):.3g}-{from_si(high, 'khz'):.3g} kHz",
-        pad=30,
-    )
+    low, high = (from_si(edge, "khz") for edge in shown.recorded_band)
+    axes.set_title(f"Squared envelope spectrum of the whitened band {low:.3g}-{high:.3g} kHz", pad=30)
 
 
 def draw_cursors(axes: Axes, shown: DrawnRecord) -> float:

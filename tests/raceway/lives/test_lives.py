@@ -34,6 +34,7 @@ def test_a_picture_has_the_course_of_one_life(lives):
     assert all(float(number) > 0 for number in numbers)
     assert len(numbers) > 1
     assert figure.axes[3].get_ylabel() == "dB re 1 (m/s²)²/Hz"
+    assert figure.axes[1].get_legend().get_window_extent().y0 >= figure.axes[1].bbox.y1
 
 
 def test_lives_are_told_in_hours(run, told, lives):

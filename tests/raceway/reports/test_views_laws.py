@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from features.table.band import DEFAULT_BAND
+from features.table.band import DEFAULT_BAND, Band
 from gen.corpus import open_corpus
 from gen.support.errors import CorpusError
 from raceway.reports.pictures import draw_record, picture, squared_envelope
@@ -97,6 +97,11 @@ def test_the_title_of_a_record_is_what_a_person_calls_it(tiny_corpus):
             plot_record(corpus)
         with pytest.raises(ValueError, match="view: 'polar' is none of waveform, psd"):
             plot_record(record, "polar")
+
+
+def test_a_band_that_ends_above_half_the_sample_rate_is_named_as_it_is_recorded_in_every_panel(steady):
+    titles = [axes.get_title("left") for axes in draw_record(steady._replace(band=Band(3000.0, 9000.0))).axes]
+    assert [title.count("3-6 kHz") for title in titles] == [0, 1, 1]
 
 
 def test_a_name_is_drawn_as_it_is_whatever_signs_it_has(steady):
