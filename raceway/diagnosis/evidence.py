@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from features.signal.rows import FloatArray
 from features.table.class_features import COMBS
 from features.table.indicators import Orders
 from gen.corpus.fault_classes import SHAFT, FaultClass, families
@@ -85,33 +86,33 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     orders
         Nominal fault orders, as numbers.
     """
-    # lines of the shaft are in every machine
-    free = [~_near_shaft(spectrum, shaft_rate) for spectrum in spectra]
+    # the ratio in the bins that no line explains yet; lines of the shaft are in every machine
+    left = [np.where(_near_shaft(spectrum, shaft_rate), 0.0, spectrum.ratio) for spectrum in spectra]
     sought = [*families()]
     trials = TRIALS_PER_BIN * sum(
-        free_bins[slice(*place)].sum()
+        np.count_nonzero(ratio[slice(*place)])
         for row in sought
-        for spectrum, free_bins in zip(spectra, free, strict=True)
+        for spectrum, ratio in zip(spectra, left, strict=True)
         for place in _search_bins(row, spectrum, shaft_rate, orders)
     )
     lines: list[Line] = []
     least = LEAST_LEVEL
     while sought and trials:
-        first_lines = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in sought]
+        first_lines = [_first_line(row, spectra, left, shaft_rate, orders, FALSE_ALARM / trials) for row in sought]
         held = [
-            _family(row, spectra[number], free[number], fundamental, shaft_rate, orders)
-            if ratio and not _higher_at_half(row, spectra[number], free[number], fundamental, ratio)
+            _family(row, spectra[number], left[number], fundamental, shaft_rate, orders)
+            if highest and not _higher_at_half(row, spectra[number], left[number], fundamental, highest)
             else []
-            for row, (ratio, number, fundamental) in zip(sought, first_lines, strict=True)
+            for row, (highest, number, fundamental) in zip(sought, first_lines, strict=True)
         ]
         sums = [
             sum(line.level for line in family if line.side in ("", row.side))
             for row, family in zip(sought, held, strict=True)
         ]
         strongest = int(np.argmax(sums))
-        ratio, _, fundamental = first_lines[strongest]
+        highest, _, fundamental = first_lines[strongest]
         row, family = sought.pop(strongest), held[strongest]
-        level = 10 * float(np.log10(max(ratio, 1.0)))
+        level = 10 * float(np.log10(max(highest, 1.0)))
         if (
             not family
             or level < least
@@ -120,8 +121,8 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
             continue
         lines += family
         least = max(least, level - SPREAD)
-        for spectrum, free_bins in zip(spectra, free, strict=True):
-            _remove(spectrum, free_bins, row, fundamental, shaft_rate, orders)
+        for spectrum, ratio in zip(spectra, left, strict=True):
+            _remove(spectrum, ratio, row, fundamental, shaft_rate, orders)
     return lines
 
 
@@ -173,33 +174,32 @@ def _peak(spectrum: BandSpectrum, place: int) -> int:
 def _first_line(
     row: FaultClass,
     spectra: Sequence[BandSpectrum],
-    free: Sequence[np.ndarray],
+    left: Sequence[FloatArray],
     shaft_rate: float,
     orders: Orders,
     probability: float,
 ) -> tuple[float, int, float]:
     """Ratio of the highest line above the threshold, 0 without one; number of its spectrum; its fundamental [Hz]."""
     best = 0.0, 0, 0.0
-    for number, (spectrum, free_bins) in enumerate(zip(spectra, free, strict=True)):
+    for number, (spectrum, of_spectrum) in enumerate(zip(spectra, left, strict=True)):
         threshold = spectrum.threshold(probability)
         for harmonic, (first, last) in enumerate(_search_bins(row, spectrum, shaft_rate, orders), start=1):
-            ratio = np.where(free_bins[first:last], spectrum.ratio[first:last], 0.0)
+            ratio = of_spectrum[first:last]
             if ratio.size and ratio.max() > max(threshold, best[0]):
                 best = float(ratio.max()), number, (first + int(ratio.argmax())) * spectrum.resolution / harmonic
     return best
 
 
 def _higher_at_half(
-    row: FaultClass, spectrum: BandSpectrum, free: np.ndarray, fundamental: float, ratio: float
+    row: FaultClass, spectrum: BandSpectrum, left: FloatArray, fundamental: float, ratio: float
 ) -> bool:
     """Whether a line at half the fundamental [Hz] of a race exceeds a ratio; a ball may strike one race alone, at BSF."""
-    first, last = spectrum.bins(0.5 * fundamental, 0.5 * spectrum.width + DRIFT * fundamental)
-    half = np.where(free[first:last], spectrum.ratio[first:last], 0.0)
+    half = left[slice(*spectrum.bins(0.5 * fundamental, 0.5 * spectrum.width + DRIFT * fundamental))]
     return bool(row.name in COMBS and row.lines[0].multiple == 1 and half.max(initial=0.0) > ratio)
 
 
 def _family(
-    row: FaultClass, spectrum: BandSpectrum, free: np.ndarray, fundamental: float, shaft_rate: float, orders: Orders
+    row: FaultClass, spectrum: BandSpectrum, left: FloatArray, fundamental: float, shaft_rate: float, orders: Orders
 ) -> list[Line]:
     """Harmonics of a fundamental [Hz], and the sidebands of those found at the rate of the family and of the shaft."""
     rates = {"": 0.0, row.side: side_of(row, orders) * shaft_rate, SHAFT.base: shaft_rate}
@@ -217,7 +217,7 @@ def _family(
     threshold = spectrum.threshold(FALSE_ALARM / trials)
     lines: dict[tuple[int, str, int], Line] = {}
     for (harmonic, side, sign), (first, last) in searches.items():
-        ratio = np.where(free[first:last], spectrum.ratio[first:last], 0.0)
+        ratio = left[first:last]
         # a sideband counts only beside its harmonic
         if not ratio.size or ratio.max() <= threshold or (sign and (harmonic, "", 0) not in lines):
             continue
@@ -234,13 +234,13 @@ def _family(
 
 
 def _remove(
-    spectrum: BandSpectrum, free: np.ndarray, row: FaultClass, fundamental: float, shaft_rate: float, orders: Orders
+    spectrum: BandSpectrum, left: FloatArray, row: FaultClass, fundamental: float, shaft_rate: float, orders: Orders
 ) -> None:
-    """Mark the bins that a family explains: harmonics, and sidebands at the rates of shaft and cage."""
+    """Set to zero the bins that a family explains: harmonics, and sidebands at the rates of shaft and cage."""
     sides = {0.0, *(n * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1))}
     sides |= {n * side_of(row, orders) * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1)}
     last = int(TOP_ORDER * shaft_rate / fundamental) + 1
     for harmonic in range(last + 1):  # 0: the sidebands of the mean are lines at the rates themselves
         for side in sides:
             frequency = abs(harmonic * fundamental + side)
-            free[slice(*spectrum.bins(frequency, spectrum.width + DRIFT * frequency))] = False
+            left[slice(*spectrum.bins(frequency, spectrum.width + DRIFT * frequency))] = 0.0

@@ -160,6 +160,11 @@ def draw_record(shown: DrawnRecord, under: DrawnRecord | None = None) -> Figure:
     return figure
 
 
+def looks(shown: DrawnRecord, under: DrawnRecord | None) -> list[tuple[DrawnRecord, Any]]:
+    """Records in the order in which they are drawn, each with its look."""
+    return [(shown, OVER)] if under is None else [(under, UNDER), (shown, OVER)]
+
+
 def write_title(figure: Figure, shown: DrawnRecord) -> None:
     """Write the title of a record; a name of a file or channel is no formula, whatever signs it has."""
     colour = FAULT_COLOURS[shown.fault]
@@ -170,11 +175,10 @@ def draw_waveform(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = No
     """Draw the first revolutions of the shaft without the mean of the signal, and those of another record; the weaker one hides none."""
     duration, turned = shown.signal.size / shown.fs, shown.turns
     visible = int(np.searchsorted(turned, TURNS)) / shown.fs
-    for record, look in ((under, UNDER), (shown, OVER)):
-        if record is not None:
-            # the weaker of both is drawn above the stronger one
-            x = record.signal[: max(2, round(visible * record.fs))] - np.mean(record.signal)
-            axes.plot(*thin(np.arange(x.size) / record.fs, x), linewidth=0.6, zorder=2 + 1 / (1 + np.std(x)), **look)
+    for record, look in looks(shown, under):
+        # the weaker of both is drawn above the stronger one
+        x = record.signal[: max(2, round(visible * record.fs))] - np.mean(record.signal)
+        axes.plot(*thin(np.arange(x.size) / record.fs, x), linewidth=0.6, zorder=2 + 1 / (1 + np.std(x)), **look)
     axes.set(xlabel="time [s]", ylabel=f"acceleration [{shown.unit}]", xlim=(0, visible))
     mean = float(np.mean(shown.signal))
     removed = f"; mean of {mean:.3g} {shown.unit} removed" if abs(mean) > TOLD_MEAN * np.std(shown.signal) else ""
@@ -194,14 +198,11 @@ def thin(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def draw_density(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = None) -> None:
     """Power spectral density over that of another record, with the band of the envelope shaded."""
-    for record, look in ((under, UNDER), (shown, OVER)):
-        if record is not None:
-            frequencies, density = psd(record.signal[None], record.fs, SEGMENT)
-            # an axis of some decades, whatever a silent line has
-            faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
-            axes.plot(
-                from_si(frequencies, "khz"), 10 * np.log10(np.maximum(density[0], faintest)), linewidth=0.8, **look
-            )
+    for record, look in looks(shown, under):
+        frequencies, density = psd(record.signal[None], record.fs, SEGMENT)
+        # an axis of some decades, whatever a silent line has
+        faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
+        axes.plot(from_si(frequencies, "khz"), 10 * np.log10(np.maximum(density[0], faintest)), linewidth=0.8, **look)
     low, high = (from_si(edge, "khz") for edge in shown.recorded_band)
     axes.axvspan(low, high, color=FAINT, alpha=0.12, linewidth=0)
     axes.set(xlabel="frequency [kHz]", ylabel="PSD [dB]", xlim=(0, shown.fs / 2e3))
@@ -211,10 +212,9 @@ def draw_density(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = Non
 def draw_envelope_spectrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None = None) -> None:
     """Squared envelope spectrum over orders over that of another record, with the fault lines."""
     top = draw_cursors(axes, shown)
-    for record, look in ((under, UNDER), (shown, OVER)):
-        if record is not None:
-            order, spectrum = squared_envelope(record)
-            axes.plot(order[order <= top], spectrum[order <= top], linewidth=0.8, **look)
+    for record, look in looks(shown, under):
+        order, spectrum = squared_envelope(record)
+        axes.plot(order[order <= top], spectrum[order <= top], linewidth=0.8, **look)
     axes.set(ylabel="envelope² / mean", ylim=(0, None))
     low, high = (from_si(edge, "khz") for edge in shown.recorded_band)
     axes.set_title(f"Squared envelope spectrum of the whitened band {low:.3g}-{high:.3g} kHz", pad=30)

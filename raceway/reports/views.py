@@ -23,10 +23,8 @@ from raceway.reports.class_colours import FAULT_COLOURS
 from raceway.reports.maps import BRIGHTEST_DB, FAINTEST, draw_coherence, draw_grid, level_over_median, plot
 from raceway.reports.pictures import (
     FAINT,
-    OVER,
     PER_TURN,
     STYLE,
-    UNDER,
     WIDTH,
     Drawing,
     DrawnRecord,
@@ -37,6 +35,7 @@ from raceway.reports.pictures import (
     draw_waveform,
     envelope_over_angle,
     fault_lines,
+    looks,
     name_lines,
     write_title,
 )
@@ -108,11 +107,10 @@ def draw_view(view: str, shown: DrawnRecord, under: DrawnRecord | None = None) -
 def _orders(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None:
     """Amplitude spectrum of the signal over orders."""
     top = draw_cursors(axes, shown)
-    for record, look in ((under, UNDER), (shown, OVER)):
-        if record is not None:
-            orders, spectrum = order_spectrum(_over_angle(record), PER_TURN)
-            drawn = (orders > 0) & (orders <= top)
-            axes.semilogy(orders[drawn], np.maximum(spectrum[0, drawn], FAINTEST), linewidth=0.7, **look)
+    for record, look in looks(shown, under):
+        orders, spectrum = order_spectrum(_over_angle(record), PER_TURN)
+        drawn = (orders > 0) & (orders <= top)
+        axes.semilogy(orders[drawn], np.maximum(spectrum[0, drawn], FAINTEST), linewidth=0.7, **look)
     axes.set(ylabel=f"amplitude [{shown.unit}]")
     axes.set_title("Order spectrum of the signal", pad=30)
 
@@ -179,17 +177,16 @@ def _cepstrum(axes: Axes, shown: DrawnRecord, under: DrawnRecord | None) -> None
         axes, own, {name: place for name, place in others.items() if place < CEPSTRUM_TURNS}, colour, CEPSTRUM_TURNS
     )
     # over the angle if the speed varies, so that peaks stay narrow
-    for record, look in ((under, UNDER), (shown, OVER)):
-        if record is not None:
-            y, rate = (
-                (_over_angle(record), float(PER_TURN))
-                if record.angle is not None
-                else (record.signal[None], record.fs / record.shaft_rate)
-            )
-            values = cepstrum(y)[0]
-            at = np.arange(values.size) / rate
-            drawn = (at > SHORTEST_CEPSTRUM) & (at < CEPSTRUM_TURNS)
-            axes.plot(at[drawn], values[drawn], linewidth=0.6, **look)
+    for record, look in looks(shown, under):
+        y, rate = (
+            (_over_angle(record), float(PER_TURN))
+            if record.angle is not None
+            else (record.signal[None], record.fs / record.shaft_rate)
+        )
+        values = cepstrum(y)[0]
+        at = np.arange(values.size) / rate
+        drawn = (at > SHORTEST_CEPSTRUM) & (at < CEPSTRUM_TURNS)
+        axes.plot(at[drawn], values[drawn], linewidth=0.6, **look)
     axes.set(xlabel="quefrency [revolutions]", ylabel="real cepstrum", xlim=(0, CEPSTRUM_TURNS))
     axes.set_title("Cepstrum", pad=30)
 
