@@ -83,11 +83,10 @@ def suited_to(model: Model, *corpora: Path | str | xr.Dataset) -> Model:
 def check_takes_reference(model: Fitted, reference: str) -> None:
     """Refuse a reference, with whose name the sentence begins, if the model has no part for it."""
     if model.relative is None:
-        message = (
+        raise CorpusError(
             f"{reference}: the model takes no reference, because {model.corpus} has no rig with two healthy "
             "recordings and records of each other class; leave the reference out, or train on another corpus."
         )
-        raise CorpusError(message)
 
 
 def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset | None = None) -> Predictions:

@@ -74,8 +74,7 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
         """
         missing = set(EVIDENCE) - set(getattr(X, "columns", ()))
         if missing:
-            message = f"envelope rule: no column {min(missing)!r}; give a data frame with the lines features."
-            raise ValueError(message)
+            raise ValueError(f"envelope rule: no column {min(missing)!r}; give a data frame with the lines features.")
         self._check_columns(X, reset=True)
         self.classes_ = np.union1d([FAULTS.index(fault) for fault in (HEALTHY, *COMBS)], y)
         return self

@@ -379,9 +379,8 @@ def _feature_table(
     """Feature table of a corpus."""
     unknown = [group for group in groups if group not in ALL_GROUPS]
     if unknown:
-        message = (
+        raise CorpusError(
             f"{corpus_name(corpus)}: the model takes features of the group {unknown[0]!r}, and the groups are "
             f"{', '.join(ALL_GROUPS)}; train the model again."
         )
-        raise CorpusError(message)
     return feature_table(corpus, groups, band=band, window=window)

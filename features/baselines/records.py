@@ -61,16 +61,14 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     """
     title, unknown = title_of(table), count_unknown(table)
     if unknown and unknown == table.sizes["record"]:
-        message = f"{title}: all records are of class {UNKNOWN}; label some of them, or give another corpus."
-        raise CorpusError(message)
+        raise CorpusError(f"{title}: all records are of class {UNKNOWN}; label some of them, or give another corpus.")
     if unknown:
         table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
     rows = feature_rows(table, features)
     fault = np.asarray(table["fault"].values, dtype=np.intp)
     if not np.isin(fault, [*FAULT_NAMES]).all():
         allowed = ", ".join(f"{code} {name}" for code, name in FAULT_NAMES.items())
-        message = f"{title}: fault has values other than {allowed}."
-        raise CorpusError(message)
+        raise CorpusError(f"{title}: fault has values other than {allowed}.")
     specimen = specimen_numbers(table)
     return Records(
         title=title,
@@ -119,8 +117,7 @@ def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
     _require(title, ("features", "fault", "rig", "specimen", "recording"), table.variables)
     _require(title, features, table["feature"].values)
     if table.sizes["record"] == 0:
-        message = f"{title}: the feature table holds no record; give a corpus with at least one."
-        raise CorpusError(message)
+        raise CorpusError(f"{title}: the feature table holds no record; give a corpus with at least one.")
     held = table["features"]
     if list(table["feature"].values) != list(features):  # a selection is a copy
         held = held.sel(feature=list(features))
@@ -170,11 +167,10 @@ def check_classes(records: Records) -> IntArray:
     present = np.unique(records.fault)
     if len(present) < 2:
         only = FAULTS[present[0]]
-        message = (
+        raise CorpusError(
             f"{records.title}: all records are {only}; give a corpus with two or more classes (faults in its recipe, or "
             f"raceway copy)."
         )
-        raise CorpusError(message)
     return present
 
 
@@ -208,5 +204,4 @@ def title_of(table: xr.Dataset) -> str:
 def _require(title: str, names: Iterable[str], held: Iterable[Hashable]) -> None:
     lacking = set(names) - set(held)
     if lacking:
-        message = f"{title}: the feature table lacks {min(lacking)!r}; make it again with raceway features."
-        raise CorpusError(message)
+        raise CorpusError(f"{title}: the feature table lacks {min(lacking)!r}; make it again with raceway features.")

@@ -51,10 +51,9 @@ def choose_reference(
     # a record is never compared with itself
     tested &= ~np.isin(mine, record_digests(feature_rows(healthy, features).to_numpy()))
     if not tested.any():
-        message = (
+        raise CorpusError(
             f"{title_of(reference)}: every tested record belongs to the reference; give another recording as reference."
         )
-        raise CorpusError(message)
     chosen = table.isel(record=tested)
     return chosen, healthy, _sentence(chosen, healthy, int((~tested).sum()))
 
@@ -106,11 +105,10 @@ def check_durations(corpus: Path | str | xr.Dataset, reference: Path | str | xr.
     with open_corpus(corpus) as opened, open_corpus(reference) as other:
         tested, its = _duration(opened), _duration(other)
     if abs(its - tested) > 0.01 * tested:
-        message = (
+        raise CorpusError(
             f"{corpus_name(reference)}: the records of the reference last {its:g} s and those of {corpus_name(corpus)} {tested:g} s; "
             "import the reference with records of the same duration."
         )
-        raise CorpusError(message)
 
 
 def _duration(opened: xr.Dataset) -> float:

@@ -158,11 +158,10 @@ def healthy_records(reference: xr.Dataset) -> xr.Dataset:
     finite = [np.isfinite(of_channel["features"].values).any(axis=1) for of_channel in channels_of(reference)]
     rows &= np.logical_or.reduce(finite)  # too short or constant signals have no features
     if not rows.any():
-        message = (
+        raise CorpusError(
             f"{title_of(reference)}: the reference holds no healthy record with features; give a healthy recording of "
             "the rig that is as long as the records."
         )
-        raise CorpusError(message)
     return reference.isel(record=rows)
 
 
@@ -184,11 +183,10 @@ def check_rates(table: xr.Dataset, reference: xr.Dataset) -> None:
     tested, its = np.unique(table["sample_rate"].values), np.unique(reference["sample_rate"].values)
     comparable = 2 * band_of(table.attrs).high  # from it on, all bands of the features lie below the Nyquist frequency
     if not np.array_equal(tested, its) and min(*tested, *its) < comparable:
-        message = (
+        raise CorpusError(
             f"{title_of(reference)}: the sample rate of the reference is {its[0]:g} Hz and that of the records "
             f"{tested[0]:g} Hz; they may differ only if both are at least {comparable:g} Hz."
         )
-        raise CorpusError(message)
 
 
 def virtual_references(table: xr.Dataset, features: Sequence[str], seed: int) -> tuple[IntArray, IntArray]:

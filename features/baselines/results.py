@@ -358,11 +358,10 @@ def _further(records: Records, cases: dict[str, Case], baselines: dict[str, Base
 def _check_apart(records: Records, test: Records) -> None:
     shared = seen_records(test.features.to_numpy(), record_digests(records.features.to_numpy()))
     if shared:
-        message = (
+        raise CorpusError(
             f"{test.title}: {shared} of its records are in the training corpus too; "
             f"give a test corpus without training records."
         )
-        raise CorpusError(message)
 
 
 def _content(records: Records, unknown: int) -> Content:

@@ -148,5 +148,6 @@ def check_taught(fault: IntArray, splits: Sequence[Split]) -> None:
         untaught = np.setdiff1d(tested, fault[train])
         if len(untaught):
             name = FAULTS[untaught[0]]
-            message = f"cross-validation: a fold has no {name} record to train on; use fewer folds, or another track."
-            raise CorpusError(message)
+            raise CorpusError(
+                f"cross-validation: a fold has no {name} record to train on; use fewer folds, or another track."
+            )

@@ -59,8 +59,7 @@ def define_features(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -
     """
     unknown = [name for name in groups if name not in ALL_GROUPS]
     if unknown or isinstance(groups, str):
-        message = f"groups: {groups!r} is not a list of feature groups; choose from {', '.join(ALL_GROUPS)}."
-        raise ValueError(message)
+        raise ValueError(f"groups: {groups!r} is not a list of feature groups; choose from {', '.join(ALL_GROUPS)}.")
     return tuple(feature._replace(group=name) for name in groups for feature in find_group(name).features_in(band))
 
 

@@ -53,8 +53,7 @@ def checked_speed(speed: str, table: xr.Dataset) -> Speed:
         If it is none of `SPEEDS`.
     """
     if speed not in SPEEDS:
-        message = f"speed: {speed!r} is no treatment of shaft speeds; choose from {', '.join(SPEEDS)}."
-        raise ValueError(message)
+        raise ValueError(f"speed: {speed!r} is no treatment of shaft speeds; choose from {', '.join(SPEEDS)}.")
     return "off" if speed == "check" and LATENT in table.variables else cast("Speed", speed)
 
 

@@ -49,11 +49,9 @@ def shaft_speed(
         For a tolerance outside 0.01 to 0.2, or a sample rate or shaft rate that is not a positive number.
     """
     if not 0.01 <= tolerance <= 0.2:
-        message = f"tolerance: {tolerance} is not in [0.01, 0.2]; give the largest relative error of the label."
-        raise ValueError(message)
+        raise ValueError(f"tolerance: {tolerance} is not in [0.01, 0.2]; give the largest relative error of the label.")
     if not (0 < fs < np.inf and 0 < shaft_rate < np.inf):
-        message = f"fs and shaft_rate: {fs} and {shaft_rate} are not both positive numbers; give them in Hz."
-        raise ValueError(message)
+        raise ValueError(f"fs and shaft_rate: {fs} and {shaft_rate} are not both positive numbers; give them in Hz.")
     # one window is a recording of one
     x = np.atleast_2d(np.asarray(x))
     each = Orders(*(np.broadcast_to(np.asarray(order, dtype=float), (len(x),)) for order in orders))

@@ -48,11 +48,9 @@ def check_destination(path: Path | str) -> None:
     """
     path = Path(path)
     if path.suffix not in WRITERS:
-        message = f"{path}: {path.suffix or 'no suffix'} is no format of feature tables; use .nc or .parquet."
-        raise CorpusError(message)
+        raise CorpusError(f"{path}: {path.suffix or 'no suffix'} is no format of feature tables; use .nc or .parquet.")
     if path.suffix == ".parquet" and find_spec("pyarrow") is None:
-        message = f"{path}: Parquet needs pyarrow; pip install pyarrow, or write .nc instead."
-        raise CorpusError(message)
+        raise CorpusError(f"{path}: Parquet needs pyarrow; pip install pyarrow, or write .nc instead.")
     check_result(path, "feature table")
 
 
@@ -74,11 +72,11 @@ def read_table(path: Path | str) -> xr.Dataset:
         raise
     except Exception as error:  # netCDF4 and xarray raise a dozen unrelated types for damaged bytes
         reason = (str(error) or type(error).__name__).splitlines()[0]
-        message = f"{path}: not a readable netCDF file ({reason}); write it with raceway features."
-        raise CorpusError(message) from error
+        raise CorpusError(f"{path}: not a readable netCDF file ({reason}); write it with raceway features.") from error
     if not {"features", "feature", "group"} <= set(table.variables):
-        message = f"{path}: contains no features (record, feature); write a feature table with raceway features."
-        raise CorpusError(message)
+        raise CorpusError(
+            f"{path}: contains no features (record, feature); write a feature table with raceway features."
+        )
     return with_own_codes(table, path)
 
 

@@ -195,8 +195,9 @@ def _read_healthy(path: Path, recording: Path, reading: Reading) -> "tuple[Recor
     except CorpusError as error:
         if recording.suffix == path.suffix:
             raise
-        message = f"{error} It is read as {recording.name} is: write both in one form, such as .csv with the same names of columns."
-        raise CorpusError(message) from None
+        raise CorpusError(
+            f"{error} It is read as {recording.name} is: write both in one form, such as .csv with the same names of columns."
+        ) from None
 
 
 def _speeds_by_file(

@@ -177,8 +177,9 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
             text, key = reason.args
             raise UnusableError(text, key and "speed_column") from None
         if len(beside.columns) > 1:
-            message = f"has {len(beside.columns)} columns in {speed}; choose a variable of one"
-            raise UnusableError(message, "speed_column")
+            raise UnusableError(
+                f"has {len(beside.columns)} columns in {speed}; choose a variable of one", "speed_column"
+            )
         return beside, place_of(beside, 0, "speed_column")
 
     @np.errstate(all="ignore")
@@ -190,8 +191,10 @@ def reader(path: Path, assumed: Unit | None) -> Callable[[Sensor], Signal]:
             if beside is table:
                 table = table.without(place)
                 if not table.columns or (sensor.column is not None and place in table.header.places(sensor.column)):
-                    message = f"has its speed and its signal in column {table.header.name(place)}; choose another"
-                    raise UnusableError(message, "speed_column")
+                    raise UnusableError(
+                        f"has its speed and its signal in column {table.header.name(place)}; choose another",
+                        "speed_column",
+                    )
         content = signal_of(table, sensor.column)
         size = content.values.size
         fs, of_rate = content.rate(sensor.long_rate if sensor.long_rate and size > sensor.long_samples else sensor.rate)

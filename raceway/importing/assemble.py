@@ -99,10 +99,9 @@ def import_recordings(
     samples = window * collection.fs
     length = round(samples) if math.isfinite(samples) else 0
     if length < 2:
-        message = (
+        raise CorpusError(
             f"window: {window} s is shorter than two samples; give the length of a record in seconds, such as 0.5."
         )
-        raise CorpusError(message)
     check_limit("record_samples", length * len(collection.channels), f"window: {window:g} s are", CorpusError)
     recordings = Counter[str]()
     left_out, told = [*skipped], [*warnings]

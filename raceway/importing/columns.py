@@ -50,16 +50,18 @@ class Values(NamedTuple):
             if fitting or not stated:
                 return wanted, []
             if self.table.playback is None and any(SLOWEST <= rate <= FASTEST for rate, _ in stated):
-                message = f"is at {told}, and {wanted:g} Hz are given; correct what is given"
-                raise UnusableError(message, "sample_rate_hz", contradicted="rate")
+                raise UnusableError(
+                    f"is at {told}, and {wanted:g} Hz are given; correct what is given",
+                    "sample_rate_hz",
+                    contradicted="rate",
+                )
             return wanted, [f"is at {told}; the given {wanted:g} Hz are used"]
         if not stated:
             return None, []
         rates = [rate for rate, _ in stated]
         if max(rates) > (1 + _SAME_RATE) * min(rates) or not SLOWEST <= rates[0] <= FASTEST:
             beyond = "" if SLOWEST <= min(rates) <= max(rates) <= FASTEST else f", beyond {SLOWEST:g} Hz to 1 MHz"
-            message = f"is at {told}{beyond}; give the sample rate"
-            raise UnusableError(message, "sample_rate_hz")
+            raise UnusableError(f"is at {told}{beyond}; give the sample rate", "sample_rate_hz")
         of_sound = not self.rates and rates[0] % _SOUND == 0
         return rates[0], [
             f"its header states {rates[0]:g} Hz, as for sound; give the rate of the recording if it is another"
@@ -77,17 +79,21 @@ class Values(NamedTuple):
         stated = known_unit(self.unit)
         # no option makes an acceleration of a velocity
         if stated is None and is_other_quantity(self.unit):
-            message = (
+            raise UnusableError(
                 f"states {self.named} in its header, which is no acceleration and cannot be used; correct the header if it is "
-                "wrong, or choose another column"
+                "wrong, or choose another column",
+                "column",
             )
-            raise UnusableError(message, "column")
         if wanted is None and self.unit and stated is None:
-            message = f"states {self.named} in its header, which is no unit that is read; give the unit of the values"
-            raise UnusableError(message, "unit")
+            raise UnusableError(
+                f"states {self.named} in its header, which is no unit that is read; give the unit of the values", "unit"
+            )
         if wanted is not None and stated not in (None, wanted):
-            message = f"states {self.named} in its header, and the unit {wanted} is given; correct what is given"
-            raise UnusableError(message, "unit", contradicted="unit")
+            raise UnusableError(
+                f"states {self.named} in its header, and the unit {wanted} is given; correct what is given",
+                "unit",
+                contradicted="unit",
+            )
         if wanted is not None:
             said = self.unit and stated is None
             return wanted, [f"states {self.named} in its header; the given unit {wanted} is used"] if said else []
@@ -110,11 +116,16 @@ def signal_of(table: NumberTable, column: int | str | None) -> Values:
     times = [n for n, values in columns.items() if header.is_of_time(n) or is_even(values) or is_nearly_even(values)]
     signals = [n for n in columns if n not in times] if column is None else [place_of(table, column, "column")]
     if len(signals) > 1:
-        message = f"has {len(columns)} columns ({_listed(header, [*columns])}) and none is chosen; choose one"
-        raise UnusableError(message, "column", axes=tuple(map(header.key, axes_of(header, signals))))
+        raise UnusableError(
+            f"has {len(columns)} columns ({_listed(header, [*columns])}) and none is chosen; choose one",
+            "column",
+            axes=tuple(map(header.key, axes_of(header, signals))),
+        )
     if not signals or signals[0] in times:
-        message = f"has times or a counter in column {_listed(header, signals or times)}, and no signal; choose another"
-        raise UnusableError(message, "column")
+        raise UnusableError(
+            f"has times or a counter in column {_listed(header, signals or times)}, and no signal; choose another",
+            "column",
+        )
     # times are checked also where the signal is chosen: a gap in them is one in the signal
     _check_numbers(table, [*signals, *times])
     own_rate = header.rates_of.get(signals[0])
@@ -154,13 +165,14 @@ def place_of(table: NumberTable, column: int | str, key: str) -> int:
     """
     places = table.header.places(column)
     if len(places) > 1:
-        message = f"has several columns {column} ({_listed(table.header, places)}); choose one by its number"
-        raise UnusableError(message, key)
-    if not places or places[0] not in table.columns:
-        message = (
-            f"has the columns {_listed(table.header, [*table.columns])}, and no numbers in {column!s:.60}; choose one"
+        raise UnusableError(
+            f"has several columns {column} ({_listed(table.header, places)}); choose one by its number", key
         )
-        raise UnusableError(message, key)
+    if not places or places[0] not in table.columns:
+        raise UnusableError(
+            f"has the columns {_listed(table.header, [*table.columns])}, and no numbers in {column!s:.60}; choose one",
+            key,
+        )
     _check_numbers(table, places)
     return places[0]
 
@@ -171,14 +183,14 @@ def _check_numbers(table: NumberTable, used: Sequence[int]) -> None:
     if flaw is not None:
         raise flaw
     if {table.marks[n] for n in used if n in table.marks} == {".,"}:
-        message = "has numbers that can be read in two ways, such as 1.234; give the decimal mark"
-        raise UnusableError(message, "decimal")
+        raise UnusableError("has numbers that can be read in two ways, such as 1.234; give the decimal mark", "decimal")
     for n in used:
         wrong = np.flatnonzero(~np.isfinite(table.columns[n]))
         if wrong.size:
             count = f"{wrong.size} samples of {table.columns[n].size}"
-            message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
-            raise UnusableError(message)
+            raise UnusableError(
+                f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
+            )
 
 
 def is_even(values: FloatArray) -> bool:

@@ -205,8 +205,9 @@ def _read(parts: Sequence[tuple[Path, Labels]], fs: float, places: tuple[int, in
     signal = np.stack(signals)
     if rate != fs:
         if labels.resample_hz is None:
-            message = f"is at {rate:g} Hz and the corpus at {fs:g} Hz; give resample_hz for all files, or make a corpus of each"
-            raise UnusableError(message)
+            raise UnusableError(
+                f"is at {rate:g} Hz and the corpus at {fs:g} Hz; give resample_hz for all files, or make a corpus of each"
+            )
         signal, sentence = resample(signal, rate, fs)
         notes.append(sentence)
     rpm, told = labels.speed(stated)

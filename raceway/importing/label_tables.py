@@ -60,8 +60,9 @@ def read_table_of_labels(path: Path, common: Mapping[str, Any]) -> list[tuple[st
         # a value without a key would be lost in silence
         lost = next((cell for name, cell in zip(named, cells, strict=False) if cell and not name), None)
         if lost is not None:
-            message = f"{place}: {lost!r:.60} is in a column without a key in row {first}; give the key, or quote a text with commas."
-            raise CorpusError(message)
+            raise CorpusError(
+                f"{place}: {lost!r:.60} is in a column without a key in row {first}; give the key, or quote a text with commas."
+            )
         texts.append((place, {name: cell for name, cell in zip(named, cells, strict=False) if cell}))
     columns = {
         key: [text for _, keys in texts if is_number(text := keys.get(key, ""))] for key in names if key in _NUMBERS
@@ -162,8 +163,7 @@ def lines_of(path: Path, keys: str) -> list[tuple[int, list[str]]]:
         lines = [*islice(filled, limit("recording_files") + 2)]
     check_limit("recording_files", len(lines) - 1, f"{path}: names", CorpusError)
     if len(lines) < 2:
-        message = f"{path}: has no rows; write one with keys such as {keys}, and below it one for each file."
-        raise CorpusError(message)
+        raise CorpusError(f"{path}: has no rows; write one with keys such as {keys}, and below it one for each file.")
     number, names = lines[0]
     twice = next((name for name in names if name and names.count(name) > 1), None)
     if twice is not None:

@@ -77,8 +77,7 @@ def guarded(path: Path, kind: str) -> Iterator[None]:
         if not isinstance(error, Exception) and type(error).__name__ != "PanicException":
             raise
         reason = f" ({str(error).splitlines()[0][:120]})" if isinstance(error, _WITH_REASON) and str(error) else ""
-        message = f"is truncated, damaged or not a {kind} file{reason}"
-        raise UnusableError(message) from error
+        raise UnusableError(f"is truncated, damaged or not a {kind} file{reason}") from error
 
 
 @contextmanager

@@ -24,8 +24,7 @@ def resample(signal: FloatArray, fs: float, wanted: float) -> tuple[FloatArray, 
     from scipy.signal import resample_poly  # loads scipy.stats
 
     if not 1 / _WIDEST <= wanted / fs <= _WIDEST:
-        message = f"is at {fs:g} Hz, too far from {wanted:g} Hz to be resampled"
-        raise UnusableError(message)
+        raise UnusableError(f"is at {fs:g} Hz, too far from {wanted:g} Hz to be resampled")
     ratio = Fraction(wanted / fs).limit_denominator(_FINEST)
     check_limit("file_bytes", int(signal.nbytes * ratio), f"resampled to {wanted:g} Hz holds", UnusableError)
     up, down = ratio.numerator, ratio.denominator

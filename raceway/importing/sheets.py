@@ -91,10 +91,9 @@ def _check_size(path: Path) -> int:
                     elif b"office:value" in attributes:
                         cells += repeated * times
             if max(rows, tags) > _MOST_ROWS:
-                message = (
+                raise UnusableError(
                     f"has a sheet of {max(rows, tags)} rows, and one of Excel has at most {_MOST_ROWS}; export it again"
                 )
-                raise UnusableError(message)
             what = f"has a sheet of {columns} columns and {rows} rows, which takes"
             check_limit("file_bytes", columns * rows * _CELL_BYTES, what, UnusableError)
             check_limit("file_bytes", cells * _CELL_BYTES, f"has a sheet of {cells} cells, which takes", UnusableError)
@@ -199,8 +198,7 @@ def _chosen(names: list[str], visible: list[str], active: int, wanted: str | Non
         return wanted, ()
     if wanted is not None or not visible:
         what = f"not {wanted}" if wanted is not None else "none of which is visible"
-        message = f"holds the sheets {', '.join(names)}, {what}; name one"
-        raise UnusableError(message, "variable")
+        raise UnusableError(f"holds the sheets {', '.join(names)}, {what}; name one", "variable")
     name = names[active] if active < len(names) and names[active] in visible else visible[0]
     others = [other for other in visible if other != name]
     return name, (f"sheet {name} is read, and not {', '.join(others)}",) if others else ()

@@ -39,16 +39,20 @@ def at_equal_angles(
         wrong = np.flatnonzero(~np.isfinite(values))
         if wrong.size:
             count = f"{wrong.size} {what} of {values.size}"
-            message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again, or correct its unit"
-            raise UnusableError(message)
+            raise UnusableError(
+                f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again, or correct its unit"
+            )
     if course.size != signal.size:
         raise UnusableError(f"has {course.size} speeds and {signal.size} samples; export one for each sample")
     if signal.size <= 2 * CROSSINGS:
-        message = f"has {signal.size} samples, of which {CROSSINGS} are lost at each end at equal angles of its shaft; record longer"
-        raise UnusableError(message)
+        raise UnusableError(
+            f"has {signal.size} samples, of which {CROSSINGS} are lost at each end at equal angles of its shaft; record longer"
+        )
     if factor and not absolute:
-        message = "holds integers, whose full scale is not known, and so no speed; give the pulses in a turn of a tacho"
-        raise UnusableError(message, "speed_unit")
+        raise UnusableError(
+            "holds integers, whose full scale is not known, and so no speed; give the pulses in a turn of a tacho",
+            "speed_unit",
+        )
     rpm = from_si(course * factor, "rpm")
     wrong = np.flatnonzero(~((rpm >= SLOWEST) & (rpm <= FASTEST)) & (pulses == 0))
     if wrong.size:
@@ -72,8 +76,9 @@ def at_equal_angles(
     turning = f"turns at {low:.5g} to {high:.5g} rpm"
     end = int(np.ceil(CROSSINGS * high / mean_rpm))
     if even.size <= 2 * end:
-        message = f"{turning} and has {even.size} samples at equal angles of its shaft, of which {end} are lost at each end; record longer"
-        raise UnusableError(message)
+        raise UnusableError(
+            f"{turning} and has {even.size} samples at equal angles of its shaft, of which {end} are lost at each end; record longer"
+        )
     told = f"it is sampled again at equal angles of its shaft, which {turning}, {mean_rpm:.5g} rpm in the mean"
     if high > _SMEARED * low:
         told += "; so wide a range smears resonances over bands of frequencies: trust its orders alone, or cut it into shorter ones"
@@ -90,8 +95,10 @@ def _angles_of(tacho: FloatArray, pulses: int) -> FloatArray:
     except ValueError as error:
         # the advice there is about the arguments of a function
         reason = str(error).removeprefix("tacho: record 0 ").partition(";")[0]
-        message = f"has no tacho that can be used: it {reason}; cut out what has no even pulses, or correct the pulses in a turn"
-        raise UnusableError(message, "speed_unit") from None
+        raise UnusableError(
+            f"has no tacho that can be used: it {reason}; cut out what has no even pulses, or correct the pulses in a turn",
+            "speed_unit",
+        ) from None
 
 
 def _unit(wanted: str | None, stated: str) -> tuple[float, int]:
@@ -103,6 +110,7 @@ def _unit(wanted: str | None, stated: str) -> tuple[float, int]:
         what = f"has a speed in {said!r:.40}, which is no unit that is read" if said else "states no unit of its speed"
         raise UnusableError(f"{what}; give rpm, Hz, or the pulses in a turn of a tacho", "speed_unit")
     if of_header not in (0, factor):
-        message = f"states a speed in {stated} in its header, and {said} is given; correct what is given"
-        raise UnusableError(message, "speed_unit")
+        raise UnusableError(
+            f"states a speed in {stated} in its header, and {said} is given; correct what is given", "speed_unit"
+        )
     return factor, pulses

@@ -141,8 +141,9 @@ class _Text(NamedTuple):
             end = line
         text = self._replace(content=self.content[:end])
         if len(notes) > _MOST_NOTES:
-            message = f"has more than {_MOST_NOTES} lines of text from line {text.height + 1} on; correct the file, or cut it there"
-            raise UnusableError(message)
+            raise UnusableError(
+                f"has more than {_MOST_NOTES} lines of text from line {text.height + 1} on; correct the file, or cut it there"
+            )
         return text, (f"text after the numbers is left out: {notes[-1]!r:.60}, lines: {len(notes)}",) if notes else ()
 
     def parsed(self, start: int, width: int, point: str) -> pd.DataFrame:
@@ -171,8 +172,9 @@ def read_table(content: bytes, mark: str, decimal: str | None) -> NumberTable:
     lines = [*split(first_lines(content), mark)]
     first = next((n for n, line in enumerate(lines[: _HEADER_LINES + 1]) if is_row(line.fields)), None)
     if first is None:
-        message = f"has no row of numbers among its first {min(len(lines), _HEADER_LINES)} lines; export a row of numbers for each sample"
-        raise UnusableError(message)
+        raise UnusableError(
+            f"has no row of numbers among its first {min(len(lines), _HEADER_LINES)} lines; export a row of numbers for each sample"
+        )
     # the lines above the first row are its header, and those below the last one notes
     above = [line for line in lines[:first] if any(line.fields)]
     rows = [line.fields for line in lines[first:] if is_row(line.fields)]
@@ -194,11 +196,13 @@ def read_table(content: bytes, mark: str, decimal: str | None) -> NumberTable:
     if any(not columns[n][0] and all(columns[n][1:]) for n in starts):
         raise text.flaw(start, start)
     if [*filter(None, rows[0])] == [str(height - 1)]:
-        message = f"has {rows[0][0]} in line {start}, which is the number of the rows below; delete that line"
-        raise UnusableError(message)
+        raise UnusableError(
+            f"has {rows[0][0]} in line {start}, which is the number of the rows below; delete that line"
+        )
     if 0 < header.samples < height:
-        message = f"has {height} rows and states {header.samples} samples: it holds several blocks; save each in a file of its own"
-        raise UnusableError(message)
+        raise UnusableError(
+            f"has {height} rows and states {header.samples} samples: it holds several blocks; save each in a file of its own"
+        )
     # one column whose numbers have one reading tells the decimal mark of all
     marks = {n: decimal_marks(numbers) for n, numbers in starts.items() if re.search("[.,]", "".join(numbers))}
     point = decimal or ("," if "," in marks.values() and "." not in marks.values() else ".")

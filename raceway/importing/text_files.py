@@ -121,8 +121,10 @@ def mark_between(lines: Sequence[str]) -> str:
     rows = {mark: [line.fields for line in split(lines, mark) if _is_plain_row(line.fields)] for mark in _MARKS}
     most = max(map(len, rows.values()))
     if not most:
-        message = f"has no row of numbers among its first {len(lines)} lines; export numbers, or give the mark between columns"
-        raise UnusableError(message, "delimiter")
+        raise UnusableError(
+            f"has no row of numbers among its first {len(lines)} lines; export numbers, or give the mark between columns",
+            "delimiter",
+        )
     best = [mark for mark in _MARKS if len(rows[mark]) == most]
     numbers = {mark: [[*filter(is_number, fields)] for fields in rows[mark]] for mark in best}
     mark = next((mark for mark in best if max(map(len, rows[mark])) > 1), best[0])
@@ -130,8 +132,10 @@ def mark_between(lines: Sequence[str]) -> str:
     written = "".join(number for row in numbers[mark] for number in row)
     whole = mark == "," and "." not in written and "," not in written
     if whole or any(numbers[other] != numbers[mark] for other in best):
-        message = "has commas or blanks between digits, which may stand between columns or in numbers; give the mark between columns"
-        raise UnusableError(message, "delimiter")
+        raise UnusableError(
+            "has commas or blanks between digits, which may stand between columns or in numbers; give the mark between columns",
+            "delimiter",
+        )
     return mark
 
 

@@ -46,8 +46,9 @@ def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
     recordings = [path for path in files if is_known(path.suffix) and path.resolve() not in left_out]
     recordings = [path for path in recordings if not is_speed_table(path)]
     if not recordings:
-        message = f"{folder}: has no recording in it ({', '.join(SUFFIXES)}); give a recording, or the folder that holds them."
-        raise CorpusError(message)
+        raise CorpusError(
+            f"{folder}: has no recording in it ({', '.join(SUFFIXES)}); give a recording, or the folder that holds them."
+        )
     return sorted(recordings, key=_place)
 
 
