@@ -17,6 +17,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus import FAULT_NAMES, SIGNAL, UNKNOWN_CODE, corpus_name, open_corpus
+from gen.support.display import first_few
 
 BLOCK = (
     64  # samples of a block: those of two recordings are not equal by chance, even of noise of few steps of a converter
@@ -86,8 +87,8 @@ def _named_alike(recordings: Sequence[_Recording]) -> Iterator[str]:
     shared = [source for source, specimens in held.items() if len(specimens) > 1]
     if shared:
         yield (
-            f"{_listed(shared)} holds recordings of more than one specimen; if these are sensors of one machine, give them one "
-            f"specimen, or a split can test on a bearing of its training."
+            f"{first_few(shared, _SHOWN, '; ')} holds recordings of more than one specimen; if these are sensors of one machine, "
+            f"give them one specimen, or a split can test on a bearing of its training."
         )
 
 
@@ -111,8 +112,8 @@ def _copies(corpus: xr.Dataset, recordings: Sequence[_Recording], number: Sequen
     ]
     if copies:
         yield (
-            f"{_listed(copies)} have the same samples, and are of different specimens; remove one of the two, or give both the same "
-            f"specimen."
+            f"{first_few(copies, _SHOWN, '; ')} have the same samples, and are of different specimens; remove one of the two, or "
+            f"give both the same specimen."
         )
 
 
@@ -137,8 +138,3 @@ def _one_per_file(recordings: Sequence[_Recording]) -> Iterator[str]:
             f"each of the {count} recordings is a specimen of its own; if some are of one bearing, a split by specimen leaks: give "
             f"recordings of a bearing the same specimen, or use this corpus to test models trained on others."
         )
-
-
-def _listed(items: Sequence[str]) -> str:
-    more = len(items) - _SHOWN
-    return "; ".join(items[:_SHOWN]) + (f" and {more} more" if more > 0 else "")

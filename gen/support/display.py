@@ -1,6 +1,6 @@
 """Objects that show what they hold: one line in a list, lines in print, a table in a notebook."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from html import escape
 from unicodedata import category, normalize
 
@@ -35,6 +35,17 @@ def cell_text(text: str) -> str:
     shown = "".join(letter if letter.isprintable() else "?" for letter in text)
     # some spreadsheets also take signs of full width
     return f"'{shown}" if normalize("NFKC", shown).lstrip().startswith(("=", "+", "-", "@")) else shown
+
+
+def first_few(texts: Iterable[str], most: int, between: str = ", ") -> str:
+    """First texts of a list, and the number of the others.
+
+    >>> first_few("abcd", 2), first_few("ab", 2)
+    ('a, b and 2 more', 'a, b')
+    """
+    every = [*texts]
+    more = f" and {len(every) - most:,} more" if len(every) > most else ""
+    return between.join(every[:most]) + more
 
 
 class Shown:

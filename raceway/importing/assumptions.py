@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from gen.physics.bearing import orders
 from gen.physics.bearing_text import geometry_text
 from gen.physics.catalogue import CATALOGUE
+from gen.support.display import first_few
 from raceway.importing.label_keys import Labels
 
 _TOPICS = {
@@ -34,8 +35,7 @@ def assumptions(files: Sequence[Labels], fs: float) -> tuple[str, ...]:
         for sentence in _of_file(labels):
             paths_of.setdefault(sentence, []).append(labels.path)
     for sentence, paths in paths_of.items():
-        more = f" and {len(paths) - _MOST_PATHS} more" if len(paths) > _MOST_PATHS else ""
-        some = "" if len(paths) == len(files) else f" ({', '.join(paths[:_MOST_PATHS])}{more})"
+        some = "" if len(paths) == len(files) else f" ({first_few(paths, _MOST_PATHS)})"
         told.append(sentence + some)
     return tuple(f"{sentence}." for sentence in sorted(told, key=lambda sentence: sentence.partition(":")[0]))
 

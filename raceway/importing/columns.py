@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gen.support.display import first_few
 from raceway.importing.axes import axes_of
 from raceway.importing.conversion import Unit
 from raceway.importing.header import SECONDS, Header, is_other_quantity, key_of, known_unit, rounded_rate
@@ -248,6 +249,4 @@ def _rate_of(times: FloatArray) -> float | None:
 
 def _listed(header: Header, columns: Sequence[int]) -> str:
     """Numbers and names of columns."""
-    shown = [header.name(n) for n in columns[:_MOST_NAMED]]
-    more = len(columns) - len(shown)
-    return ", ".join(shown) + (f" and {more} more" if more else "")
+    return first_few(map(header.name, columns), _MOST_NAMED)

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.trust import LIBRARY_LOCK, ForeignStorageError, own_dataset
+from gen.support.display import first_few
 from gen.support.limits import check_limit
 from raceway.importing.axes import axes_of
 from raceway.importing.header import Header, unit_said
@@ -184,6 +185,4 @@ def _axes(held: Mapping[str, int], names: Sequence[str]) -> tuple[str, ...]:
 
 def _listing(names: Iterable[str]) -> str:
     """First names of a list, and the number of the others."""
-    every = [*names]
-    shown = ", ".join(name[:63] for name in every[:6]) or "nothing"
-    return f"{shown} and {len(every) - 6} more" if len(every) > 6 else shown
+    return first_few((name[:63] for name in names), 6) or "nothing"

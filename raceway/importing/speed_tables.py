@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
+from gen.support.display import first_few
 from gen.support.errors import CorpusError
 from raceway.importing.label_tables import lines_of
 from raceway.importing.numerals import IN_THOUSANDS, in_doubt
@@ -50,6 +51,5 @@ def read_speed_table(table: Path, recordings: Iterable[Path], others: Iterable[P
         except ValueError as error:
             raise CorpusError(f"{table}, row {number}, column {RPM}: {error}.") from None
     if missing := [name for name in needed if name not in speeds]:
-        more = f" and {len(missing) - 1:,} more" if len(missing) > 1 else ""
-        raise CorpusError(f"{table}: has no row for {missing[0]}{more}; add one for each recording of the folder.")
+        raise CorpusError(f"{table}: has no row for {first_few(missing, 1)}; add one for each recording of the folder.")
     return speeds

@@ -40,7 +40,6 @@ from gen.corpus import (
 from gen.corpus.choice import per_record
 from gen.corpus.contents import extent
 from gen.corpus.fault_classes import FAULT_NAMES, SHAFT, fault_class, fundamentals
-from gen.support.display import visible
 from gen.support.errors import CorpusError
 from gen.support.executor import run
 from gen.support.progress import Progress, counter
@@ -57,7 +56,7 @@ from raceway.reports.pictures import (
     squared_envelope,
 )
 from raceway.reports.subject import can_be_drawn, check_band, shown_of
-from raceway.reports.templates import write_page
+from raceway.reports.templates import short_text, write_page
 from raceway.reports.views import envelope_map
 
 if TYPE_CHECKING:
@@ -80,7 +79,6 @@ FIELDS: Mapping[str, tuple[str, int]] = {
     "waterfall": ("uint8", ROWS * CELLS // 2),
 }
 """Arrays of a record by name, with their type and number of values. In a block, those of all its records follow each other."""
-LONGEST_TEXT = 200
 READ = ("fault", "sample_rate", "shaft_rate", "first_shaft_rate", "last_shaft_rate", *Orders._fields)
 
 
@@ -153,7 +151,7 @@ def write_explorer(
                 reduced.append(text)
                 report(size)
         sensor = str(opened["channel"].values[number]) if opened.sizes["channel"] > 1 else ""
-        title = _text(opened.attrs.get("title", "untitled corpus"))
+        title = short_text(opened.attrs.get("title", "untitled corpus"))
         facts = {"band": [*band], "fs": float(opened["sample_rate"][0]), "axes": _axes(quantities)}
     folder = files("raceway.reports")
     script = "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
@@ -161,7 +159,7 @@ def write_explorer(
         output,
         "explore.html.jinja",
         title=title,
-        channel=_text(sensor),
+        channel=short_text(sensor),
         shown=len(places),
         records=count,
         script=script,
@@ -265,14 +263,14 @@ def _features(path: Path | str | None, corpus: xr.Dataset, places: np.ndarray, c
 
 
 def _quantity(name: str, unit: object, meaning: object, role: str, values: list[Any]) -> Quantity:
-    stored = _text("" if unit == "1" else unit)
+    stored = short_text("" if unit == "1" else unit)
     shown, factor = shown_unit(name, stored)
     numeric = not any(isinstance(value, str) for value in values)
     ends = extent(np.array(values, float)) if numeric and stored else None
     about = {
         "name": name,
         "unit": stored,
-        "meaning": _text(meaning),
+        "meaning": short_text(meaning),
         "role": role,
         "range": ends and range_text(name, ends[0], ends[-1], stored),
         "numeric": numeric,
@@ -294,14 +292,9 @@ def _plain(values: Sequence[Any]) -> list[Any]:
         if isinstance(value, float)
         else value
         if isinstance(value, int)
-        else _text(value)
+        else short_text(value)
         for value in values
     ]
-
-
-def _text(value: object) -> str:
-    """Text of a corpus, shortened."""
-    return visible(str(value))[:LONGEST_TEXT]
 
 
 def _axes(quantities: Sequence[Quantity]) -> list[str]:

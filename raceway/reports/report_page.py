@@ -33,9 +33,8 @@ from raceway.reports.curves import draw_detection, draw_reliability, draw_roc
 from raceway.reports.examples import examples_of
 from raceway.reports.pictures import draw_record, picture
 from raceway.reports.summaries import draw_content, draw_scores
-from raceway.reports.templates import write_page
+from raceway.reports.templates import short_text, write_page
 
-LONGEST_TEXT = 300
 BARS, LEAST_IMPORTANCE = 15, 5e-4  # of the drawn quantities
 
 
@@ -73,8 +72,8 @@ def _content(corpus: xr.Dataset) -> dict[str, Any]:
     """Variables of the template that describe the records."""
     duration = corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])
     return {
-        "title": _text(corpus.attrs.get("title", "untitled corpus")),
-        "origin": _text(corpus.attrs.get("source", "")),
+        "title": short_text(corpus.attrs.get("title", "untitled corpus")),
+        "origin": short_text(corpus.attrs.get("source", "")),
         "units": unit_counts(corpus),
         "duration": duration,
         "fs": float(corpus["sample_rate"][0]),
@@ -147,7 +146,7 @@ def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
 
 def _test_titles(results: Results) -> list[str]:
     """Names of the other corpora on the page."""
-    return [f"{number}: {_text(test.title)}" for number, test in enumerate(results.tests, start=1)]
+    return [f"{number}: {short_text(test.title)}" for number, test in enumerate(results.tests, start=1)]
 
 
 def _findings(results: Results, chance: float) -> list[str]:
@@ -221,18 +220,12 @@ def _facts(manifest: Manifest, results: Results) -> list[tuple[str, str]]:
         "benchmark seed": results.seed,
         "benchmark versions": results.versions,
     }
-    return [(_text(key.replace("_", " ")), _fact_text(value)) for key, value in (facts | benchmark).items()]
+    return [(short_text(key.replace("_", " ")), _fact_text(value)) for key, value in (facts | benchmark).items()]
 
 
 def _fact_text(value: object) -> str:
     if isinstance(value, Mapping):
-        return _text(", ".join(f"{key} {item}" for key, item in value.items()))
+        return short_text(", ".join(f"{key} {item}" for key, item in value.items()))
     if isinstance(value, list | tuple):
         return f"{len(value)}"
-    return _text(value)
-
-
-def _text(value: object) -> str:
-    """Text of a corpus, shortened."""
-    text = str(value)
-    return text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}..."
+    return short_text(value)

@@ -11,6 +11,8 @@ import numpy as np
 from gen.corpus import check_result, write_text_durably
 from gen.support.display import visible
 
+LONGEST_TEXT = 300
+
 
 def write_page(path: Path, name: str, package: str = "raceway.reports", /, **variables: Any) -> Path:
     """Write the page of a template, whole or not at all; CorpusError if it would replace something else, or the disk refuses it."""
@@ -47,6 +49,12 @@ def template(name: str, package: str = "raceway.reports") -> jinja2.Template:
         "digits": three_digits,
     }
     return environment.get_template(name)
+
+
+def short_text(value: object) -> str:
+    """Text of a corpus without signs that are not seen, shortened."""
+    text = visible(str(value))
+    return text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}..."
 
 
 def _address(picture: bytes) -> str:
