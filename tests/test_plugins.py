@@ -107,7 +107,7 @@ def made(installed, tmp_path_factory):
         "info corpus --where 'worn_chain'in(machine_condition) --json",
         "replay corpus --record 5",
         "features corpus --group crossings -o features.nc",
-        "train corpus --group crossings -o model.skops",
+        "train corpus --group crossings --estimator logistic_regression -o model.skops",
         "evaluate corpus --model model.skops",
         "benchmark corpus -o report --group crossings --estimator envelope_rule --folds 2",
         "explore corpus -o explore.html",

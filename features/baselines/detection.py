@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import beta
-from sklearn.metrics import auc, roc_curve
 
 from features.baselines.records import FloatArray, IntArray
 from features.baselines.tracks import ranges
@@ -96,13 +95,17 @@ def roc(faulty: np.ndarray, score: FloatArray, specimen: IntArray, seed: int) ->
     if faulty.all() or not faulty.any():
         return None
 
-    def curve(weight: FloatArray | None = None) -> FloatArray:
-        """Area, and shares at `FALSE_ALARMS`, of weighted records."""
-        alarms, hits, _ = roc_curve(faulty, score, sample_weight=weight, drop_intermediate=False)
-        # the curve is a staircase: at a share of false alarms, the hits reached so far
-        return np.append(auc(alarms, hits), hits[np.searchsorted(alarms, FALSE_ALARMS, side="right") - 1])
+    falling = np.argsort(-score)
+    ends = np.flatnonzero(np.diff(score[falling], append=np.nan))  # records of one score are told apart by no threshold
 
-    area, *detected = curve().tolist()
+    def curve(weight: FloatArray) -> FloatArray:
+        """Area, and shares at `FALSE_ALARMS`, of weighted records: `sklearn.metrics.roc_curve` takes ten times as long."""
+        sums = [np.append(0.0, np.cumsum((weight * kind)[falling])[ends]) for kind in (faulty, ~faulty)]
+        hits, alarms = (of / of[-1] for of in sums)
+        # the curve is a staircase: at a share of false alarms, the hits reached so far
+        return np.append(np.trapezoid(hits, alarms), hits[np.searchsorted(alarms, FALSE_ALARMS, side="right") - 1])
+
+    area, *detected = curve(np.ones(len(score))).tolist()
     shares = tuple(FALSE_ALARMS.tolist())
     # records of one specimen are alike, so the bootstrap draws specimens
     rng, weight = np.random.default_rng(seed), np.empty(len(score))
