@@ -64,7 +64,7 @@ faults:
   - {kind: outer, weight: 5, width_mm: "grid(0.2, 0.4, 0.6, 0.8, 1)"}
 ```
 
-Without `level`, a fault makes its records louder, and the rms alone tells the classes: every score is near 1. Use
+A fault makes its records louder here, and every score is near 1. Use
 `level: {kind: snr, faulty_db: "uniform(-15, 0)", healthy_db: "uniform(-10, 10)"}`, which gives all records one rms, a
 higher `background_m_s2`, or narrower spalls (`width_mm`) for a corpus that is worth learning from.
 

@@ -27,8 +27,9 @@ def channel_number(corpus: xr.Dataset, channel: int | str, where: Path | str) ->
     if isinstance(channel, int) and 0 <= channel < len(names):
         return channel
     near = difflib.get_close_matches(str(channel), names, n=1)
+    by_number = "" if isinstance(channel, str) else ", or its number from 0"
     meant = f"; did you mean {near[0]}?" if near else "."
-    raise CorpusError(f"{where}: no channel {channel!r}; give one of {', '.join(names)}, or its number from 0{meant}")
+    raise CorpusError(f"{where}: no channel {channel!r}; give one of {', '.join(names)}{by_number}{meant}")
 
 
 def channel_blocks(corpus: xr.Dataset, channel: int) -> list[xr.Dataset]:

@@ -156,7 +156,7 @@ def _bounds(limits: dict[str, Any]) -> str:
     high = [limits[name] + sign for name, sign in (("le", "]"), ("lt", ")")) if name in limits]
     if low and high:
         return f" in {low[0]}, {high[0]}"
-    return f" >= {low[0][1:]}" if low else ""
+    return f" {'>=' if low[0][0] == '[' else '>'} {low[0][1:]}" if low else ""
 
 
 def _short(number: float) -> str:

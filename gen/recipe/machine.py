@@ -162,8 +162,8 @@ class GeometryBearing(Section):
     pitch_diameter_mm: Distribution = within(5, 1000, open_low=True)
     """Diameter of the circle through the centres of the balls."""
     ball_diameter_mm: Annotated[Distribution, _DIAMETER] = within(0, 500, open_low=True)
-    """Diameter of a ball, or of a roller (`roller_diameter_mm`): 0.05 to 0.45 of the pitch diameter; of a range, reduced where neighbouring
-    balls would touch."""
+    """Diameter of a ball, or of a roller (`roller_diameter_mm`): 0.05 to 0.45 of the pitch diameter; of a range, reduced where neighbours
+    would leave no room for a cage."""
     contact_angle_deg: Distribution = within(-40, 40, default=0.0)
     """Contact angle on the drawing; it enters the fault frequencies."""
     roller_length_mm: Distribution = within(0, 1000, default=0.0)
@@ -211,10 +211,11 @@ class GeometryBearing(Section):
             roller_length=rollers or None,
         )
 
-    @staticmethod
-    def fitting_ball(n_balls: int, pitch: float, ball: float) -> float:
-        """Ball diameter, reduced where neighbours would leave no room for cage bars [m]."""
-        return min(ball, 0.85 * math.pi * pitch / n_balls)
+    def fitting_ball(self, n_balls: int, pitch: float, ball: float) -> float:
+        """Ball diameter; of a range, reduced where neighbours would leave no room for cage bars [m]."""
+        ranges = (self.n_balls, self.pitch_diameter_mm, self.ball_diameter_mm, self.roller_length_mm)
+        fixed = all(low == high for low, high in (some.support() for some in ranges))
+        return ball if fixed else min(ball, 0.85 * math.pi * pitch / n_balls)
 
 
 def check_room(n_balls: int, ball_mm: float, pitch_mm: float) -> None:

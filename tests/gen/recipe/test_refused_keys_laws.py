@@ -57,8 +57,8 @@ def beside(allowed):
     """Numbers just out of a range."""
     ends = RANGE.search(allowed)
     if ends is None:
-        least = re.search(r">= (\d+)", allowed)
-        return [int(least[1]) - 1] if least else []
+        least = re.search(r"(>=?) (\d+)", allowed)
+        return [int(least[2]) - (least[1] == ">=")] if least else []
     low, high = float(ends["low"]), float(ends["high"])
     step = 1 if "whole" in allowed else max(abs(low), 1) / 100
     above = high if ends["high_end"] == ")" else high + max(abs(high) / 100, step)

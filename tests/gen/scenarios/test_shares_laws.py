@@ -160,3 +160,12 @@ def test_the_unbalance_follows_the_highest_product_of_a_speed_that_is_a_share(re
         draw_scenarios(recipe_with(rated | {"operation.shaft_rpm": speed}), 0, 1)[0] for speed in (share_of_it, plain)
     )
     assert scenario.recipe.machine.unbalance == pytest.approx(other.recipe.machine.unbalance)
+
+
+def test_balls_of_a_range_leave_room_for_a_cage_and_fixed_ones_stay(recipe_with):
+    fixed = {"kind": "geometry", "n_balls": 22, "pitch_diameter_mm": 60, "ball_diameter_mm": 7.5}
+    drawn = [
+        draw_scenarios(recipe_with({"bearing": bearing}), 0, 1)[0].bearing.ball_diameter
+        for bearing in (fixed, fixed | {"ball_diameter_mm": uniform(7.5, 7.6)})
+    ]
+    assert drawn == pytest.approx([7.5e-3, 0.85 * math.pi * 60e-3 / 22])
