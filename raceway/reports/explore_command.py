@@ -48,7 +48,7 @@ def explore(
     by class, range and condition, and shows waveform, power spectral density, envelope spectrum with fault lines, waterfall and labels
     of the chosen record. In the page, the left and right keys choose a record and / goes to the condition.
 
-    A record takes 1.5 kB on the page, and its features another 0.8 kB: 10,000 records are 15 MB.
+    A record takes 1.5 kB on the page, and its features another 0.6 kB: 10,000 records are 15 MB.
     """
     from gen.corpus import read_manifest
     from raceway.reports.explore import write_explorer

@@ -48,7 +48,7 @@ def limit(
     records of this length: change duration_s of the recipe for others. Draw widths from too faint to plain, such as loguniform(0.05, 2),
     and make 100 or more records of each class, the healthy one too. With a recorded background, as of raceway imitate, the recording
     must be long enough for them, or the records shorter. The corpus of a recipe is not kept, and faults that cannot be seen
-    are not drawn again. The picture has the share seen over the size.
+    are not drawn again; a corpus in which they were is refused. The picture has the share seen over the size.
     """
     from features.baselines.records import HEALTHY_CODE
     from features.table.durations import durations_of
@@ -57,10 +57,9 @@ def limit(
     from raceway.visibility.fault_limits import corpus_of
     from raceway.visibility.size_curves import FALSE_ALARMS
 
-    workers = workers or cores()
     with (
         progress("generating", "records") as report,
-        corpus_of(source, records=records, workers=workers, progress=report) as corpus,
+        corpus_of(source, records=records, workers=workers or cores(), progress=report) as corpus,
     ):
         table = table_of(corpus, team=Team(workers), analysis=analysis)
     with progress("fitting", "curves and classifiers") as report:
