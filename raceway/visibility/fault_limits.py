@@ -182,7 +182,7 @@ def check_counts(classes: Mapping[str, int], name: str) -> None:
     if HEALTHY not in classes or len(classes) < 2:
         lacking = "faulty" if HEALTHY in classes else "healthy"
         raise CorpusError(
-            f"{name}: has no {lacking} records; add kind: healthy, and others with a width_mm, to faults."
+            f"{name}: has no {lacking} records; make more, or add kind: healthy, and others with a width_mm, to faults."
         )
     for fault, count in classes.items():
         if count < LEAST:
