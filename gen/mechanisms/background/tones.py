@@ -25,7 +25,7 @@ class Tones(BackgroundSource):
     count: Distribution = within(1, 64)
     """Number of lines, rounded to a whole number."""
     frequency_hz: Distribution = within(1, 100_000, each=True)
-    """Frequency of a line, drawn for each; above half the sample rate it aliases."""
+    """Frequency of a line, drawn for each; the anti-alias filter removes it above half the sample rate."""
     level_db: Distribution = within(-80, 40, each=True)
     """Rms of a line relative to that of the background noise, drawn for each."""
     modulation: Distribution = within(0, 1, each=True, default=0.0)

@@ -93,8 +93,8 @@ HEALTHY, OUTER = range(30), range(30, 60)
 @pytest.mark.parametrize(
     ("changed", "sentence"),
     [
-        (lambda t: t.isel(record=OUTER), r"has no healthy records; add kind: healthy"),
-        (lambda t: t.isel(record=HEALTHY), r"has no faulty records; add"),
+        (lambda t: t.isel(record=OUTER), r"has no healthy records; make more, or add kind: healthy"),
+        (lambda t: t.isel(record=HEALTHY), r"has no faulty records; make more, or add"),
         (lambda t: t.isel(record=range(41)), r"11 outer record\(s\) are too few; make 20 or more of each class\.$"),
         (lambda t: t.assign(width=(t["width"] > 0) * 0.5e-3), r"no class has a size that varies; draw it, such as width_mm: loguniform\("),
         (lambda t: t.drop_vars("width"), r"no class has a size that varies"),
