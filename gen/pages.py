@@ -31,8 +31,8 @@ A recipe is a YAML file. `raceway plan RECIPE` reports what it makes, `raceway g
 `raceway recipes --keys PREFIX` prints the keys of this page. Keys end in their unit. Where the allowed value is a
 range alone, such as `[0, 10]`, the value is a number or a distribution. `raceway recipes --schema > recipe.schema.json`
 writes a schema with which editors complete and check keys; a recipe names it in its first line,
-`# yaml-language-server: $schema=recipe.schema.json`. The schema takes any text for a distribution, such as
-`uniform(1800, 900)`, values out of range or a wrong name after `*`, and checks no keys together. `raceway plan`
+`# yaml-language-server: $schema=recipe.schema.json`. The schema takes a distribution with any arguments,
+such as `uniform(1800, 900)`, values out of range or a wrong name after `*`, and checks no keys together. `raceway plan`
 checks all, with a sentence for each error.
 
 ## A first recipe
