@@ -14,7 +14,6 @@ import numpy as np
 
 from gen.corpus import FAULTS, SPLITS
 from gen.generation.trial import try_some
-from gen.mechanisms.faults.bearing_fault import BALL_SPACING
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios, scenario_texts, split_of
 from gen.simulation.compiled_kernel import is_compiled
@@ -63,8 +62,10 @@ class Plan:
     left_out: int
     first_left_out: str | None
     """The sentence about the first record that is left out."""
-    wide_spall: str | None
-    """A sentence about the first spall that is wider than the distance between two balls."""
+    wide_spalls: int
+    """Number of records with a spall that is wider than from ball to ball."""
+    first_wide_spall: str | None
+    """A sentence about the first of them."""
     bytes: int
     """Size by a few records; if none were made, because they are long or the kernel is not compiled, without compression."""
     seconds: float | None
@@ -105,6 +106,7 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
     if not steps:
         raise SimulationError(failures[0])
     recording, trial = whole.recording, try_some(whole)
+    wide = [sentence for sentence in map(_wide_spall, drawn) if sentence]
     # counts of what was drawn become counts of the corpus
     of_drawn, of_checked = count / len(drawn), count / len(places)
     return Plan(
@@ -126,7 +128,8 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
         checked=len(places),
         left_out=round(len(failures) * of_checked),
         first_left_out=next(iter(failures), trial and trial.failure),
-        wide_spall=next(filter(None, map(_wide_spall, drawn)), None),
+        wide_spalls=round(len(wide) * of_drawn),
+        first_wide_spall=next(iter(wide), None),
         classes=_scaled((scenario.fault for scenario in drawn), FAULTS, of_drawn),
         splits=_splits(whole, drawn, count),
         steps_per_sample=_scaled(steps, sorted(set(steps)), of_checked),
@@ -179,9 +182,8 @@ def _wide_spall(scenario: Scenario) -> str | None:
     for spall in scenario.spalls:
         if (share := width_share(scenario, spall)) > 1:
             return (
-                f"record {scenario.origin.record}: a spall of {1e3 * spall.width:.3g} mm is wider than the "
-                f"{1e3 * spall.width / share:.3g} mm from ball to ball on the {spall.site} race; lower width_mm, or give it as a share "
-                f"of {BALL_SPACING}."
+                f"record {scenario.origin.record}: {1e3 * spall.width:.3g} mm on the {spall.site} race, where neighbouring balls are "
+                f"{1e3 * spall.width / share:.3g} mm apart."
             )
     return None
 

@@ -151,8 +151,11 @@ def _show_plan(planned: "Plan") -> None:
     )
     if planned.first_left_out is not None:
         show.text("", f"The first record that is left out: {planned.first_left_out}")
-    if planned.wide_spall is not None:
-        notice(f"warning: {planned.wide_spall}")
+    if planned.first_wide_spall is not None:
+        show.text(
+            "",
+            f"Spalls under two balls at once: {planned.wide_spalls:,} records{about}. The first is {planned.first_wide_spall}",
+        )
 
 
 def _range_of(_context: click.Context, _option: click.Parameter, text: str | None) -> range | None:

@@ -56,7 +56,8 @@ def test_a_plan_tells_faults_that_cannot_be_seen_and_spalls_under_two_balls(reci
     planned = plan(recipe_with({"faults": faults}))
     assert planned.seen["inner"][0] == 0 < planned.seen["inner"][1]
     assert planned.seen["outer"][0] == planned.seen["outer"][1] > 0
-    assert "20 mm is wider than the 16.4 mm from ball to ball on the outer race" in planned.wide_spall
+    assert planned.wide_spalls == planned.classes["outer"]
+    assert planned.first_wide_spall.endswith("20 mm on the outer race, where neighbouring balls are 16.4 mm apart.")
     redrawn = {"faults": [{"kind": "healthy"}, faults[0]], "truth.undetected": "redraw"}
     assert "faults of class inner can be seen" in plan(recipe_with(redrawn)).first_left_out
 
