@@ -13,7 +13,7 @@ A corpus is one netCDF-4 file, `NAME.nc`, or a folder of such files:
 
 | file | content |
 |---|---|
-| `parts/part-00000.nc` ... | files of some hundred records, each with the layout of a corpus; a last one of 40: `part-00007-40.nc` |
+| `parts/part-00000.nc` ... | files of some hundred records, each with the layout of a corpus; a shorter one that was generated: `part-00007-40.nc` |
 | `index.nc` | the variables and attributes of the single file, for all records, without the signal |
 | `manifest.json` | records, bytes and SHA-256 of each part; whether the corpus is complete; where the records come from; its own hash |
 | `recipe.yaml` | the recipe, if all records were generated from one |
@@ -42,7 +42,7 @@ as JSON where they are not text. A fact without content is left out:
 | `sources_sha256`, `versions` | hash of the sources of Raceway that made the records; versions of Raceway, libraries and plug-ins |
 | `records` | number of records |
 | `parts_sha256` | hash over those of the parts; a single file has that of the parts that it was made of |
-| `overrides` | `seed` and `records` that replaced those of the recipe |
+| `overrides` | `seed` and `records` that replaced those of the recipe, or null |
 | `signals` | numbers of records that no analysis can use, by reason, see below |
 | `importer`, `recordings` | importer, and number of the recordings |
 | `basis`, `skipped`, `warnings` | sentences on what labels and units rest on, on skipped files, and on assumptions |
@@ -50,8 +50,9 @@ as JSON where they are not text. A fact without content is left out:
 | `publication` | licence, creators and other facts of [publication](sharing.md) |
 | `recipe_text` | attribute only: the recipe as in `recipe.yaml` |
 
-Every file has `Conventions`, `raceway_format`, `title`, `history` and `source`. `index.nc` and single files
-have all facts; `raceway.describe`, `publish` and `copy` add the attributes of [publication](sharing.md).
+Every file has `Conventions`, `raceway_format`, `title` and `history`. `index.nc` and single files have all facts;
+`raceway.describe`, `publish` and `copy` add the attributes of [publication](sharing.md) to `index.nc`, `publish` alone
+to a single file.
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
 a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;
@@ -73,7 +74,7 @@ per record, and a `role`:
 and `compare` leave such records out. Classes of [plug-ins](plugins.md) have codes from {len(BUILT_IN)} on, and
 `flag_values` and `flag_meanings` of each file tell which.
 
-A specimen is numbered in its rig, and a recording in its specimen.
+Of imported corpora, two rigs can have a `specimen`, and two specimens a `recording`, of the same number.
 
 Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a
 `long_name` and a `role`:

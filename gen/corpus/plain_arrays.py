@@ -44,7 +44,9 @@ def to_arrays(
     channels: Sequence[str] | None = None,
     label: str = "fault",
 ) -> Arrays:
-    """Signals, labels and groups of records, all in memory; the arguments and errors are those of :func:`gen.torch_dataset`.
+    """Signals, labels and numbers of the physical bearings of records, all in memory; of a class, the labels are names.
+
+    The other arguments and the errors are those of :func:`gen.torch_dataset`.
 
     ``X, y, groups = gen.to_arrays("corpus")``, then ``cross_validate(model, X[:, 0], y, groups=groups, cv=GroupKFold())``.
     """

@@ -29,7 +29,7 @@ class Replayed:
 def replay(path: Path | str, record: int) -> Replayed:
     """Simulate one record of a corpus again, and compare it with the stored record.
 
-    ``record`` is the number of the record in the corpus, from 0.
+    ``record`` is the number of the record in the corpus, from 0. Of the result, ``identical`` tells whether all samples agree.
 
     Raises
     ------

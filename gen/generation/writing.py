@@ -64,10 +64,10 @@ def write_corpus(
     records : Dataset or array
         One or several records with the variables of the format, in any order: from :func:`gen.record`, :func:`gen.records`,
         :func:`gen.simulate` or :func:`gen.open_corpus`, whole or chosen, changed, or joined with :func:`xarray.concat`. Variables of shape
-        (record,) can be added, with the attributes ``long_name`` and ``role``. A record whose signal was filtered, scaled or cut is written
-        without its scenario, so that it cannot be replayed, and with NaN for its levels and gains, which a warning tells. Of a recipe
-        whose converter is float32, only a change of the length is noticed. Signals are stored as float32 unless all are counts of one
-        converter.
+        (record,) can be added, with the attributes ``long_name`` and ``role``. A record whose samples are no longer counts of
+        its converter, such as a filtered one, or are fewer, is written without its scenario, so that it cannot be replayed, and with NaN
+        for its levels and gains, which a warning tells. Other changes are not noticed: a factor of 2, or of a recipe whose converter is
+        float32 all but a change of the length. Signals are stored as float32 unless all are counts of one converter.
         Or accelerations [m s-2] of shape (record, time) or (record, channel, time).
     target : path
         New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.

@@ -64,7 +64,12 @@ class PrintedOrders(Keys):
 
 
 def bearing_orders(bearing: str | Mapping[str, Any]) -> FaultOrders:
-    """Nominal fault orders of a bearing, given as for `bearing_from_text` or by a dict of its dimensions or orders.
+    """Nominal fault orders of a bearing: its designation, or its dimensions or orders as a text or a dict.
+
+    Raises
+    ------
+    CorpusError
+        If the designation is not in the catalogue, or a dimension or order is missing or wrong.
 
     >>> [round(order, 4) for order in bearing_orders("6205")]
     [0.3983, 3.5848, 5.4152, 2.3567]
