@@ -20,6 +20,10 @@ def _call_of(kind: str) -> Callable[..., Fault]:
     model = OF_KIND[kind]
 
     def call(*parts: Section, **keys: Any) -> Fault:
+        if parts and "parts" not in model.model_fields:
+            raise RecipeError(
+                f"{kind} fault: {parts[0]!r:.60} has no name; give keys by name, which raceway recipes --keys faults lists."
+            )
         try:
             return model.model_validate({**plain({"parts": parts, **keys} if parts else keys), "kind": kind})
         except ValidationError as error:

@@ -59,8 +59,12 @@ def draw_scenarios(
     Raises
     ------
     RecipeError
-        If the recipe has none of these records, a drawn bearing cannot exist, or a drawn spall does not fit it.
+        If it is no recipe that has been read, it has none of these records, a drawn bearing cannot exist, or a drawn spall does not fit it.
     """
+    if not isinstance(recipe, Recipe):
+        raise RecipeError(
+            f"recipe: {type(recipe).__name__} given; give one that gen.make_recipe or gen.read_recipe gave."
+        )
     numbers = range(first, recipe.n_records if stop is None else min(stop, recipe.n_records))
     if first < 0 or not numbers:
         raise RecipeError(

@@ -79,7 +79,7 @@ def check_lives(records: xr.Dataset, name: str) -> None:
     CorpusError
         If a variable of lives is missing.
     """
-    if not {*_NEEDED} <= {*records.variables}:
+    if not isinstance(records, xr.Dataset) or not {*_NEEDED} <= {*records.variables}:
         raise CorpusError(f"{name}: has no lives; make one of a recipe with life, such as run_to_failure.")
 
 

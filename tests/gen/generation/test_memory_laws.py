@@ -273,6 +273,8 @@ WRONG_TYPES = [
     (lambda _: gen.read_scenarios(3), CorpusError, "int given in place of a Dataset; give records"),
     (lambda some: gen.simulate(some[0]), RecipeError, "scenarios: Scenario given; give a list of scenarios"),
     (lambda _: gen.simulate(None), RecipeError, "scenarios: NoneType given; give a list"),
+    (lambda _: gen.draw_scenarios("quickstart"), RecipeError, "recipe: str given; give one that gen.make_recipe"),
+    (lambda _: gen.outer(0.8), RecipeError, "outer fault: 0.8 has no name; give keys by name"),
     (lambda _: gen.read_recipe(None), RecipeError, "recipe: NoneType given; give a path, the name of"),
     (lambda _: gen.read_recipe("name: a\ntitle: b"), RecipeError, "recipe: is a text in place of a path or a name"),
     (lambda _: gen.read_recipe("n" * 5000), RecipeError, "recipe: is a text in place of a path or a name"),
