@@ -13,7 +13,7 @@ A corpus is one netCDF-4 file, `NAME.nc`, or a folder of such files:
 
 | file | content |
 |---|---|
-| `parts/part-00000.nc` ... | files of some hundred records, each with the layout of a corpus; a shorter one that was generated: `part-00007-40.nc` |
+| `parts/part-00000.nc` ... | files of some hundred records, each with the layout of a corpus; a generated one of 40: `part-00007-40.nc` |
 | `index.nc` | the variables and attributes of the single file, for all records, without the signal |
 | `manifest.json` | records, bytes and SHA-256 of each part; whether the corpus is complete; where the records come from; its own hash |
 | `recipe.yaml` | the recipe, if all records were generated from one |
