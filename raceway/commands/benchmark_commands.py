@@ -139,7 +139,7 @@ def benchmark(
     scored on DIR2; --speed concerns DIR2 alone, --channel DIR alone (of DIR2 the first channel is taken).
 
     MODULE:NAME is an estimator as of scikit-learn, or a class or function that makes one; its code is run. MODULE is a file of the
-    current folder or an installed module. With --estimator or several tracks, the other baselines are left out.
+    current folder or an installed module. With --estimator or several tracks, the other trained baselines are left out.
 
       raceway benchmark corpus -o report
       raceway benchmark corpus --test cwru --test mfpt -o report --track rig

@@ -8,11 +8,12 @@ import click
 from raceway.console import show
 from raceway.console.options import A_PATH, Analysis, band_option, picture_option
 from raceway.console.progress_bar import notice
-from raceway.importing.reading_options import Reading, check_speed, reading_options, rpm_option
+from raceway.importing.reading_options import Reading, check_speed, drawing_options, rpm_option
 
 if TYPE_CHECKING:
     from raceway.reports.pictures import DrawnRecord
 
+_ONE_CHANNEL = "a picture shows one channel; give one with --channel"
 VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "waterfall", "cepstrum")
 
 
@@ -29,10 +30,12 @@ VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "wat
 )
 @picture_option
 @click.option("--healthy", metavar="I|FILE", help="Record of the same corpus, or recording, drawn under it as healthy.")
-@click.option("--bearing", metavar="BEARING", help="Of a recording: designation such as 6205, or a geometry.")
+@click.option(
+    "--bearing", metavar="BEARING", help="Of a recording: designation, geometry or orders, as for raceway diagnose."
+)
 @rpm_option("a recording needs it, or --speed-column")
 @band_option
-@reading_options
+@drawing_options
 def plot(
     source: Path,
     record: int | None,
@@ -130,7 +133,7 @@ def _shown(
 
     options = Analysis(band=band).options()
     if len(reading.channels) > 1:
-        raise click.UsageError("--channel: a picture shows one channel; give one")
+        raise click.UsageError(_ONE_CHANNEL)
     if _is_corpus(source):
         if record is None:
             raise click.UsageError(f"{source} is a corpus: give the number of a record with --record")
@@ -143,6 +146,8 @@ def _shown(
     recorded, _, notes = read_recording(source, reading)
     for note in notes:
         notice(f"warning: {note}")
+    if len(recorded.signals) > 1:
+        raise click.UsageError(f"{_ONE_CHANNEL}; {source.name} has {', '.join(recorded.signals)}")
     (signal,) = recorded.signals.values()
     # the mean of a measured course is exact
     low, high = (recorded.rpm or 0.0,) * 2 if speeds is None else speeds

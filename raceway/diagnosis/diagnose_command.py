@@ -86,10 +86,10 @@ def diagnose(
 ) -> None:
     """Diagnose the bearing in a vibration recording.
 
-    RECORDING is a .csv, .txt, .tsv, .dat, .lvm, .xlsx, .npy, .mat or .wav file of at least 8 turns of the shaft and 3 kHz, better 10 s and
+    RECORDING is a text, Excel, MATLAB, NumPy, WAV, Parquet, TDMS or UFF file of at least 8 turns of the shaft and 3 kHz, better 10 s and
     20 kHz. The answer is one sentence: what is wrong, how sure that is, and which lines of the signal tell it; or "unsure", with the reason
     and what would help. For a FOLDER it is a table with a row for each recording; a file that states another rate or unit than the options
-    is read as it states.
+    is read as it states, but a WAV file at the rate of the option.
 
       raceway diagnose pump.csv --bearing 6205 --rpm 1772 --rate 12000 --unit g -o pump.html
       raceway diagnose fan.wav --bearing 6205 --rpm 1400-1600
@@ -103,8 +103,8 @@ def diagnose(
     All axes of one sensor are used, such as x, y, z; --channel chooses. Give a speed, a bearing or both. The answer names the pair of
     bearing and speed that explains the lines, and names no part if pairs that cannot be told apart give different answers.
 
-    --json prints verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic, band), levels and explanations
-    (bearing, alike, shaft_rpm, uncertainty_rpm, lines, as_given), and further facts.
+    --json prints, of a FOLDER in a list, verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic,
+    band), levels and explanations (bearing, alike, shaft_rpm, uncertainty_rpm, lines, as_given), and further facts.
 
     The first call trains the reference model, in some ten seconds.
     docs/diagnose.md tells how to record and how to read the page.

@@ -101,15 +101,26 @@ _sensitivity: Decorator = click.option(
     metavar="MV_PER_G",
     help="Of the sensor [mV per g], if the values are voltages.",
 )
-_channels: Decorator = click.option(
-    "--channel",
-    "channels",
-    callback=lambda *arguments: names(*arguments) or (),
-    metavar="A,B,C",
-    help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB or .npz file, also by a "
-    "pattern such as '*_DE_time'; several are the axes of one housing. By default all axes of one sensor, as names or their absence tell: "
-    "x, y, z, ch1, ch2, ch3, or three columns.",
+_PLACE = (
+    "Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB or .npz file, also by a pattern such as "
+    "'*_DE_time'"
 )
+_AXES = (
+    "; several are the axes of one housing. By default all axes of one sensor, as names or their absence tell: x, y, z, ch1, ch2, ch3, or "
+    "three columns."
+)
+
+
+def _channels(metavar: str, what: str) -> Decorator:
+    return click.option(
+        "--channel",
+        "channels",
+        callback=lambda *arguments: names(*arguments) or (),
+        metavar=metavar,
+        help=f"{_PLACE}{what}",
+    )
+
+
 _variable: Decorator = click.option(
     "--variable",
     metavar="NAME",
@@ -140,5 +151,14 @@ _speed_unit: Decorator = click.option(
     metavar="UNIT",
     help="Unit of --speed-column: rpm or Hz, by default that in the header; or the pulses of a tacho in a turn, such as 1.",
 )
-_places = (_channels, _variable, _delimiter, _decimal, _speed_column, _speed_unit)
-reading_options = gathered("reading", Reading, _rate, _unit, _sensitivity, *_places)
+_values = (_rate, _unit, _sensitivity)
+_places = (_variable, _delimiter, _decimal, _speed_column, _speed_unit)
+reading_options = gathered("reading", Reading, *_values, _channels("A,B,C", _AXES), *_places)
+drawing_options = gathered(
+    "reading",
+    Reading,
+    *_values,
+    _channels("NAME", ", or of a corpus by name. Needed if a recording has several; of a corpus by default the first."),
+    *_places,
+)
+"""Options of how one channel is read, of a recording or of a corpus."""

@@ -24,9 +24,14 @@ from raceway.console.progress_bar import notice
 @click.option(
     "--bearing",
     metavar="NAME",
-    help="Bearing, such as '6206 #3', or its number in the corpus, such as 3; by default the one with most damaged snapshots.",
+    help="Bearing, such as '6206 #3', or its number in the corpus, such as 3; by default the failed one with most damaged snapshots.",
 )
-@click.option("--like", type=A_CORPUS, metavar="OTHER", help="Also draw all lives beside those of another corpus.")
+@click.option(
+    "--like",
+    type=A_CORPUS,
+    metavar="OTHER",
+    help="Also draw the rms of bearings that failed beside those of another corpus.",
+)
 def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> None:
     """Draw the life of a bearing in DIR, a corpus of lives.
 
@@ -47,11 +52,17 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
 @corpus_argument
 @click.option("--test", "tested", type=A_CORPUS, metavar="OTHER", help="Test on the bearings of another corpus.")
 @click.option(
-    "--folds", type=click.IntRange(2), default=5, show_default=True, help="Splits by bearing, without --test."
+    "--folds",
+    type=click.IntRange(2),
+    metavar="K",
+    default=5,
+    show_default=True,
+    help="Splits by bearing, without --test.",
 )
 @click.option(
     "--false-alarms",
     type=click.FloatRange(0),
+    metavar="N",
     callback=finite,
     help="Snapshots above the threshold of a detector in 1,000 h before spalls begin; by default 1.",
 )

@@ -42,6 +42,12 @@ def test_what_a_picture_of_a_recording_lacks_is_told_in_one_sentence(run, record
     assert len(result.stderr.splitlines()) == 1
 
 
+def test_a_picture_of_several_axes_needs_a_channel(run, tmp_path):
+    np.save(tmp_path / "axes.npy", np.random.default_rng(0).standard_normal((24_000, 3)))
+    result = run("plot", tmp_path / "axes.npy", "--unit", "g", *MACHINE, "-o", tmp_path / "x.png")
+    assert (result.exit_code, "one with --channel; axes.npy has 0, 1, 2" in result.stderr) == (2, True), result.stderr
+
+
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
