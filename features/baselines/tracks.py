@@ -72,7 +72,9 @@ def check_track(records: Records, track: Track, folds: int) -> None:
     count = len(np.unique(group))
     # there are few types of bearings, so their number may set that of the folds
     if count < (2 if track == "bearing" else folds):
-        advice = f"use at most {count} folds" if count > 1 else "test on another corpus instead"
+        # fewer folds do not help a class of one group
+        fewest = min(len(np.unique(group[records.fault == c])) for c in present)
+        advice = f"use at most {count} folds" if fewest > 1 else "test on another corpus instead"
         raise CorpusError(f"{where}: {count} {name}(s) cannot fill {folds} folds; {advice}.")
     # a class whose groups are all in one fold is never both trained and tested
     for c in present:

@@ -177,7 +177,8 @@ def test_records_of_a_class_that_was_not_trained_count_as_errors():
     ("table", "sentence"),
     [
         (make_table(8, 2, classes=1), "all records are healthy; give a corpus with two or more classes"),
-        (make_table(4, 3), r"4 specimen\(s\) cannot fill 5 folds; use at most 4 folds"),
+        (make_table(4, 3), r"4 specimen\(s\) cannot fill 5 folds; test on another corpus"),
+        (make_table(4, 3, classes=2), r"4 specimen\(s\) cannot fill 5 folds; use at most 4 folds"),
         (make_table(6, 5), "all outer records are of one specimen"),
         (make_table(8, 2), r"4 healthy record\(s\) for 5 folds; use fewer folds"),
         (make_table().drop_vars("specimen"), "lacks 'specimen'; make it again with raceway features"),
