@@ -84,7 +84,7 @@ def _named_alike(recordings: Sequence[_Recording]) -> Iterator[str]:
     held: dict[str, set[tuple[int, int]]] = {}
     for recording in recordings:
         held.setdefault(recording.source.partition(":")[0], set()).add(recording.specimen)
-    shared = [source for source, specimens in held.items() if len(specimens) > 1]
+    shared = [source for source, specimens in held.items() if source and len(specimens) > 1]
     if shared:
         yield (
             f"{first_few(shared, _SHOWN, '; ')} holds recordings of more than one specimen; if these are sensors of one machine, "

@@ -120,8 +120,11 @@ def simulate(scenarios: Sequence[Scenario]) -> xr.Dataset:
     SimulationError
         If scenarios have different recordings, or no record can be simulated.
     """
-    if not isinstance(scenarios, Sequence) or not all(isinstance(scenario, Scenario) for scenario in scenarios):
-        raise RecipeError(f"scenarios: {type(scenarios).__name__} given; give a list of scenarios.")
+    wrong = (
+        [scenarios] if not isinstance(scenarios, Sequence) else [of for of in scenarios if not isinstance(of, Scenario)]
+    )
+    if wrong:
+        raise RecipeError(f"scenarios: {type(wrong[0]).__name__} given; give a list of scenarios.")
     outcomes = made_from([*scenarios])
     part = labelled(scenarios[0].recipe, outcomes)
     return _joined(

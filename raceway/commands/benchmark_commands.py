@@ -157,8 +157,8 @@ def benchmark(
         raise click.UsageError("--per-turn is for --waveforms")
     if (submit is None) == (output is None and check is None):
         raise click.UsageError("give -o OUTDIR, --check FILE.csv or both, or --submit FILE.csv")
-    if analysis.groups and output is None:
-        raise click.UsageError("--group is for -o OUTDIR")
+    if (analysis.groups or tests or models) and output is None:
+        raise click.UsageError("--group, --test and --model are for -o OUTDIR")
     from features.baselines import DEFAULT_GROUPS, check_submission, load_maker, unseeded, write_submission
     from features.baselines import benchmark as run
     from gen.corpus import result_folder

@@ -116,6 +116,7 @@ def test_a_submission_is_scored_again_as_cross_validation_scores_it(run, told, t
     names = ("--estimator", mine, "--estimator", "logistic_regression")
     done = run("benchmark", tiny_corpus, *protocol, *names, "--submit", file)
     assert done.exit_code == 0
+    assert "--model are for -o" in run("benchmark", tiny_corpus, "--check", file, "--model", "reference").stderr
     checked = told("benchmark", tiny_corpus, *protocol, "--check", file)
     for name, estimator in ((mine, load_maker(mine)), ("logistic_regression", "logistic_regression")):
         scores = cross_validate(tiny_table, estimator, track="rig", folds=2)

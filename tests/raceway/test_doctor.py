@@ -25,7 +25,7 @@ def test_a_library_that_is_missing_or_too_old_is_a_problem_with_its_remedy(run, 
     lines = [line for line in shown.stdout.splitlines() if line and not line.startswith("fine")]
     starts = (
         "problem  xarray: 2020.1; pip install 'xarray>=",
-        "problem  dask: missing; pip install 'dask[distributed]>=",
+        "problem  dask: missing; pip install 'dask>=",
         "note     pyarrow: missing; pip install 'pyarrow>=",
         "2 problems.",
     )

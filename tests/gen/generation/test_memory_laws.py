@@ -272,6 +272,7 @@ WRONG_TYPES = [
     (lambda _: gen.read_recipe(xr.Dataset(attrs={"recipe_text": "{"})), RecipeError, "Dataset: line 1: is not valid"),
     (lambda _: gen.read_scenarios(3), CorpusError, "int given in place of a Dataset; give records"),
     (lambda some: gen.simulate(some[0]), RecipeError, "scenarios: Scenario given; give a list of scenarios"),
+    (lambda some: gen.simulate([some[0], "a"]), RecipeError, "scenarios: str given; give a list of scenarios"),
     (lambda _: gen.simulate(None), RecipeError, "scenarios: NoneType given; give a list"),
     (lambda _: gen.draw_scenarios("quickstart"), RecipeError, "recipe: str given; give one that gen.make_recipe"),
     (lambda _: gen.outer(0.8), RecipeError, "outer fault: 0.8 has no name; give keys by name"),
