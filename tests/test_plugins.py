@@ -213,7 +213,11 @@ class Leak(Hiss):
 
 def test_a_plugin_that_cannot_be_loaded_is_named_and_the_others_work(tmp_path):
     broken = distribution(tmp_path, "broken", "1.0", {"raceway.commands": {"lost": "no_such_module:command"}})
-    (_, listed), (code, called) = run(tmp_path, ["--help", "lost"], broken)
+    (_, listed), (code, called), (wanting, doctor) = run(tmp_path, ["--help", "lost", "doctor"], broken)
+    assert (wanting, "problem  plug-in lost: raceway.commands of broken 1.0; ModuleNotFoundError" in doctor) == (
+        1,
+        True,
+    )
     sentence = "broken 1.0: its lost in raceway.commands cannot be used"
     assert f"Plug-ins:\n  lost       {sentence}" in listed
     assert (code, called) == (

@@ -20,7 +20,8 @@ EXTRAS = ("files", "parquet")
 def doctor(as_json: bool) -> int:
     """Show installed versions and plug-ins.
 
-    Exits with 1 if a package that Raceway needs is missing or too old; a line that begins with "note" is of an optional one.
+    Exits with 1 if a package that Raceway needs is missing or too old, or a plug-in cannot be loaded; a line that begins with "note" is of
+    an optional package.
 
       raceway doctor
       raceway doctor --json
@@ -62,7 +63,12 @@ def _findings() -> Iterator[dict[str, str]]:
         yield _finding(needed.name, present, "fine" if is_met else "note" if needed.marker else "problem", advice)
     for group in GROUPS:
         for name, entry in plugins(group).items():
-            yield _finding(f"plug-in {name}", f"raceway.{group} of {distribution(entry)}")
+            try:
+                entry.load()
+                state, advice = "fine", ""
+            except Exception as error:  # noqa: BLE001 - code of other people
+                state, advice = "problem", f"{type(error).__name__}: {error}; correct it, or uninstall it."
+            yield _finding(f"plug-in {name}", f"raceway.{group} of {distribution(entry)}", state, advice)
 
 
 def _finding(subject: str, value: str, state: str = "fine", advice: str = "") -> dict[str, str]:
