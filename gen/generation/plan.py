@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from gen.corpus import FAULTS, SPLITS
+from gen.corpus.fault_classes import HEALTHY
 from gen.generation.trial import try_some
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import Scenario, draw_scenarios, scenario_texts, split_of
+from gen.scenarios import Scenario, draw_scenarios, fault_of_each_specimen, scenario_texts, split_of
 from gen.simulation.compiled_kernel import is_compiled
 from gen.simulation.inputs import kernel_inputs
 from gen.simulation.motion import draw_motion
@@ -130,7 +131,7 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
         first_left_out=next(iter(failures), trial and trial.failure),
         wide_spalls=round(len(wide) * of_drawn),
         first_wide_spall=next(iter(wide), None),
-        classes=_scaled((scenario.fault for scenario in drawn), FAULTS, of_drawn),
+        classes=_classes(whole, drawn, count),
         splits=_splits(whole, drawn, count),
         steps_per_sample=_scaled(steps, sorted(set(steps)), of_checked),
     )
@@ -153,6 +154,19 @@ def steps_of(scenarios: Sequence[Scenario]) -> Iterator[int | str]:
                 if isinstance(kernel_input, SimulationError)
                 else steps_per_sample(kernel_input, scenario)
             )
+
+
+def _classes(recipe: Recipe, drawn: Sequence[Scenario], count: int) -> dict[str, int]:
+    """Number of records of each class; the specimens of a large corpus are counted, since its parts may hold few of them."""
+    if len(drawn) == count or recipe.life is not None:
+        return _scaled((scenario.fault for scenario in drawn), FAULTS, count / len(drawn))
+    corpus = recipe.corpus
+    faults = [fault for rig in range(corpus.rigs) for fault in fault_of_each_specimen(recipe, rig)][
+        : recipe.n_specimens
+    ]
+    rungs = corpus.rungs or (1.0,)
+    records = (fault if rung else HEALTHY for fault in faults for rung in rungs)
+    return _scaled(records, FAULTS, count / (len(faults) * len(rungs)))
 
 
 def _splits(recipe: Recipe, drawn: Sequence[Scenario], count: int) -> dict[str, int]:

@@ -123,7 +123,7 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
 
 def _show_plan(planned: "Plan") -> None:
     steps = list(planned.steps_per_sample)
-    # a large corpus is counted on a part of it
+    # of a large corpus a part is drawn, and a part of this is checked
     about, about_checked = (
         "" if count == planned.records else f" (scaled up from {count:,} {done} records)"
         for count, done in ((planned.drawn, "drawn"), (planned.checked, "checked"))
@@ -139,7 +139,7 @@ def _show_plan(planned: "Plan") -> None:
             "channels": ", ".join(planned.channels),
             "rigs": f"{planned.rigs:,}",
             "specimens": f"{planned.specimens:,}",
-            "classes": show.counts(planned.classes) + about,
+            "classes": show.counts(planned.classes),
             "splits": show.counts(planned.splits),
             "parts": f"{planned.parts:,}",
             "visible": visible and f"{visible} faults in the records that were made",

@@ -1,5 +1,6 @@
 """Laws of a plan: it counts a small corpus exactly, and estimates a large one from parts spread over it."""
 
+from collections import Counter
 from itertools import pairwise
 
 import pytest
@@ -8,6 +9,7 @@ from hypothesis import strategies as st
 
 from gen.generation.corpus import generate
 from gen.generation.plan import MOST_CHECKED, MOST_DRAWN, plan, some_ranges
+from gen.scenarios import draw_scenarios
 
 
 @given(per_part=st.integers(1, 20_000), rigs=st.integers(1, 5000))
@@ -25,7 +27,15 @@ def test_a_large_corpus_is_counted_from_a_part_of_it(write_recipe, tmp_path):
     planned = plan(path)
     assert (planned.records, planned.rigs, planned.specimens, planned.drawn) == (20_000, 2500, 10_000, MOST_DRAWN)
     assert sum(planned.splits.values()) == pytest.approx(20_000, abs=3)
-    assert planned.classes == pytest.approx(dict.fromkeys(("healthy", "inner", "outer", "ball"), 5000), rel=0.05)
+    assert planned.classes == pytest.approx(dict.fromkeys(("healthy", "inner", "outer", "ball"), 5000), abs=2)
+
+
+def test_rungs_of_a_large_corpus_are_counted_as_they_are_drawn(recipe_with):
+    ladder = recipe_with({"corpus.rungs": [0, 0.3, 0.6, 1], "storage.records_per_part": 24, "corpus.rigs": 80})
+    drawn = Counter(scenario.fault for scenario in draw_scenarios(ladder))
+    planned = plan(ladder)
+    assert planned.drawn < planned.records == drawn.total()
+    assert planned.classes == drawn
 
 
 def test_a_plan_checks_some_of_its_records_and_says_so(write_recipe, tmp_path):
