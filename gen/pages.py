@@ -32,8 +32,8 @@ A recipe is a YAML file. `raceway plan RECIPE` reports what it makes, `raceway g
 range alone, such as `[0, 10]`, the value is a number or a distribution. `raceway recipes --schema > recipe.schema.json`
 writes a schema with which editors complete and check keys; a recipe names it in its first line,
 `# yaml-language-server: $schema=recipe.schema.json`. The schema takes a distribution with any arguments,
-such as `uniform(1800, 900)`, values out of range or a wrong name after `*`, and checks no keys together. `raceway plan`
-checks all, with a sentence for each error.
+such as `uniform(1800, 900)`, and any name after `*`, and checks no keys together. `raceway plan` checks all, with a
+sentence for each error.
 
 ## A first recipe
 
@@ -65,7 +65,7 @@ faults:
 ```
 
 A fault makes its records louder here, and every score is near 1. Use
-`level: {kind: snr, faulty_db: "uniform(-15, 0)", healthy_db: "uniform(-10, 10)"}`, which gives all records one rms, a
+`level: {kind: snr, faulty_db: "uniform(-15, 0)", healthy_db: "uniform(-25, -5)"}`, which gives all records one rms, a
 higher `background_m_s2`, or narrower spalls (`width_mm`) for a corpus that is worth learning from.
 
 ## Distributions
