@@ -73,6 +73,8 @@ class Plan:
     """CPU time of all records on this machine, by the same records [s]."""
     seen: dict[str, tuple[int, int]]
     """Number of these records whose fault can be seen, and of all that were judged, by class."""
+    clipping: str | None
+    """A sentence with the number of these records that have a clipped sample."""
 
 
 def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int | None = None) -> Plan:
@@ -125,6 +127,7 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
         bytes=_bytes(whole, count, drawn[:SCENARIOS], trial and trial.bytes),
         seconds=trial and trial.seconds * count,
         seen=trial.seen if trial else {},
+        clipping=trial and trial.clipping,
         drawn=len(drawn),
         checked=len(places),
         left_out=round(len(failures) * of_checked),

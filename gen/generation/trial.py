@@ -8,6 +8,7 @@ import numpy as np
 
 from gen.corpus import FAULTS
 from gen.corpus.codecs import stored_size
+from gen.corpus.unusable import clipping_complaint
 from gen.generation.undetected import Made, made_from, make_records
 from gen.measurement.measure import Measured
 from gen.recipe import Recipe
@@ -30,6 +31,8 @@ class Trial(NamedTuple):
     """Number of records whose fault can be seen, and of all that were judged, by class; not of lives, whose first records are made."""
     failure: str | None
     """The sentence about the first record that is left out."""
+    clipping: str | None
+    """A sentence with the number of records with a clipped sample."""
 
 
 def try_some(recipe: Recipe) -> Trial | None:
@@ -60,8 +63,9 @@ def try_some(recipe: Recipe) -> Trial | None:
         raise SimulationError(failure)
     judged = Counter((record.scenario.fault, record.detectable) for record in records if recipe.life is None)
     seen = {fault: (judged[fault, 1], judged[fault, 1] + judged[fault, 0]) for fault in FAULTS if fault != "healthy"}
+    clipping = clipping_complaint(sum(record.clipped > 0 for record in records), len(records))
     size = stored_size(np.stack([record.signal for record in records]), recipe.storage.codec)
-    return Trial(seconds, size / len(records), {fault: of for fault, of in seen.items() if of[1]}, failure)
+    return Trial(seconds, size / len(records), {fault: of for fault, of in seen.items() if of[1]}, failure, clipping)
 
 
 def _make(recipe: Recipe, first: int, count: int) -> list[Made]:

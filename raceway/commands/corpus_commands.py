@@ -151,6 +151,8 @@ def _show_plan(planned: "Plan") -> None:
     )
     if planned.first_left_out is not None:
         show.text("", f"The first record that is left out: {planned.first_left_out}")
+    if planned.clipping is not None:
+        show.text("", f"Of those that were made, {planned.clipping}")
     if planned.first_wide_spall is not None:
         show.text(
             "",

@@ -77,3 +77,13 @@ def test_splits_by_rig_of_a_large_corpus_are_those_that_it_will_have(recipe_with
     planned = plan(recipe)
     assert planned.drawn < planned.records
     assert planned.splits == {"train": 3200, "test": 800}
+
+
+def test_a_plan_tells_that_a_converter_is_too_small(recipe_with):
+    level = {"kind": "physical", "background_m_s2": 1}
+    planned = [
+        plan(recipe_with({"level": level, "recording.converter": {"kind": "adc", "full_scale_m_s2": scale}}))
+        for scale in (1, 1e5)
+    ]
+    assert planned[0].clipping.endswith("records are clipped at least once; raise recording.converter.full_scale_m_s2.")
+    assert planned[1].clipping is None
