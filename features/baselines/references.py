@@ -45,7 +45,12 @@ def relative_names(features: Sequence[str]) -> tuple[str, ...]:
     >>> relative_names(["raw_kurtosis"])[:3]
     ('raw_kurtosis', 'raw_kurtosis_change', 'energy_20-100_Hz_change')
     """
-    return (*features, *(f"{name}_change" for name in (*features, *ENERGIES)))
+    return (*features, *(f"{name}_change" for name in _compared(features)))
+
+
+def _compared(features: Sequence[str]) -> tuple[str, ...]:
+    """Features whose changes are told: the energies come last and once, also if they are among the features."""
+    return (*(name for name in features if name not in ENERGIES), *ENERGIES)
 
 
 def relative_table(table: xr.Dataset, features: Sequence[str], references: FloatArray) -> xr.Dataset:
@@ -58,18 +63,19 @@ def relative_table(table: xr.Dataset, features: Sequence[str], references: Float
     features
         Names of features.
     references
-        Values of ``features`` and ``ENERGIES`` of the reference of each record, shape (record, feature).
+        Values of the reference of each record, shape (record, feature): of ``features`` that are no energies, then of ``ENERGIES``.
 
     Raises
     ------
     CorpusError
         If the table has no records, or lacks a feature.
     """
-    values = feature_rows(table, (*features, *ENERGIES)).to_numpy()
-    changes, energies = np.split(values - references, [len(features)], axis=1)
+    values = feature_rows(table, features).to_numpy()
+    differences = feature_rows(table, _compared(features)).to_numpy() - references
+    changes, energies = np.split(differences, [-len(ENERGIES)], axis=1)
     if energies.size:
         energies = energies - np.median(energies, axis=1, keepdims=True)
-    columns = np.concatenate([values[:, : len(features)], changes, energies], axis=1)
+    columns = np.concatenate([values, changes, energies], axis=1)
     names = np.array(relative_names(features), dtype=object)
     groups = np.full(len(names), RELATIVE, dtype=object)
     return (
@@ -91,7 +97,7 @@ def relative_to(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str
     """
     healthy, number, members = _healthy_of(table, reference)
     number, members = _nearest_in_speed(table, healthy, number, members)
-    values = feature_rows(healthy, (*features, *ENERGIES)).to_numpy()
+    values = feature_rows(healthy, _compared(features)).to_numpy()
     return relative_table(table, features, np.stack([mean_row(values[rows]) for rows in members])[number])
 
 
@@ -234,5 +240,5 @@ def paired_table(table: xr.Dataset, features: Sequence[str], seed: int) -> xr.Da
     paired = table.isel(record=records)
     if len(np.unique(paired["fault"].values)) < len(np.unique(table["fault"].values)):
         return None
-    values = feature_rows(table, (*features, *ENERGIES)).to_numpy()[references]
+    values = feature_rows(table, _compared(features)).to_numpy()[references]
     return relative_table(paired, features, values)

@@ -195,6 +195,15 @@ def test_a_tested_record_that_is_also_in_the_reference_is_left_out(table, model)
         model.score(table.isel(record=[0, 1]), reference=table)
 
 
+def test_energies_that_are_features_themselves_are_compared_once_and_without_the_gain(table):
+    louder = table.assign(features=table["features"] + 3.0 * (table["group"] == "bands"))
+    once, again = (relative_to(of, table, (*ENERGIES, *LINES)).features for of in (table, louder))
+    assert once.get_index("feature").is_unique
+    np.testing.assert_allclose(again[:, len(ENERGIES) + len(LINES) :], once[:, len(ENERGIES) + len(LINES) :], atol=1e-9)
+    model = Model("logistic_regression", groups=("lines", "shape", "bands")).fit(table)
+    assert model.score(table, reference=table).balanced_accuracy > 0.95
+
+
 def test_a_model_of_a_corpus_without_two_healthy_recordings_takes_no_reference(table):
     one = table.isel(record=(table["fault"].values > 0) | (table["recording"].values % 8 == 0))
     for lacking in (one, table.drop_vars("shaft_rate"), table.isel(feature=table["group"].values != "bands")):
