@@ -63,6 +63,16 @@ def of_each(x: ArrayLike, name: str, records: FloatArray) -> FloatArray:
     return np.broadcast_to(values.astype(float), len(records)).copy()
 
 
+def one_or_each(values: ArrayLike, name: str, records: int) -> FloatArray:
+    """Numbers of any value, shape (record,), from one for all records or one for each."""
+    try:
+        return np.broadcast_to(np.asarray(values, float), records)
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"{name}: {_shown(values)} is given in place of a number, or one for each of {records} records."
+        ) from None
+
+
 def check_finite(**numbers: object) -> None:
     """ValueError that names a number that is not finite."""
     _check(numbers, Real, lambda value: bool(np.isfinite(value)), "a finite number")
@@ -101,11 +111,16 @@ def fault_orders(values: ArrayLike, name: str) -> FloatArray:
     """Nominal orders ``ftf, bpfo, bpfi, bsf`` of one bearing, shape (4,)."""
     orders = np.asarray(values)
     if orders.shape != (4,) or orders.dtype.kind not in "iuf" or not (np.isfinite(orders) & (orders > 0)).all():
-        raise ValueError(
-            f"{name}: {_shown(values)} is given in place of ftf, bpfo, bpfi and bsf, four numbers above 0; "
-            'gen.bearing_orders("6205") gives them.'
-        )
+        raise no_orders(values, name)
     return orders.astype(float)
+
+
+def no_orders(values: object, name: str) -> ValueError:
+    """Error for anything but the nominal orders of a bearing."""
+    return ValueError(
+        f"{name}: {_shown(values)} is given in place of ftf, bpfo, bpfi and bsf, four numbers above 0; "
+        'gen.bearing_orders("6205") gives them.'
+    )
 
 
 def _shown(value: object) -> str:

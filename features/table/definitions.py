@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from features.table.band import DEFAULT_BAND, Band
+from features.table.band import DEFAULT_BAND, checked_band
 from features.table.envelope_groups import LINE_GROUP, SHAPE_GROUP, VIEWS
 from features.table.feature_group import Feature, FeatureGroup
 from features.table.waveform_groups import ENERGY_GROUP, TIME_GROUP
@@ -49,18 +49,19 @@ def find_group(name: str) -> FeatureGroup:
     return group
 
 
-def define_features(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> tuple[Feature, ...]:
+def define_features(groups: Sequence[str] = GROUPS, band: tuple[float, float] = DEFAULT_BAND) -> tuple[Feature, ...]:
     """Definitions of the features of some groups, in the order of the columns of `features.table.indicators.indicators`.
 
     Raises
     ------
     ValueError
-        For a group that does not exist.
+        For a group that does not exist, or a band that is too narrow or out of range.
     """
     unknown = [name for name in groups if name not in ALL_GROUPS]
     if unknown or isinstance(groups, str):
         raise ValueError(f"groups: {groups!r} is not a list of feature groups; choose from {', '.join(ALL_GROUPS)}.")
-    return tuple(feature._replace(group=name) for name in groups for feature in find_group(name).features_in(band))
+    edges = checked_band(*band)
+    return tuple(feature._replace(group=name) for name in groups for feature in find_group(name).features_in(edges))
 
 
 def measured_quantity(feature: str) -> str:
@@ -74,7 +75,7 @@ def measured_quantity(feature: str) -> str:
 
 
 def feature_coordinates(
-    groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND
+    groups: Sequence[str] = GROUPS, band: tuple[float, float] = DEFAULT_BAND
 ) -> dict[str, tuple[str, np.ndarray, dict[str, str]]]:
     """Coordinates of the dimension ``feature`` of a table: its name, group, unit and meaning."""
     features = define_features(groups, band)

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from features.signal.arguments import no_orders, one_or_each
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray, centre
-from features.table.band import DEFAULT_BAND, Band
+from features.table.band import DEFAULT_BAND, checked_band
 from features.table.definitions import BUILT_IN, GROUPS, define_features, find_group
 from features.table.feature_group import FeatureGroup
 from features.table.record_batch import BATCH, RecordBatch, usable_records
@@ -16,13 +17,13 @@ from gen.support.plugins import unusable
 __all__ = ["Orders", "feature_names", "indicators"]
 
 
-def feature_names(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> tuple[str, ...]:
+def feature_names(groups: Sequence[str] = GROUPS, band: tuple[float, float] = DEFAULT_BAND) -> tuple[str, ...]:
     """Names of the features of some groups, in the order of the columns of `indicators`.
 
     Raises
     ------
     ValueError
-        For a group that does not exist.
+        As `define_features`.
     """
     return tuple(feature.name for feature in define_features(groups, band))
 
@@ -33,7 +34,7 @@ def indicators(
     shaft_rate: ArrayLike,
     orders: Sequence[ArrayLike],
     groups: Sequence[str] = GROUPS,
-    band: Band = DEFAULT_BAND,
+    band: tuple[float, float] = DEFAULT_BAND,
 ) -> tuple[FloatArray, tuple[str, ...]]:
     """Features of records, and their names.
 
@@ -54,7 +55,8 @@ def indicators(
     groups
         Some of `GROUPS`; the columns have their order. ``lines`` and ``shape`` share most of their computation.
     band
-        Band that lines and shape are computed from; no feature but those of ``time`` uses frequencies above it.
+        Band that lines and shape are computed from [Hz], such as ``(300, 9000)``; no feature but those of ``time`` uses frequencies
+        above it.
 
     Returns
     -------
@@ -63,13 +65,19 @@ def indicators(
     Raises
     ------
     ValueError
-        For a group that does not exist.
+        For a group that does not exist, arrays of other shapes, or a band that is too narrow or out of range.
     """
+    band, x = checked_band(*band), np.asarray(x)
+    if x.ndim != 2:
+        raise ValueError(f"x: an array of shape {x.shape} is given in place of (record, time).")
+    if isinstance(orders, str) or not hasattr(orders, "__len__") or len(orders) != len(Orders._fields):
+        raise no_orders(orders, "orders")
     names = feature_names(groups, band)
     # the groups of plug-ins are checked once, and not in each batch
     chosen = [(name, find_group(name)) for name in groups]
     values = np.full((len(x), len(names)), np.nan)
-    rates, *each = (np.broadcast_to(np.asarray(value, float), len(x)) for value in (shaft_rate, *orders))
+    rates = one_or_each(shaft_rate, "shaft_rate", len(x))
+    each = [one_or_each(order, "orders", len(x)) for order in orders]
     usable = np.flatnonzero(usable_records(x, rates, Orders(*each)))
     for start in range(0, len(usable), BATCH):
         rows = usable[start : start + BATCH]

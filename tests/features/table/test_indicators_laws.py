@@ -58,6 +58,25 @@ def test_a_group_that_does_not_exist_is_refused_by_name(groups):
         feature_names(groups)
 
 
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"orders": "6212"}, "^orders: '6212' is given in place of ftf, bpfo, bpfi and bsf"),
+        ({"orders": 3.58}, "^orders: 3.58 is given in place of ftf, bpfo, bpfi and bsf"),
+        ({"orders": (FTF, BPFO, BPFI)}, "^orders: .* is given in place of ftf, bpfo, bpfi and bsf"),
+        ({"orders": (FTF, BPFO, BPFI, "x")}, "^orders: 'x' is given in place of a number"),
+        ({"shaft_rate": np.ones(3)}, r"^shaft_rate: an array of shape \(3,\) is given .* each of 4 records"),
+        ({"x": noise(0)[0]}, r"^x: an array of shape \(6000,\) is given in place of \(record, time\)"),
+        ({"band": (300, 400)}, "^band: 300-400 Hz is not allowed"),
+    ],
+)
+def test_arguments_of_another_form_are_refused_by_name(wrong, said):
+    arguments = {"x": noise(0), "fs": 12_000.0, "shaft_rate": 30.0, "orders": orders(4), "band": (300, 4000)}
+    assert indicators(**arguments)[0].shape[0] == 4
+    with pytest.raises(ValueError, match=said):
+        indicators(**arguments | wrong)
+
+
 @law
 @given(seeds, st.floats(1e-4, 1e4))
 def test_lines_and_shape_do_not_depend_on_gain(seed, gain):
