@@ -68,8 +68,8 @@ def feature_table(
     groups
         Some of ``features.table.definitions.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
     speed
-        ``check`` also estimates the shaft speed of every recording (`features.shaft_speed`); ``correct`` does so too and
-        computes the features at the estimated speed where it is clear. Simulated corpora are not checked.
+        ``off`` takes the labels; ``check`` also estimates the shaft speed of every recording (`features.shaft_speed`); ``correct`` does
+        so too and computes the features at the estimated speed where it is clear. Simulated corpora are not checked.
     channel
         Name of the channel, or its number from 0; or the names of several, such as the axes of one housing.
     band
@@ -156,11 +156,13 @@ def feature_table(
 
 
 def band_warnings(table: xr.Dataset) -> list[str]:
-    """A sentence if the records are sampled too slowly for lines in the band of a feature table."""
+    """A sentence if the records are sampled too slowly for lines in the band of a feature table, or for the end of a band of its own."""
     band, rate = band_of(table.attrs), float(table["sample_rate"][0])
-    if rate >= band.lowest_rate:
-        return []
     needed, hz = f"need {band.lowest_rate:,.0f} Hz", f"{band.low:g}-{band.high:g} Hz"
+    if rate >= max(band.lowest_rate, 0 if band == DEFAULT_BAND else 2 * band.high):
+        return []
+    if rate >= band.lowest_rate:
+        return [f"the band {hz} ends above half the sample rate of {rate:,.0f} Hz, where energies are at their floor."]
     return [
         f"no record has lines and shape: in the band {hz} they {needed}, and the sample rate is {rate:,.0f} Hz; give a lower band."
     ]

@@ -271,3 +271,12 @@ def test_a_sample_rate_too_low_for_lines_is_told_exactly_where_all_are_missing(r
     values, _ = indicators(x, rate, np.array([10.0]), orders, ("lines", "shape"), Band(*band))
     table = xr.Dataset({"sample_rate": ("record", [rate])}, attrs=band_attributes(Band(*band)))
     assert bool(band_warnings(table)) == np.isnan(values).all()
+
+
+@pytest.mark.parametrize(
+    ("rate", "band", "told"),
+    [(12_000.0, (300.0, 9000.0), 1), (18_000.0, (300.0, 9000.0), 0), (8000.0, (300.0, 5000.0), 0)],
+)
+def test_a_band_that_was_chosen_and_ends_above_half_the_sample_rate_is_told(rate, band, told):
+    table = xr.Dataset({"sample_rate": ("record", [rate])}, attrs=band_attributes(Band(*band)))
+    assert sum("ends above half the sample rate of 12,000 Hz" in sentence for sentence in band_warnings(table)) == told
