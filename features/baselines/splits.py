@@ -55,7 +55,7 @@ def cross_validate(
     EstimatorError
         If the classifier fails.
     ValueError
-        For an unknown estimator.
+        For an unknown estimator or track.
     """
     records = records_of(data, DEFAULT_GROUPS)
     return score_splits(records, *grouped_case(records, track, folds, seed), estimator, seed)[0]

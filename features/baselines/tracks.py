@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from sklearn.model_selection import StratifiedGroupKFold
 
-from features.baselines.names import Track
+from features.baselines.names import TRACKS, Track
 from features.baselines.records import FloatArray, IntArray, Records, check_classes
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
@@ -61,7 +61,11 @@ def check_track(records: Records, track: Track, folds: int) -> None:
     ------
     CorpusError
         If there are too few folds, groups or classes, or too few groups or records of a class.
+    ValueError
+        For a track that does not exist.
     """
+    if track not in TRACKS:
+        raise ValueError(f"track: {track!r} does not exist; choose from {', '.join(TRACKS)}.")
     where = f"{records.title}, cross-validation"
     present = check_classes(records)
     if folds < 2:

@@ -119,6 +119,15 @@ def test_a_track_without_groups_is_refused_in_one_sentence(track, changed, sente
         cross_validate(plain, "majority", track=track)
 
 
+@pytest.mark.parametrize(
+    "score",
+    [lambda table: cross_validate(table, "majority", track="rgi"), lambda table: benchmark(table, tracks=("rgi",))],
+)
+def test_a_track_that_does_not_exist_is_refused_with_the_names_of_all(score):
+    with pytest.raises(ValueError, match=r"^track: 'rgi' does not exist; choose from specimen, rig, bearing, speed"):
+        score(varied_table())
+
+
 def test_tracks_without_groups_are_left_out():
     table = varied_table()
     one = table.assign(bpfo=0 * table.bpfo + 3.0, bpfi=0 * table.bpfi + 5.0, shaft_rate=0 * table.shaft_rate + 30.0)
