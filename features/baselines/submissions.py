@@ -100,6 +100,8 @@ def check_submission(
     # numbers, identities and folds prove that the tested records are those of the protocol, in whatever order they stand
     wanted = frame.astype(str).sort_values("record")
     submitted = submitted.sort_values("record", ignore_index=True)
+    if (twice := submitted["record"].duplicated()).any():
+        raise CorpusError(f"{path}: has record {submitted['record'][twice].iloc[0]:.20} twice; leave one row of each.")
     reasons = (
         f"does not have the {len(frame)} records that are tested",
         "has records of another corpus",
@@ -146,7 +148,8 @@ def _tested(table: xr.Dataset, splits: Sequence[Split]) -> pd.DataFrame:
 def _scores(tested: Records, predicted: pd.Series, where: str, seed: int) -> Scores:
     wrong = sorted({*predicted} - {*FAULTS})
     if wrong:
-        raise CorpusError(f"{where}: {wrong[0]!r:.60} is no class; allowed are {', '.join(FAULTS)}.")
+        present = ", ".join(FAULTS[code] for code in np.unique(tested.fault))
+        raise CorpusError(f"{where}: {wrong[0]!r:.60} is no class; those of this corpus are {present}.")
     codes = np.array([FAULTS.index(name) for name in predicted])
     _, recording = np.unique(tested.recording, return_inverse=True)
     told = predictions(np.eye(len(FAULTS))[codes], fault_names(np.arange(len(FAULTS))), recording, UNCALIBRATED)
