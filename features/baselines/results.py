@@ -276,7 +276,10 @@ def leaky_text(baselines: Iterable[Baseline]) -> str:
     """Sentence on scores of the leaky split below those of the track; empty without one."""
     if not any(of.leaky.balanced_accuracy < of.grouped.balanced_accuracy for of in baselines):
         return ""
-    return "A leaky split that scores lower does so by chance, since its folds are others, and shows no leak."
+    return (
+        "A leaky split that scores lower shows no leak: its folds are others, and a recognised specimen misleads if its other records "
+        "are of other classes."
+    )
 
 
 _Job = tuple[str, str, str]
