@@ -1,7 +1,7 @@
 """Commands that train a model and score it on another corpus."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -30,12 +30,23 @@ if TYPE_CHECKING:
     from features.table.recording_speeds import Speed
 
 
+class _Baseline(click.Choice[str]):
+    """A baseline; the refusal of others says where they are taken."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        if ":" in value:
+            self.fail(
+                f"{value!r} is no baseline; raceway benchmark takes your own, and so does features.Model.", param, ctx
+            )
+        return super().convert(value, param, ctx)
+
+
 @click.command()
 @corpus_argument
 @file_option("MODEL", "Model file: .skops.", (".skops",), kind="model")
 @click.option(
     "--estimator",
-    type=click.Choice(BASELINES),
+    type=_Baseline(BASELINES),
     default=DEFAULT_ESTIMATOR,
     show_default=True,
     metavar="NAME",

@@ -196,7 +196,8 @@ group_option: Decorator = click.option(
     multiple=True,
     metavar="NAME",
     callback=_known_groups,
-    help="Take this group of features too (raceway features --list), such as one of a plug-in. Repeatable.",
+    help="Take this group of features too (raceway features --list), such as one of a plug-in; train and benchmark take lines and "
+    "shape anyway, features all built-in ones. Repeatable.",
 )
 analysis_options = gathered("analysis", Analysis, channel_option, band_option)
 training_options = gathered("analysis", Analysis, channel_option, band_option, group_option)
@@ -255,7 +256,8 @@ def checked_pages(_context: click.Context, _option: click.Parameter, path: Path 
 
 def pages_option(metavar: str, what: str, *, required: bool = True) -> Decorator:
     """Make the option that names the folder for pages and pictures, which is no corpus and lies in none."""
-    options: Any = {"type": A_PATH, "required": required, "metavar": metavar, "help": what, "callback": checked_pages}
+    told = f"{what} Earlier ones are replaced."
+    options: Any = {"type": A_PATH, "required": required, "metavar": metavar, "help": told, "callback": checked_pages}
     return click.option("-o", "--output", **options)
 
 
@@ -290,7 +292,8 @@ def file_option(
     def check(_context: click.Context, _option: click.Parameter, path: Path | None) -> Path | None:
         return None if path is None else checked_file(path, suffixes, kind)
 
-    return click.option(*flags, type=A_PATH, required=required, metavar=metavar, help=what, callback=check)
+    told = what if kind is None else f"{what} An earlier one is replaced."
+    return click.option(*flags, type=A_PATH, required=required, metavar=metavar, help=told, callback=check)
 
 
 picture_option = file_option("PICTURE", "Picture: .png, .svg or .pdf.", (".png", ".svg", ".pdf"), kind="picture")

@@ -13,6 +13,15 @@ MARKS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
 DECIMAL_MARKS = (".", ",")
 
 
+class _Unit(click.Choice[str]):
+    """One of ``UNITS``, in any spelling that a header may have."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        from raceway.importing.header import known_unit  # not at the top: help needs no reader of files
+
+        return super().convert(known_unit(value) or value, param, ctx)
+
+
 class Reading(NamedTuple):
     """How the files are read: options of the same names."""
 
@@ -90,7 +99,7 @@ _rate: Decorator = click.option(
 )
 _unit: Decorator = click.option(
     "--unit",
-    type=click.Choice(UNITS),
+    type=_Unit(UNITS),
     help="Unit of the values; by default that in the header. If there is none, m/s2 is assumed, with a warning. V and mV need "
     "--sensitivity.",
 )

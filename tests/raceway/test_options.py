@@ -81,6 +81,17 @@ def given(monkeypatch):
     return replace
 
 
+def test_the_refusal_of_a_classifier_of_the_user_says_where_it_is_taken(run, tiny_corpus, tmp_path):
+    refused = run("train", tiny_corpus, "-o", tmp_path / "m.skops", "--estimator", "mine:make")
+    assert "'mine:make' is no baseline; raceway benchmark takes your own" in refused.stderr
+
+
+@pytest.mark.parametrize(("spelling", "unit"), [("mm/s^2", "mm/s2"), ("m/s²", "m/s2"), ("m s^-2", "m/s2"), ("g", "g")])
+def test_units_are_taken_in_the_spellings_of_headers(spelling, unit):
+    option = next(option for option in COMMANDS["diagnose",].params if option.name == "unit")
+    assert option.type.convert(spelling, option, None) == unit
+
+
 def test_benchmark_passes_on_grouping_folds_and_seed(run, given, tiny_corpus, tmp_path):
     options = given("features.baselines.benchmark")
     line = ("benchmark", tiny_corpus, "-o", tmp_path / "report")
