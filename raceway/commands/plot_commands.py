@@ -81,6 +81,11 @@ def plot(
     from raceway.reports.views import draw_view
 
     shown = _shown(source, record, bearing, speeds, band, reading)
+    if band is not None and shown.recorded_band.high < band[1]:
+        low, high = shown.recorded_band
+        notice(
+            f"warning: {source}: is recorded up to half its sample rate of {shown.fs:g} Hz; the band is {low:g}-{high:g} Hz."
+        )
     under = None if under_path is None else _shown(under_path, number, bearing, speeds, band, reading)
     try:
         figure = draw_record(shown, under) if view is None else draw_view(view, shown, under)

@@ -42,6 +42,14 @@ def test_what_a_picture_of_a_recording_lacks_is_told_in_one_sentence(run, record
     assert len(result.stderr.splitlines()) == 1
 
 
+@pytest.mark.parametrize(("top", "told"), [(30_000, ["the band is 300-6000 Hz."]), (6000, [])])
+def test_a_band_beyond_half_the_sample_rate_is_told(run, tiny_corpus, recording, tmp_path, top, told):
+    band = ("--band", 300, top, "-o", tmp_path / "x.png")
+    for source in ((tiny_corpus, "--record", 1), (recording, *MACHINE, "--unit", "g")):
+        warnings = [line for line in run("plot", *source, *band).stderr.splitlines() if line.startswith("warning: ")]
+        assert [line[-len(told[0]) :] for line in warnings] == told
+
+
 def test_a_picture_of_several_axes_needs_a_channel(run, tmp_path):
     np.save(tmp_path / "axes.npy", np.random.default_rng(0).standard_normal((24_000, 3)))
     result = run("plot", tmp_path / "axes.npy", "--unit", "g", *MACHINE, "-o", tmp_path / "x.png")
