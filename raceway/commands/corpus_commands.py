@@ -23,7 +23,7 @@ from raceway.console.options import (
     where_option,
     worker_options,
 )
-from raceway.console.progress_bar import notice, notice_compilation, progress
+from raceway.console.progress_bar import next_step, notice, notice_compilation, progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -253,7 +253,7 @@ def _show_generated(generated: "Generated", wanted: "Recipe") -> None:
         show.text(f"The other {missing:,} of {wanted.n_records:,} snapshots would come after the end of a life.")
     if generated.parts < wanted.n_parts:
         show.text(f"The recipe has {wanted.n_parts:,} parts; raceway copy joins these with the others.")
-    show.text(f"Next: raceway info {shlex.quote(str(generated.path))}")
+    next_step(f"raceway info {shlex.quote(str(generated.path))}")
 
 
 def _coarse_steps(corpus: Path) -> str | None:

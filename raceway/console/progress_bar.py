@@ -112,6 +112,12 @@ def notice(sentence: str) -> None:
         sys.stderr.write(show.printable(sentence) + "\n")
 
 
+def next_step(step: str) -> None:
+    """Print what can be done with a result on standard output; nothing with ``--quiet``."""
+    if not _quiet():
+        show.text(f"Next: {step}")
+
+
 @contextmanager
 def notice_compilation() -> Iterator[None]:
     """Print a sentence when numba starts to compile a kernel, which happens once per machine."""

@@ -7,7 +7,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import A_PATH, file_option, finite, json_option
-from raceway.console.progress_bar import notice, notice_compilation
+from raceway.console.progress_bar import next_step, notice, notice_compilation
 from raceway.importing.reading_options import Reading, Speeds, reading_options, rpm_option
 
 
@@ -57,4 +57,5 @@ def imitate(
         "AUC of the recording against healthy records; 0.5: alike, 1: all values of the recording are higher:", ""
     )
     show.table(("measure", "AUC"), [[name, "" if auc is None else f"{auc:.2f}"] for name, auc in done.auc.items()])
-    show.text("", f"{done.page}: pictures. Next: raceway generate {done.recipe} -o corpus")
+    show.text("", f"{done.page}: pictures.")
+    next_step(f"raceway generate {done.recipe} -o corpus")

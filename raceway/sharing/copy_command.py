@@ -7,8 +7,8 @@ from typing import Any
 import click
 
 from raceway.console import show
-from raceway.console.options import A_CORPUS, choice_options, json_option, target_option
-from raceway.console.progress_bar import notice, progress
+from raceway.console.options import A_CORPUS, A_PATH, choice_options, json_option
+from raceway.console.progress_bar import next_step, notice, progress
 
 
 def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[str, ...]) -> dict[str, str]:
@@ -21,7 +21,14 @@ def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[s
 
 @click.command()
 @click.argument("sources", metavar="SOURCE...", nargs=-1, required=True, type=A_CORPUS)
-@target_option("The copy: a new name, or an empty folder.")
+@click.option(
+    "-o",
+    "--output",
+    type=A_PATH,
+    required=True,
+    metavar="TARGET",
+    help="The copy: a new name, or an empty folder.",
+)
 @choice_options
 @click.option(
     "--rename-channel",
@@ -87,6 +94,6 @@ def copy(sources: tuple[Path, ...], output: Path, to: str | None, as_json: bool,
     )
     quoted = shlex.quote(str(output))
     if not form:
-        show.text(f"Next: raceway info {quoted}")
+        next_step(f"raceway info {quoted}")
     elif to is not None:
-        show.text(f"Next: read {quoted}/README.md")
+        next_step(f"read {quoted}/README.md")

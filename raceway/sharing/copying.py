@@ -234,6 +234,10 @@ def choose(
     """
     if not sources:
         raise CorpusError("copy: no corpus is given; give one or more.")
+    places = [path.resolve() for path in sources]
+    twice = next((path for path, place in zip(sources, places, strict=True) if places.count(place) > 1), None)
+    if twice is not None:
+        raise CorpusError(f"copy: {twice} is given twice; give each corpus once.")
     with ExitStack() as stack:
         opened = [stack.enter_context(open_corpus(path)) for path in sources]
         manifests = [read_manifest(path) for path in sources]

@@ -135,7 +135,9 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
         raise CorpusError(f"to: there is no form {to!r}; allowed is {', '.join(FORMS)}; {_READ_BY_OTHERS}.")
     suffix = target.suffix if target.suffix in SUFFIXES else ""
     if target.suffix.lower() in FILE_SUFFIXES:
-        raise CorpusError(f"{target}: copies are not written as {target.suffix}; {_READ_BY_OTHERS}.")
+        raise CorpusError(
+            f"{target}: copies are not written as {target.suffix}; {_READ_BY_OTHERS}, and --to huggingface Parquet by split."
+        )
     if suffix and to is not None:
         raise CorpusError(f"{target}: {suffix} is one file, and to={to!r} makes a folder; leave one of the two out.")
     form = to or suffix[1:] or "folder"

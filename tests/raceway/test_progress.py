@@ -76,4 +76,4 @@ def test_quiet_prints_results_alone(run, tiny_recipe, tmp_path):
     quiet = run("--quiet", "generate", tiny_recipe, "-o", tmp_path / "quiet", "--records", 2)
     assert "generating:" in loud.stderr
     assert quiet.stderr == ""
-    assert quiet.stdout == loud.stdout.replace("loud", "quiet")
+    assert loud.stdout.replace("loud", "quiet") == f"{quiet.stdout}Next: raceway info {tmp_path / 'quiet'}\n"

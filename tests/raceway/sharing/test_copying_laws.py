@@ -170,13 +170,14 @@ def test_a_choice_is_copied_and_described(run, tones, tmp_path):
     ("words", "sentence"),
     [
         ("{one} --split train -o {other}", "exists and is not an empty folder"),
-        ("{one} {one} -o {out}", "has the same samples as record 0"),
+        ("{one} {one}/../{one_name} -o {out}", "is given twice; give each corpus once"),
+        ("{one} -o {out}.hdf5", "docs/sharing.md writes CSV and Zarr, and --to huggingface Parquet"),
         ("{one} --rename-channel housing -o {out}", "give OLD=NEW, once for each channel"),
         ("-o {out}", "Missing argument"),
     ],
 )
 def test_what_cannot_be_done_is_one_sentence_and_leaves_nothing(run, tones, tmp_path, words, sentence):
-    places = {"one": tones[0], "other": tones[1], "out": tmp_path / "out"}
+    places = {"one": tones[0], "one_name": tones[0].name, "other": tones[1], "out": tmp_path / "out"}
     result = run("copy", *(word.format(**places) for word in words.split(" ")))
     assert result.exit_code == BAD_INPUT
     assert sentence in result.stderr
