@@ -26,6 +26,8 @@ ABOVE: Any = {"loc": "lower left", "bbox_to_anchor": (0, 1), "ncols": 2, "border
 def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None) -> Figure:
     """One life as spectra over its age, its rms and the length of its spall; and the rms of all lives beside those of another corpus.
 
+    The label of the figure is the name of the bearing.
+
     Parameters
     ----------
     corpus
@@ -45,8 +47,10 @@ def draw_life(corpus: Path, bearing: str | None = None, like: Path | None = None
         signal, fs = _signal(life), float(life["sample_rate"][0])
         figure = Figure(figsize=(WIDTH, 6.5 if like is None else 8.5), layout="constrained")
         panels = figure.subplots(3 if like is None else 4, 1, height_ratios=[2, 1, 1, *([] if like is None else [1.5])])
+        name = str(life["bearing"].values[0])
+        figure.set_label(name)
         age = from_si(life["age"].values, "h")
-        _draw_spectra(panels[0], age, signal, fs, str(life["bearing"].values[0]))
+        _draw_spectra(panels[0], age, signal, fs, name)
         rms = _rms(signal)
         panels[1].semilogy(age, rms / np.median(rms[:FIRST]), color=BLUE, linewidth=1)
         panels[1].set_ylabel("rms over\nits start")

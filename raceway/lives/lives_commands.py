@@ -44,8 +44,9 @@ def life(corpus: Path, output: Path, bearing: str | None, like: Path | None) -> 
     from raceway.lives.life_pictures import draw_life
     from raceway.reports.pictures import write_picture
 
-    write_picture(draw_life(corpus, bearing, like), output)
-    show.text(f"{output}: a life of {corpus}.")
+    figure = draw_life(corpus, bearing, like)
+    write_picture(figure, output)
+    show.text(f"{output}: life of {figure.get_label()} of {corpus}.")
 
 
 @click.command()
@@ -139,7 +140,7 @@ def prognose(
         show.table(("early warning", "false alarms in 1,000 h", "missed", "delay [h]", "90 % [h]", "time left"), rows)
         show.text(
             "delay: from the first snapshot in which the spall can be seen at all, the median and that of nine of ten alarms; time left: "
-            "share of the time to the last one."
+            "share of the time to the last one; missed: share of the bearings with a visible spall that get no alarm."
         )
         if rate and warned["allowed"].min() < 1:
             notice(

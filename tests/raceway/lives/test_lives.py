@@ -53,14 +53,16 @@ def test_a_bearing_that_is_not_there_is_named(lives, tiny_corpus):
 
 @pytest.mark.usefixtures("tables_once")
 def test_the_commands_draw_and_score(run, lives, tmp_path):
-    assert run("life", lives, "-o", tmp_path / "x.png").exit_code == 0
+    drawn = run("life", lives, "-o", tmp_path / "x.png", "--bearing", 1).stdout
+    assert drawn == f"{tmp_path / 'x.png'}: life of 6205 #1 of {lives}.\n"
     assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")
     assert "are among those of the training" in run("prognose", lives, "--test", lives).stderr
     shown = run("prognose", lives, "--folds", 2)
     hours = [cell for row in shown.stdout.splitlines()[1:6] for cell in (*row.split()[1:4], row.split()[-1])]
     assert len(hours) == 20
     assert all(re.fullmatch(r"\d{1,3}(,\d{3})*\.\d", cell) for cell in hours), hours
-    assert re.search("^early warning .* 90 % ", shown.stdout, re.MULTILINE)
+    assert re.search("^early warning .* missed .* 90 % .* time left$", shown.stdout, re.MULTILINE)
+    assert all(f"{column}: " in shown.stdout for column in ("missed", "delay", "time left"))
 
 
 @pytest.mark.usefixtures("tables_once")
