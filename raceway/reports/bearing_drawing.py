@@ -27,6 +27,9 @@ RING, HIGHEST = 0.45, 1.0  # thickness of a ring, and height of the load zone, i
 def plot_bearing(bearing: str | Mapping[str, Any], load_n: float = 500.0, clearance_um: float = 0.0) -> Figure:
     """Draw a bearing with its load zone, and the path of a point on a ball while the cage turns once.
 
+    Its angles count from the load, as those of faults in a recipe; the label ``angle`` of a record counts from x, so that the load is at
+    -90° there.
+
     A notebook shows the figure, and ``figure.savefig("bearing.png")`` writes it; it is none of pyplot, so ``plt.savefig`` writes another.
 
     Parameters
@@ -83,7 +86,7 @@ def plot_bearing(bearing: str | Mapping[str, Any], load_n: float = 500.0, cleara
     title = f"{name}, {load_n:,.0f} N, clearance {clearance_um:g} um: load zone of {wide:.0f}°"
     figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
     axes.set_title(
-        f"Per turn of the shaft: cage {ratios.ftf:.3f} turns, ball {ratios.bsf:.3f} turns. A point on a ball (red)\n"
+        f"Per turn of the shaft: cage {ratios.ftf:.3f} turns, ball {ratios.bsf:.3f} turns. A point on a ball (orange)\n"
         f"meets the races {2 * ratios.bsf:.2f} times, one on the outer race {ratios.bpfo:.2f} balls, one on the inner {ratios.bpfi:.2f}."
     )
     return figure

@@ -64,6 +64,7 @@ COLUMNS = 1500  # columns that a long waveform is reduced to
 TOLD_MEAN = 0.01  # of the standard deviation, from which the title tells the mean that is removed
 SEGMENT = 0.05  # s, window of the power spectral density
 FAINTEST_DB = 120.0  # lowest density drawn, below the highest
+LETTERS_PER_INCH = 16  # of a label of a line
 TOLERANCE = 0.02  # of an order, half the width of the shaded band around a line of the fault
 
 
@@ -291,16 +292,18 @@ def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str,
 
 
 def name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float], colour: str, top: float) -> None:
-    """Write the label of each line above the axes, in the lower of two rows if there is room."""
+    """Write the label of each line above the axes, in the lower of two rows if there is room, and beside its line if there is none."""
     ends = [-np.inf, -np.inf]
-    per_letter = top / 78
+    # a layout makes the axes wider than they are now
+    letters = LETTERS_PER_INCH * axes.bbox.width / axes.figure.dpi
     named = [(line, name, colour) for name, line in own.items()] + [(line, name, INK) for name, line in others.items()]
     for line, name, ink in sorted(named):
-        half = (len(name) + 1) / 2 * per_letter
+        half = (len(name) + 1) / 2 * top / letters
         row = 0 if line - half > ends[0] else int(np.argmin(ends))
-        ends[row] = line + half
+        place = max(line, ends[row] + half)
+        ends[row] = place + half
         weight = "normal" if ink == INK else "bold"
         axes.annotate(
-            name, (line, 1), (0, 3 + 11 * row), ("data", "axes fraction"), "offset points",
+            name, (place, 1), (0, 3 + 11 * row), ("data", "axes fraction"), "offset points",
             color=ink, fontsize=8, fontweight=weight, ha="center", va="bottom", annotation_clip=False,
         )  # fmt: skip

@@ -1,12 +1,14 @@
 """Views of a record: lines stand where they belong at any speed, and a chosen band is the planted one."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 
 from features.table.band import DEFAULT_BAND, Band
 from gen.corpus import open_corpus
 from gen.support.errors import CorpusError
-from raceway.reports.pictures import draw_record, picture, squared_envelope
+from raceway.reports.pictures import WIDTH, Drawing, draw_envelope_spectrum, draw_record, picture, squared_envelope
 from raceway.reports.subject import shown_record, shown_recording
 from raceway.reports.views import MAPS, VIEWS, draw_view, plot_record
 from tests.pulses import pulse_train
@@ -51,6 +53,19 @@ def test_every_view_is_drawn_at_constant_and_at_varying_speed_and_over_another_r
             draw_view(view, steady, steady)
     else:
         assert draw_view(view, steady, steady).legends
+
+
+@pytest.mark.parametrize("columns", [1, 2])
+@pytest.mark.parametrize("orders", [ORDERS, (0.44, 5.7, 8.3, 3.1), (0.45, 9.1, 10.9, 5.0)])
+def test_names_of_lines_are_not_printed_over_each_other(steady, orders, columns):
+    for fault in ("healthy", "inner", "outer", "ball", "cage"):
+        figure = Drawing(figsize=(WIDTH if columns == 1 else 1.6 * WIDTH, 2), layout="constrained")
+        axes = figure.subplots(1, columns, squeeze=False)[0, -1]
+        draw_envelope_spectrum(axes, steady._replace(orders=type(steady.orders)(*map(np.asarray, orders)), fault=fault))
+        figure.canvas.draw()
+        boxes = [text.get_window_extent() for text in axes.texts]
+        assert len(boxes) >= 5
+        assert not [pair for pair in combinations(boxes, 2) if pair[0].overlaps(pair[1])]
 
 
 def test_the_envelope_of_a_run_up_has_its_line_within_half_a_bin_of_its_order(run_up):
