@@ -11,6 +11,7 @@ from raceway.importing import read_signal
 from tests.raceway.importing.file_writers import N, T, X, text
 from tests.raceway.importing.people_files import RIGHT
 from tests.raceway.importing.test_array_files import READ
+from tests.raceway.importing.test_old_excel import xls
 from tests.raceway.importing.test_people_files import write
 
 SEEDS = (
@@ -18,7 +19,7 @@ SEEDS = (
     "save_ascii_two.txt", "save_ascii_row.txt", "utf_16.csv", "german_latin_1.csv", "sheet_with_times.xlsx", "stereo.wav", "bits_24.wav",
     "many.mat", "level_4.mat", "level_7_3.mat", "two_rows.npy",
 )  # fmt: skip
-OF_PROGRAMS = ("one.tdms", "text.uff", "binary.unv", "sheet.ods", "old.xls", "frame.parquet", "archive.npz")
+OF_PROGRAMS = ("one.tdms", "text.uff", "binary.unv", "sheet.ods", "frame.parquet", "archive.npz")
 FIELDS = (
     "", "0", "-", "nan", "1e308", "1e999", "1.480", "1,000,5", "9" * 400, "OVL", "\0", '"', "'", "\n", "\r", ";", ",", "\t", " ", "[g]",
     "Sample rate: 1e999 Hz", "Unit: g", "2026-13-45", "\ufeff", "x" * 5000, "Samples\t99999999999999999999", "1048577", "-1", "XFD1048576",
@@ -38,8 +39,9 @@ def seeds(folder: Path) -> list[Path]:
         write(folder / name, RIGHT[name][0])
     for name in OF_PROGRAMS:
         READ[name][0](folder / name)
+    xls(folder / "old.xls", T, X)
     (folder / "run_up.csv").write_text(RUN_UP, encoding="utf-8")
-    return [folder / name for name in (*SEEDS, *OF_PROGRAMS, "run_up.csv")]
+    return [folder / name for name in (*SEEDS, *OF_PROGRAMS, "old.xls", "run_up.csv")]
 
 
 def mutate(content: bytes, rng: np.random.Generator) -> bytes:
