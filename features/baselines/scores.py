@@ -282,13 +282,11 @@ def interval_text(interval: Interval | None, decimals: int = 3) -> str:
 def no_width_text(scored: Iterable[Scores]) -> str:
     """Sentence on intervals from 1 to 1, which tell nothing of specimens that were not tested [2]_; empty without one."""
     fewest = min((scores.specimens for scores in scored if scores.interval == (1, 1)), default=0)
+    if not fewest:
+        return ""
     return (
-        ""
-        if not fewest
-        else (
-            f"An interval from 1 to 1 says no more than that all tested specimens are right: with {fewest} of a class, "
-            f"its true share of errors may be up to {percent_text(1 - 0.05 ** (1 / fewest))}."
-        )
+        f"An interval from 1 to 1 says no more than that all tested specimens are right: with {fewest} of a class, its true share of "
+        f"errors may be up to {percent_text(1 - 0.05 ** (1 / fewest))}."
     )
 
 

@@ -39,8 +39,9 @@ class Plan:
     """Counts and size of a corpus.
 
     ``classes``, ``splits`` and ``steps_per_sample`` count records; the last does not count the ``left_out`` records, which cannot be
-    simulated. If fewer records were ``drawn`` than the corpus has, classes and splits are scaled up; if fewer were ``checked``, steps and
-    records left out are. A record whose fault cannot be seen may be left out too, which only :func:`gen.generate` counts.
+    simulated. If fewer records were ``drawn`` than the corpus has, wide spalls and the classes of lives are scaled up; if fewer were
+    ``checked``, steps and records left out are. A record whose fault cannot be seen may be left out too, which only :func:`gen.generate`
+    counts.
     """
 
     recipe: str
