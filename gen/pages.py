@@ -65,7 +65,7 @@ faults:
 ```
 
 A fault makes its records louder here, and every score is near 1. Use
-`level: {kind: snr, faulty_db: "uniform(-15, 0)", healthy_db: "uniform(-25, -5)"}`, which gives all records one rms, a
+`level: {kind: snr, faulty_db: "uniform(-20, 0)", healthy_db: "uniform(-25, -5)"}`, which gives all records one rms, a
 higher `background_m_s2`, or narrower spalls (`width_mm`) for a corpus that is worth learning from.
 
 ## Distributions
