@@ -112,7 +112,7 @@ class Results(Shown):
     versions
         Of the libraries.
     leading
-        Name of the classifier that the findings are about.
+        Name of the classifier that the findings are about: the best on the first track, an untrained one only without others.
     baselines
         Scores by name of the classifier.
     further
@@ -187,7 +187,7 @@ def benchmark(
     tracks
         Respects in which the tested records are new; ``"all"`` omits those that the corpus cannot be split on.
     estimators
-        Classifiers by the name to show, as for `cross_validate`; the first one leads. The untrained baselines are
+        Classifiers by the name to show, as for `cross_validate`. The untrained baselines are
         always scored too. By default all baselines, or those of `BRIEF` if there are several tracks.
     waveforms
         Waveforms of the corpus and of each of the others, in this order, for the classifiers of the user in place of the features.
@@ -218,7 +218,6 @@ def benchmark(
     for other in others:
         _check_apart(records, other)
     chosen = _chosen(estimators, several=len(cases) > 1)
-    leading = DEFAULT_ESTIMATOR if estimators is None else next(iter(estimators))
     first, splits = next(iter(cases)), next(iter(cases.values()))["grouped"][1]
     own = records_of(waveforms[0], groups) if waveforms else records
     # a job is one classifier on one track in one case: grouped, leaky, null or other corpora
@@ -241,8 +240,11 @@ def benchmark(
             scores[job] = score_of_job
             done(1)
 
+    def best_of(names: Iterable[str], track: str) -> str:
+        return max(names, key=lambda name: scores[name, track, "grouped"][0].balanced_accuracy)
+
     def rows(track: str) -> dict[str, Baseline]:
-        best = max(chosen, key=lambda name: scores[name, track, "grouped"][0].balanced_accuracy)
+        best = best_of(chosen, track)
         return {
             name: Baseline(
                 scores[name, track, "grouped"][0],
@@ -254,6 +256,7 @@ def benchmark(
             for name in chosen
         }
 
+    leading = best_of([name for name in chosen if name not in UNTRAINED] or chosen, first)
     led = isinstance(chosen[leading], str) or not waveforms
     return Results(
         corpus=_content(records, count_unknown(table)),

@@ -150,7 +150,7 @@ def _test_titles(results: Results) -> list[str]:
 
 
 def _findings(results: Results, chance: float) -> list[str]:
-    """Findings on the default baseline, one sentence each."""
+    """Findings on the leading classifier, one sentence each."""
     baseline, rule = results.baselines[results.leading], results.baselines["envelope_rule"]
     name = f"the {results.leading.replace('_', ' ')}"
     grouped = (

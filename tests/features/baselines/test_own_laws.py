@@ -4,6 +4,7 @@ import sys
 
 import numpy as np
 import pytest
+from sklearn.dummy import DummyClassifier
 from sklearn.linear_model import LogisticRegression, RidgeClassifier
 from sklearn.naive_bayes import GaussianNB
 from sklearn.pipeline import make_pipeline
@@ -76,8 +77,10 @@ def test_a_given_classifier_is_copied_before_each_fit():
 
 
 def test_an_own_classifier_is_benchmarked_beside_the_untrained_baselines_and_on_another_corpus():
-    results = benchmark(make_table(16, 3), make_table(8, 2, seed=1), estimators={"mine": Nearest}, folds=2)
-    assert (results.leading, list(results.baselines)) == ("mine", ["majority", "envelope_rule", "mine"])
+    chosen = {"worse": DummyClassifier(), "mine": Nearest, "alike": Nearest}
+    results = benchmark(make_table(16, 3), make_table(8, 2, seed=1), estimators=chosen, folds=2)
+    assert list(results.baselines) == ["majority", "envelope_rule", *chosen]
+    assert results.leading == "mine"  # the best, and the first of equals
     assert results.baselines["mine"].grouped.balanced_accuracy > 0.95
     assert results.baselines["mine"].tests[0].balanced_accuracy > 0.95
     assert results.baselines["mine"].null.balanced_accuracy < 0.6
