@@ -110,12 +110,12 @@ def pair_in_words(pair: Pair, machine: Given, others: Sequence[Pair]) -> str:
 
 def _pair(pair: Pair, machine: Given) -> str:
     bearing = "" if len(machine.bearings) == 1 else f"bearing {_bearing(pair)} as found, "
-    low, high = (f"{from_si(rate, 'rpm'):,.0f}" for rate in machine.rates)
+    speed, low, high = (f"{from_si(rate, 'rpm'):,.0f}" for rate in (pair.rate, *machine.rates))
     if low != high:
         beyond = f"or up to {100 * RIVALS_BEYOND:g} % beyond"
-        return f"{bearing}shaft {from_si(pair.rate, 'rpm'):,.0f} rpm as found between {low} and {high} rpm, {beyond}"
-    if pair.rate != machine.rates[0]:
-        return f"{bearing}shaft {from_si(pair.rate, 'rpm'):,.0f} rpm as found, {low} rpm as labelled"
+        return f"{bearing}shaft {speed} rpm as found between {low} and {high} rpm, {beyond}"
+    if speed != low:
+        return f"{bearing}shaft {speed} rpm as found, {low} rpm as labelled"
     return f"{bearing}shaft {low} rpm as labelled"
 
 
@@ -160,10 +160,10 @@ def _place(pair: Pair) -> str:
 
 
 def _bearing(pair: Pair) -> str:
-    """Name of a bearing and of those alike; of more than three the number of the others."""
+    """Name of a bearing and of those alike; of more than four the first three and the number of the others."""
     names = (pair.bearing, *pair.alike)
     further = len(names) - NAMED
-    return listed(names, "or") if further <= 0 else f"{', '.join(names[:NAMED])} or {further} more"
+    return listed(names, "or") if further <= 1 else f"{', '.join(names[:NAMED])} or {further} more"
 
 
 def listed(words: Sequence[str], last: str) -> str:
