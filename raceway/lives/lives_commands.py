@@ -82,7 +82,7 @@ def prognose(
       raceway prognose corpus --test pronostia
       raceway prognose corpus --json
     """
-    from gen.corpus import open_corpus, specimen_numbers
+    from gen.corpus import open_corpus, specimen_numbers, unit_counts
     from gen.support.errors import CorpusError
     from gen.support.units import from_si
     from raceway.lives.early_warning import check_seen, warn_early
@@ -121,9 +121,10 @@ def prognose(
         for name, row in scores.iterrows()
     )
     show.table(("estimate", *columns.values()), rows)
+    scored = unit_counts(table if other is None else other).specimens
     show.text(
-        "before: error while the bearing has no spall. Some percent between boosting and without_signal are chance; with fifty bearings or "
-        "more, a boosting that is a tenth lower is a sign that features or splits give lives away. The other rows do not see the signal."
+        f"before: error while the bearing has no spall, of {scored} bearings. A boosting far below without_signal there is chance if "
+        "bearings are few, and else a sign that features or splits give lives away. The other rows do not see the signal."
     )
     if warned is not None:
         rows = (

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from gen.corpus import open_corpus
+from gen.corpus import open_corpus, unit_counts
 from gen.generation.corpus import generate
 from gen.recipe import Recipe
 from gen.support.errors import CorpusError
@@ -58,6 +58,8 @@ def test_the_commands_draw_and_score(run, lives, tmp_path):
     assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")
     assert "are among those of the training" in run("prognose", lives, "--test", lives).stderr
     shown = run("prognose", lives, "--folds", 2)
+    with open_corpus(lives) as corpus:
+        assert f"of {unit_counts(corpus).specimens} bearings" in shown.stdout
     hours = [cell for row in shown.stdout.splitlines()[1:6] for cell in (*row.split()[1:4], row.split()[-1])]
     assert len(hours) == 20
     assert all(re.fullmatch(r"\d{1,3}(,\d{3})*\.\d", cell) for cell in hours), hours
