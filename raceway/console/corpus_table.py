@@ -36,7 +36,7 @@ def table_of(
     from gen.corpus import read_manifest
 
     options = team.options(read_manifest(corpus).records) | analysis.options()
-    with progress("computing features", "parts") as report:
+    with progress("computing features", "blocks") as report:
         table = feature_table(
             corpus, analysis.with_groups(GROUPS), speed=speed, window=window, **options, progress=report
         )

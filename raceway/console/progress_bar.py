@@ -39,7 +39,7 @@ def progress(doing: str, unit: str) -> "Iterator[Progress]":
 def show_progress(doing: str = "done", unit: str = "") -> "Progress":
     """Progress in lines, for the argument ``progress`` of calls such as ``gen.generate``; a notebook renews one line.
 
-    ``doing`` is the activity, such as "generating"; ``unit`` is the unit that the call counts, such as "records" or "parts".
+    ``doing`` is the activity, such as "generating"; ``unit`` is the unit that the call counts, such as "records".
     """
     start = last = time.monotonic()
     pace = _pace(unit)
