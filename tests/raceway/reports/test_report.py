@@ -201,15 +201,20 @@ def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, 
     assert held["baselines"]["ensemble"]["null"]["accuracy"] == results.baselines["ensemble"].null.accuracy
 
 
-@pytest.mark.usefixtures("unpainted")
-def test_tracks_and_another_corpus_stand_on_one_page(corpus, results, tmp_path):
+@pytest.fixture
+def several(results):
+    """Results on two tracks and on another corpus."""
     tested = {
         name: replace(row, tests=(replace(row.grouped, by_recording=row.grouped),))
         for name, row in results.baselines.items()
     }
     further = {"rig": TrackResults(2, 24, 24, results.baselines)}
-    both = replace(results, tests=(results.corpus,), baselines=tested, further=further)
-    assert "on every track" in write_report(corpus, both, tmp_path / "out").read_text()
+    return replace(results, tests=(results.corpus,), baselines=tested, further=further)
+
+
+@pytest.mark.usefixtures("unpainted")
+def test_tracks_and_another_corpus_stand_on_one_page(corpus, several, tmp_path):
+    assert "on every track" in write_report(corpus, several, tmp_path / "out").read_text()
 
 
 def test_a_score_above_chance_with_permuted_labels_is_reported_as_a_leak(results):
@@ -291,21 +296,21 @@ def test_detection_is_drawn_with_its_bins_intervals_and_false_alarms():
     assert list(alarms.get_ydata()) == [0.2, 0.2]
 
 
-@pytest.mark.usefixtures("page")
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium")
-def test_on_a_narrow_window_figures_are_whole_and_tables_scroll_by_keys(folder, tmp_path):
+def test_figures_are_whole_and_tables_scroll_by_keys_on_a_narrow_window_alone(corpus, several, tmp_path):
     """No figure is cut, at 500 px they keep three quarters of their size, and only tables are wider than the page."""
+    page = write_report(corpus, several, tmp_path / "out")
+    scrolling = "[...document.querySelectorAll('div.scroll')].filter(d => d.scrollWidth > d.clientWidth)"
     with browser(tmp_path / "profile") as opened:
         for width, dark, least in ((500, False, 0.75), (500, True, 0.75), (360, False, 0.5)):
             opened.look(width, dark=dark)
-            opened.open(folder / "report.html")
+            opened.open(page)
             assert opened.value("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
             scales = opened.value("[...document.images].map(image => image.clientWidth / image.naturalWidth)")
             assert min(scales) > least
             assert opened.value("[...document.images].every(i => i.getBoundingClientRect().right <= innerWidth)")
-            wide = opened.value(
-                "[...document.querySelectorAll('div.scroll')].filter(d => d.scrollWidth > d.clientWidth)"
-                ".map(d => d.tabIndex + (d.ariaLabel ? ' told' : ''))"
-            )
+            wide = opened.value(f"{scrolling}.map(d => d.tabIndex + (d.ariaLabel ? ' told' : ''))")
             assert set(wide) == {"0 told"}
+        opened.look(1200)
+        assert opened.value(f"{scrolling}.length") == 0
         assert opened.errors == []
