@@ -101,8 +101,8 @@ def bearing_from_text(text: str) -> Bearing:
         near = difflib.get_close_matches(text, CATALOGUE, 1)
         guess = f"did you mean {near[0]}?" if near else f"the catalogue has {', '.join(CATALOGUE)}."
         raise CorpusError(
-            f"bearing {text!r} is not in the catalogue; give its geometry, such as {_EXAMPLE}, or the orders that its maker prints, "
-            f"such as {_ORDERS}; or {guess}"
+            f"bearing {text!r} is not in the catalogue; give its geometry, such as {_EXAMPLE}, or, if nothing is simulated or drawn, the "
+            f"orders that its maker prints, such as {_ORDERS}; or {guess}"
         )
     values: dict[str, Any] = {}
     for part in text.split(","):

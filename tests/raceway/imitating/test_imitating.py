@@ -165,9 +165,10 @@ def test_what_cannot_be_imitated_gets_one_sentence_and_leaves_nothing(write, sig
             "flat.csv: cannot be imitated. Unsure: the signal is constant, as of a sensor or cable that is not connected. Check sensor,",
         ),
         (write("speed.csv"), {"rpm": None}, "speed.csv: does not state its speed; give it with --rpm RPM."),
+        ("none.csv", {"bearing": "6295"}, "ball_diameter_mm=7.938, or, if nothing is simulated or drawn, the orders"),
         ("none.csv", {}, "none.csv: could not be read (No such file or directory); check the path."),
         (
-            write("o.csv"),
+            "none.csv",
             {"bearing": "bpfo=3.585,bpfi=5.415,bsf=2.357,ftf=0.398"},
             "has no geometry, which records need",
         ),
