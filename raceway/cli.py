@@ -134,7 +134,7 @@ def cli(ctx: click.Context, limits: tuple[str, ...], quiet: bool) -> None:  # no
     raceway without a command shows the first steps.
 
     RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is a corpus: a folder,
-    or one .nc file. With --json a command prints one JSON object on standard output; progress and errors go to standard error.
+    or one .nc file. With --json a command prints JSON on standard output; progress and errors go to standard error.
 
     Exit codes:
 

@@ -5,7 +5,7 @@ module          responsibility
 =============== =========================================================
 interruption    Ctrl-C and SIGTERM end a command with one line
 ending          exit codes, and one sentence per error
-show            results on standard output, as text or as one JSON object
+show            results on standard output, as text or as JSON
 corpus_table    the feature table of a corpus that a command names
 options         arguments and options that several commands share
 progress_bar    progress of a long command, on standard error

@@ -43,7 +43,7 @@ def complete_recipes(_context: click.Context, _parameter: click.Parameter, begun
     return named or [CompletionItem(begun, type="file")]
 
 
-json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 model_option: Decorator = click.option(
     "--model",
     type=A_MODEL,

@@ -1,4 +1,4 @@
-"""Results on standard output: text for people, or one JSON object for programs."""
+"""Results on standard output: text for people, or JSON for programs."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from raceway.console.ending import printable
 
 
 def as_json(facts: Any) -> None:
-    """Print a mapping or dataclass as one JSON object; NaN and infinity become null."""
+    """Print a value as JSON; NaN and infinity become null."""
     click.echo(json.dumps(plain(facts), indent=1, allow_nan=False))
 
 
