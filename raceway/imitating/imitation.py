@@ -24,6 +24,7 @@ from gen.support.errors import CorpusError, RecipeError
 from gen.support.units import rpm_to_hertz
 from gen.support.yaml_files import parse_yaml
 from raceway.diagnosis import diagnose_recording, given_of
+from raceway.diagnosis.quality import FEWEST_TURNS
 from raceway.imitating.estimates import background_keys
 from raceway.imitating.nearness import write_nearness
 from raceway.importing.reading_options import Reading, speeds_in
@@ -33,7 +34,6 @@ from raceway.kept_models import reference_model
 from raceway.reports.templates import template
 
 LONG = 60.0  # s, of a recording from which on a record lasts 1 s, and else half of it
-TURNS = 8.0  # of the shaft in a record at least
 
 
 class Imitation(NamedTuple):
@@ -151,11 +151,11 @@ def _duration(recordings: Sequence[Recorded], rpm: float) -> float:
                 f"{other.name}: has another sample rate or other channels than {first.name}; imitate each."
             )
     shortest = min(recordings, key=lambda each: each.duration)
-    least = math.ceil(10 * TURNS / rpm_to_hertz(rpm)) / 10
+    least = math.ceil(10 * FEWEST_TURNS / rpm_to_hertz(rpm)) / 10
     duration = max(1.0 if shortest.duration >= LONG else 0.5, least)
     if shortest.duration < 2 * duration:
-        message = f"lasts {shortest.duration:.3g} s, less than two records of {duration:g} s; record {20 * duration:g} s or more"
-        raise CorpusError(f"{shortest.name}: {message}.")
+        message = f"lasts {shortest.duration:.3g} s, less than two records of {duration:g} s at {rpm:.4g} rpm"
+        raise CorpusError(f"{shortest.name}: {message}; check the speed, or record {20 * duration:g} s or more.")
     return duration
 
 

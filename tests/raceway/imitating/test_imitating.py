@@ -151,9 +151,9 @@ def test_what_cannot_be_imitated_gets_one_sentence_and_leaves_nothing(write, sig
         (
             write("short.csv", x[:11_000]),
             {},
-            "short.csv: lasts 0.917 s, less than two records of 0.5 s; record 10 s or",
+            "short.csv: lasts 0.917 s, less than two records of 0.5 s at 1772 rpm; check",
         ),
-        (write("slow.csv"), {"rpm": 120}, "slow.csv: lasts 6 s, less than two records of 4 s; record 80 s or more."),
+        (write("hertz.csv"), {"rpm": RPM / 60}, "16.3 s at 29.53 rpm; check the speed, or record 326 s or more."),
         (
             [write("a.csv"), write("b.csv", fs=FS / 2)],
             {},
