@@ -27,8 +27,7 @@ RING, HIGHEST = 0.45, 1.0  # thickness of a ring, and height of the load zone, i
 def plot_bearing(bearing: str | Mapping[str, Any], load_n: float = 500.0, clearance_um: float = 0.0) -> Figure:
     """Draw a bearing with its load zone, and the path of a point on a ball while the cage turns once.
 
-    Its angles count from the load, as those of faults in a recipe; the label ``angle`` of a record counts from x, so that the load is at
-    -90° there.
+    Its angles count from the load, as those of faults in a recipe.
 
     A notebook shows the figure, and ``figure.savefig("bearing.png")`` writes it; it is none of pyplot, so ``plt.savefig`` writes another.
 
