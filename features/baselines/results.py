@@ -240,11 +240,8 @@ def benchmark(
             scores[job] = score_of_job
             done(1)
 
-    def best_of(names: Iterable[str], track: str) -> str:
-        return max(names, key=lambda name: scores[name, track, "grouped"][0].balanced_accuracy)
-
     def rows(track: str) -> dict[str, Baseline]:
-        best = best_of(chosen, track)
+        best = max(chosen, key=lambda name: scores[name, track, "grouped"][0].balanced_accuracy)
         return {
             name: Baseline(
                 scores[name, track, "grouped"][0],
@@ -256,7 +253,8 @@ def benchmark(
             for name in chosen
         }
 
-    leading = best_of([name for name in chosen if name not in UNTRAINED] or chosen, first)
+    baselines = rows(first)
+    leading = max(chosen, key=lambda name: (name not in UNTRAINED, baselines[name].grouped.balanced_accuracy))
     led = isinstance(chosen[leading], str) or not waveforms
     return Results(
         corpus=_content(records, count_unknown(table)),
@@ -268,7 +266,7 @@ def benchmark(
         features=len(names),
         versions={library: version(library) for library in ("raceway", "scikit-learn", "numpy", "scipy", "numba")},
         leading=leading,
-        baselines=rows(first),
+        baselines=baselines,
         further={track: _further(records, cases[track], rows(track)) for track in list(cases)[1:]},
         left_out=left_out,
         importance=_importance(records, names, chosen[leading], splits, seed) if led else {},
