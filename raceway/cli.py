@@ -126,7 +126,7 @@ class Raceway(PluginGroup):
     metavar="NAME=NUMBER",
     help="Raise a limit on the contents of files, by the name in its error.",
 )
-@click.option("--quiet", is_flag=True, help="Print no progress and no notices, only results and errors.")
+@click.option("--quiet", is_flag=True, help="Print no progress and no notices, only results, warnings and errors.")
 @click.pass_context
 def cli(ctx: click.Context, limits: tuple[str, ...], quiet: bool) -> None:  # noqa: ARG001 - read where notices are printed
     """Make labelled vibration corpora of healthy and damaged rolling bearings, and score classifiers on them.

@@ -25,7 +25,7 @@ from raceway.console.options import (
     training_options,
     worker_options,
 )
-from raceway.console.progress_bar import notice, progress
+from raceway.console.progress_bar import progress, warn
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -169,8 +169,8 @@ def benchmark(
     chosen = {name: load_maker(name) if ":" in name else name for name in spelled}
     for name, maker in chosen.items():
         if not isinstance(maker, str) and (parameters := unseeded(maker, seed)):
-            notice(
-                f"warning: {name}: {', '.join(parameters)} is None, so its scores may change from call to call; set it, or give "
+            warn(
+                f"{name}: {', '.join(parameters)} is None, so its scores may change from call to call; set it, or give "
                 "the function that makes the classifier an argument seed."
             )
     protocol: Any = {"track": next(iter(TRACKS)) if "all" in tracks else tracks[0], "folds": folds, "seed": seed}

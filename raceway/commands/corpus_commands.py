@@ -23,7 +23,7 @@ from raceway.console.options import (
     where_option,
     worker_options,
 )
-from raceway.console.progress_bar import next_step, notice, notice_compilation, progress
+from raceway.console.progress_bar import next_step, notice, notice_compilation, progress, warn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -228,7 +228,7 @@ def generate(recipe: str, output: Path, team: Team, as_json: bool, **options: An
     useless = complaint(generated.signals, generated.records)
     clipping = clipping_complaint(generated.clipped, generated.records)
     for sentence in filter(None, (useless, clipping, _coarse_steps(generated.path))):
-        notice(sentence)
+        warn(sentence)
     if as_json:
         facts = {name: getattr(generated, name) for name in ("records", "parts", "kept", "failures", "clipped")}
         seconds = round(time.monotonic() - start, 3)
@@ -312,7 +312,7 @@ def validate(corpus: Path, as_json: bool) -> int:
 
         warnings += audit_splits(corpus)
     for sentence in warnings:
-        notice(f"warning: {sentence}")
+        warn(sentence)
     if as_json:
         show.as_json({"corpus": corpus, "valid": not problems, "problems": problems, "warnings": warnings})
     elif problems:

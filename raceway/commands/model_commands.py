@@ -21,7 +21,7 @@ from raceway.console.options import (
     training_options,
     worker_options,
 )
-from raceway.console.progress_bar import notice
+from raceway.console.progress_bar import warn
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -195,9 +195,7 @@ def calibration_text(calibration: "Calibration") -> str:
 def warn_of_seen(model: str, scores: "Scores") -> None:
     """Warn of tested records that the model was trained on."""
     if scores.seen:
-        notice(
-            f"warning: {model} was trained on {scores.seen:,} of these {scores.records:,} records; this is no fair test."
-        )
+        warn(f"{model} was trained on {scores.seen:,} of these {scores.records:,} records; this is no fair test.")
 
 
 def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
@@ -210,8 +208,8 @@ def warn_of_durations(name: str, model: "Model", table: "xr.Dataset") -> None:
     trained = suited(model, tested, band_of(table.attrs).high).durations
     spans = ((model.shorter.durations,) if model.shorter else ()) + (model.durations,)
     if tested and trained and not trained[0] / SAME_DURATION < tested[0] <= tested[1] < trained[1] * SAME_DURATION:
-        notice(
-            f"warning: the records last {_span(tested)} s, and those that {name} was trained on {' or '.join(map(_span, spans))} s; lines "
+        warn(
+            f"the records last {_span(tested)} s, and those that {name} was trained on {' or '.join(map(_span, spans))} s; lines "
             "rise higher above the floor in longer records. Use records of such a duration."
         )
 

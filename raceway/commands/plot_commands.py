@@ -7,7 +7,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import A_PATH, Analysis, band_option, picture_option
-from raceway.console.progress_bar import notice
+from raceway.console.progress_bar import warn
 from raceway.importing.reading_options import Reading, check_speed, drawing_options, rpm_option
 
 if TYPE_CHECKING:
@@ -83,9 +83,7 @@ def plot(
     shown = _shown(source, record, bearing, speeds, band, reading)
     if band is not None and shown.recorded_band.high < band[1]:
         low, high = shown.recorded_band
-        notice(
-            f"warning: {source}: is recorded up to half its sample rate of {shown.fs:g} Hz; the band is {low:g}-{high:g} Hz."
-        )
+        warn(f"{source}: is recorded up to half its sample rate of {shown.fs:g} Hz; the band is {low:g}-{high:g} Hz.")
     under = None if under_path is None else _shown(under_path, number, bearing, speeds, band, reading)
     try:
         figure = draw_record(shown, under) if view is None else draw_view(view, shown, under)
@@ -150,7 +148,7 @@ def _shown(
     # what was assumed of the file is told
     recorded, _, notes = read_recording(source, reading)
     for note in notes:
-        notice(f"warning: {note}")
+        warn(note)
     if len(recorded.signals) > 1:
         raise click.UsageError(f"{_ONE_CHANNEL}; {source.name} has {', '.join(recorded.signals)}")
     (signal,) = recorded.signals.values()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from raceway.console import show
 from raceway.console.options import USUAL, USUAL_ANALYSIS, Analysis, Team
-from raceway.console.progress_bar import notice, progress
+from raceway.console.progress_bar import notice, progress, warn
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,7 +41,7 @@ def table_of(
             corpus, analysis.with_groups(GROUPS), speed=speed, window=window, **options, progress=report
         )
     for sentence in (*band_warnings(table), *speed_warnings(table)):
-        notice(f"warning: {sentence}")
+        warn(sentence)
     return table
 
 

@@ -108,8 +108,17 @@ def _quiet() -> bool:
 def notice(sentence: str) -> None:
     """Print a sentence on standard error, in place of the progress if that is shown; none with ``--quiet``."""
     if not _quiet():
-        _clear_line()
-        sys.stderr.write(show.printable(sentence) + "\n")
+        _write(sentence)
+
+
+def warn(sentence: str) -> None:
+    """Print a warning on standard error, with ``--quiet`` too."""
+    _write(f"warning: {sentence}")
+
+
+def _write(sentence: str) -> None:
+    _clear_line()
+    sys.stderr.write(show.printable(sentence) + "\n")
 
 
 def next_step(step: str) -> None:

@@ -10,7 +10,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, model_option
-from raceway.console.progress_bar import notice, notice_compilation
+from raceway.console.progress_bar import notice_compilation, warn
 from raceway.diagnosis.tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
 from raceway.importing.reading_options import Reading, Speeds, check_speed, reading_options, rpm_option
 
@@ -129,7 +129,7 @@ def diagnose(
     references = [recorded for recorded, *_ in compared]
     doubts = _doubts(speeds) + tuple(note for *_, notes in compared for note in notes)
     for sentence in doubts:
-        notice(f"warning: {sentence}")
+        warn(sentence)
     from gen.support.garbage import keep_garbage
 
     # the libraries of the model hold much that is never freed, and collecting garbage among it takes time
@@ -157,7 +157,7 @@ def diagnose(
             continue
         notes = tuple(dict.fromkeys(of_file + doubts))
         for sentence in of_file + diagnosis.warnings:
-            notice(f"warning: {f'{path.name}: ' if several else ''}{sentence.removeprefix(f'{path.name}: ')}")
+            warn(f"{f'{path.name}: ' if several else ''}{sentence.removeprefix(f'{path.name}: ')}")
         # signs in place of bytes that are no text, which not every disk takes
         readable = os.fsencode(path.name).decode(errors="backslashreplace")
         page = output and (output / f"{readable}.html" if several else output)

@@ -7,7 +7,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import A_PATH, file_option, finite, json_option
-from raceway.console.progress_bar import next_step, notice, notice_compilation
+from raceway.console.progress_bar import next_step, notice_compilation, warn
 from raceway.importing.reading_options import Reading, Speeds, reading_options, rpm_option
 
 
@@ -49,7 +49,7 @@ def imitate(
     with notice_compilation():
         done = run(recordings, output, rpm=speeds, **machine, **reading._asdict())
     for sentence in done.warnings:
-        notice(f"warning: {sentence}")
+        warn(sentence)
     if as_json:
         show.as_json(done._asdict())
         return

@@ -9,7 +9,7 @@ import click
 from raceway.console import show
 from raceway.console.options import A_PATH, json_option, target_option
 from raceway.console.plugin_commands import PluginGroup
-from raceway.console.progress_bar import notice, progress
+from raceway.console.progress_bar import notice, progress, warn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,7 +45,7 @@ def _command(name: str, told: str, bring: "Callable[..., Import]", *options: Any
         with progress("importing", "files") as report:
             done = bring(source, output, progress=report, **values)
         for sentence in done.warnings:
-            notice(f"warning: {sentence}")
+            warn(sentence)
         for sentence in done.skipped:
             notice(sentence)
         if as_json:

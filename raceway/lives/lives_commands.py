@@ -15,7 +15,7 @@ from raceway.console.options import (
     picture_option,
     worker_options,
 )
-from raceway.console.progress_bar import notice
+from raceway.console.progress_bar import notice, warn
 
 
 @click.command()
@@ -108,7 +108,7 @@ def prognose(
         # who asks for a rate wants early warning
         if false_alarms is not None:
             raise CorpusError(sentence) from None
-        notice(f"warning: {sentence}")
+        warn(sentence)
     if as_json:
         warnings = {} if warned is None else {"early_warning": warned.to_dict("index")}
         show.as_json({"lives": scores.to_dict("index")} | warnings)

@@ -17,7 +17,7 @@ from raceway.console.options import (
     records_option,
     workers_option,
 )
-from raceway.console.progress_bar import notice, progress
+from raceway.console.progress_bar import progress, warn
 
 
 @click.command()
@@ -66,8 +66,8 @@ def limit(
         limits = limits_of(table, progress=report)
     healthy = int((table["fault"] == HEALTHY_CODE).sum())
     if healthy * FALSE_ALARMS < 1:
-        notice(
-            f"warning: {healthy} healthy records are too few for false alarms of 1 %: the classifier must exceed the highest of them; make "
+        warn(
+            f"{healthy} healthy records are too few for false alarms of 1 %: the classifier must exceed the highest of them; make "
             "100 or more. On a recorded background this needs a longer recording, or shorter records."
         )
     if output is not None:

@@ -39,9 +39,9 @@ def test_generate_keeps_a_corpus_that_cannot_be_used_but_says_so_and_exits_with_
 
 
 def test_generate_info_and_card_count_the_records_of_each_class_with_a_clipped_sample(run, told, tiny_recipe, tmp_path):
-    """At 150 m/s2 some impacts of the faults are clipped, which leaves their records usable."""
+    """At 150 m/s2 some impacts of the faults are clipped, which leaves their records usable; --quiet leaves the warning."""
     recipe = with_full_scale(tiny_recipe, tmp_path, 150)
-    made = run("generate", recipe, "-o", tmp_path / "c", "--workers", 1)
+    made = run("--quiet", "generate", recipe, "-o", tmp_path / "c", "--workers", 1)
     with open_corpus(tmp_path / "c") as corpus:
         clipped = (np.abs(corpus.acceleration) == np.abs(corpus.acceleration).max()).any(("channel", "elapsed_time"))
         classes = [str(name) for name in corpus.fault_name.values[clipped]]
@@ -52,7 +52,7 @@ def test_generate_info_and_card_count_the_records_of_each_class_with_a_clipped_s
     sentence = f"{len(classes)} of 48 records are clipped at least once; raise recording.converter.full_scale_m_s2."
     assert found["warnings"] == [sentence]
     assert made.exit_code == 0
-    assert sentence in made.stderr
+    assert made.stderr == f"warning: {sentence}\n"
     assert sentence in str(generate(recipe, tmp_path / "c"))
     words = ", ".join(f"{name} {number}" for name, number in counts.items())
     assert f"clipped at least once: {words} " in " ".join(run("info", tmp_path / "c").stdout.split())
