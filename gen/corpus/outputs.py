@@ -59,7 +59,10 @@ def check_place(path: Path) -> None:
     """Refuse a place that no corpus can have: one in another corpus, a name that netCDF cannot open, and that of another kind of file."""
     check_name(path)
     if path.suffix.lower() in FILE_SUFFIXES:
-        raise CorpusError(f"{path}: no corpus is a {path.suffix} file; name a folder, or a file that ends in .nc.")
+        raise CorpusError(
+            f"{path}: no corpus is a {path.suffix} file; name a folder, or a file that ends in .nc, which MATLAB, R, Julia and Octave "
+            f"read; docs/sharing.md writes CSV, Zarr and Parquet."
+        )
     _check_outside(path, path.parent)
     if path.name == INDEX_NAME:
         raise CorpusError(f"{path}: {INDEX_NAME} is the name of the index in a corpus; choose another name.")

@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from raceway.console import show
-from raceway.console.options import A_CORPUS, A_PATH, choice_options, json_option
+from raceway.console.options import A_CORPUS, choice_options, json_option, target_option
 from raceway.console.progress_bar import next_step, notice, progress
 
 
@@ -21,14 +21,7 @@ def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[s
 
 @click.command()
 @click.argument("sources", metavar="SOURCE...", nargs=-1, required=True, type=A_CORPUS)
-@click.option(
-    "-o",
-    "--output",
-    type=A_PATH,
-    required=True,
-    metavar="TARGET",
-    help="The copy: a new name, or an empty folder.",
-)
+@target_option("The copy: a new name, or an empty folder.")
 @choice_options
 @click.option(
     "--rename-channel",

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.disk import remove_left_behind_of, whole_folder_or_none, whole_or_not_at_all
 from gen.corpus.new import NewCorpus, new_corpus
-from gen.corpus.outputs import FILE_SUFFIXES, check_new
+from gen.corpus.outputs import check_new
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
 from raceway.sharing.acdd import publication_attributes
@@ -24,10 +24,6 @@ FORMS: Mapping[str, Callable[[Chosen, Path], None]] = {"huggingface": write_hugg
 """Forms that are folders of files: functions that write into a folder, with a README.md."""
 SUFFIXES = (".nc", ".parquet")
 """Suffixes of targets of one file; a target without is a folder."""
-_READ_BY_OTHERS = (
-    "NAME is a folder, NAME.parquet a table, NAME.nc is read by MATLAB, R, Julia and Octave; "
-    "docs/sharing.md writes CSV and Zarr"
-)
 _NEEDS = {"parquet": "pyarrow", "huggingface": "pyarrow"}
 """Package that a form needs and Raceway does not bring."""
 
@@ -99,9 +95,9 @@ def copy(
     """
     paths = [Path(path) for path in ([sources] if isinstance(sources, str | Path) else sources)]
     target = Path(target)
-    form = _form(target, to, codec)
     # before anything is read
     check_new(target)
+    form = _form(target, to, codec)
     choice = {"where": where, "split": split, "channels": channels, "rename": rename, "float32": float32}
     with choose(paths, **choice, progress=progress) as chosen:
         remove_left_behind_of(target.absolute())
@@ -132,12 +128,10 @@ def _write_parts(chosen: Chosen, corpus: NewCorpus) -> None:
 def _form(target: Path, to: str | None, codec: str | None) -> str:
     """Form of a target, after a check of the options."""
     if to is not None and to not in FORMS:
-        raise CorpusError(f"to: there is no form {to!r}; allowed is {', '.join(FORMS)}; {_READ_BY_OTHERS}.")
-    suffix = target.suffix if target.suffix in SUFFIXES else ""
-    if target.suffix.lower() in FILE_SUFFIXES:
         raise CorpusError(
-            f"{target}: copies are not written as {target.suffix}; {_READ_BY_OTHERS}, and --to huggingface Parquet by split."
+            f"to: there is no form {to!r}; allowed is {', '.join(FORMS)}; docs/sharing.md writes CSV and Zarr."
         )
+    suffix = target.suffix if target.suffix in SUFFIXES else ""
     if suffix and to is not None:
         raise CorpusError(f"{target}: {suffix} is one file, and to={to!r} makes a folder; leave one of the two out.")
     form = to or suffix[1:] or "folder"

@@ -89,7 +89,9 @@ def _signals(file: str, sha: str) -> tuple[Float32Array, float]:
 
     place = f"background.recording.file: {file}"
     if not Path(file).is_file():
-        raise RecipeError(f"{place}: no such file; run the command in the folder from which its path leads there.")
+        raise RecipeError(
+            f"{place}: there is no {Path(file).absolute()}; run the command in the folder from which its path leads to the file."
+        )
     # nothing is read from a file that the recipe does not mean
     if sha256(Path(file)) != sha:
         raise RecipeError(f"{place}: is another file than that of sha256; give the right one, or its own sha256.")

@@ -180,19 +180,13 @@ def test_hugging_face_has_unknown_behind_the_classes_where_records_are_unknown(t
 @pytest.mark.parametrize(
     ("name", "to", "sentence"),
     [
-        ("out", "xls", r"to: there is no form 'xls'; allowed is huggingface; NAME is a folder, NAME.parquet a table"),
         (
-            "a.mat",
-            None,
-            "a.mat: copies are not written as .mat; NAME is a folder, NAME.parquet a table, NAME.nc is read by MATLAB",
+            "out",
+            "xls",
+            r"to: there is no form 'xls'; allowed is huggingface; docs/sharing.md writes CSV",
         ),
-        (
-            "a.h5",
-            None,
-            "a.h5: copies are not written as .h5; NAME is a folder, NAME.parquet a table, NAME.nc is read by",
-        ),
-        ("a.CSV", "huggingface", "not written as .CSV; "),
-        ("a.zarr", None, "not written as .zarr; .*docs/sharing.md writes CSV and Zarr"),
+        ("a.mat", None, "a.mat: no corpus is a .mat file; .* ends in .nc, which MATLAB, R, Julia and Octave read"),
+        ("a.CSV", "huggingface", "no corpus is a .CSV file; .*docs/sharing.md writes CSV, Zarr and Parquet"),
         ("a.nc", "huggingface", "nc is one file, and to='huggingface' makes a folder; leave one of the two out"),
         ("a.parquet", None, "parquet: needs pyarrow; pip install pyarrow, or"),
     ],

@@ -3,6 +3,7 @@
 import json
 import shutil
 from copy import deepcopy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -134,7 +135,11 @@ def test_manifest_card_and_copies_name_the_recording(keys, recording, tmp_path):
 @pytest.mark.parametrize(
     ("changes", "of_recording", "sentence"),
     [
-        ({}, {"file": "no.nc"}, "file: no.nc: no such file; run the command in the folder from which its path leads"),
+        (
+            {},
+            {"file": "no.nc"},
+            f"file: no.nc: there is no {Path.cwd() / 'no.nc'}; run the command in the folder from which its path leads",
+        ),
         ({}, {"sha256": "0" * 64}, "is another file than that of sha256; give the right one, or its own sha256"),
         ({"recording.sample_rate_hz": 10_000}, {}, "is sampled at 12000 Hz, and recording.sample_rate_hz is 10000"),
         ({"recording.duration_s": 0.3}, {}, "has 3 segments of 0.3 s, and stretches asks for 12; lower it with"),
