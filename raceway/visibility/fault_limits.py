@@ -5,13 +5,13 @@ classifier sees it where the probability of a fault, by a training without the r
 records. Both sizes hold for records of this length.
 """
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from features import feature_table
@@ -26,6 +26,7 @@ from gen.corpus.fault_classes import HEALTHY
 from gen.corpus.simulated import UNJUDGED
 from gen.drawing.section import plain
 from gen.mechanisms.faults.kinds import KINDS
+from gen.mechanisms.mechanism_labels import label_values
 from gen.recipe import Recipe, read_recipe
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
@@ -172,7 +173,13 @@ def corpus_of(
 
     truth = {"truth": {"twins": True, "undetected": "keep"}}
     recipe = Recipe(plain(read_recipe(source, records=records)) | truth)
-    check_counts(Counter(scenario.fault for scenario in draw_scenarios(recipe)), str(source))
+    drawn = [
+        {"fault": FAULTS.index(scenario.fault), "width": max((spall.width for spall in scenario.spalls), default=0)}
+        | label_values(scenario.recipe, {})
+        for scenario in draw_scenarios(recipe)
+    ]
+    # no record is made of sizes that give no limit
+    check_records(pd.DataFrame(drawn).rename_axis("record").to_xarray(), str(source))
     with temporary_folder() as folder:
         yield generate(recipe, folder / "corpus", workers=workers, progress=progress).path
 

@@ -109,11 +109,17 @@ def test_records_that_give_no_limit_are_refused_in_one_sentence(table, changed, 
 
 
 def test_a_recipe_that_gives_no_limit_is_refused_before_its_records_are_made(run, write_recipe, tmp_path):
-    for name, faults in {"healthy": [{"kind": "healthy"}], "faulty": LADDER["faults"][1:]}.items():
+    healthy, *faulty = LADDER["faults"]
+    fixed = [healthy, *(fault | {"width_mm": 0.5} for fault in faulty)]
+    for name, faults, lacking in (
+        ("healthy", [healthy], "has no faulty"),
+        ("faulty", faulty, "has no healthy"),
+        ("fixed", fixed, "no class has a size that varies"),
+    ):
         recipe = write_recipe(tmp_path / f"{name}.yaml", LADDER | {"faults": faults})
         result = run("limit", recipe)
         assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1), result.output
-        assert f"{name}.yaml: has no " in result.stderr
+        assert f"{name}.yaml: {lacking}" in result.stderr
 
 
 def test_few_healthy_records_are_told_and_a_corpus_takes_no_number_of_records(run, tmp_path):
