@@ -312,15 +312,14 @@ def within(
     *,
     open_low: bool = False,
     default: float | str | None = None,
-    each: bool = False,
-    **per: str,
+    **more: Any,
 ) -> Any:
     """Field of a distribution whose values all lie between ``low`` and ``high``; required if it has no default.
 
-    ``each`` is for a key that is drawn for each of the items that its section counts; ``per`` for one that is drawn at another level than
-    its section.
+    ``each=True`` is for a key that is drawn for each of the items that its section counts, ``whole=True`` for a count whose fixed numbers
+    are whole, and ``per`` for a key that is drawn at another level than its section.
     """
-    bounds: dict[str, Any] = {"low": low, "high": high, "open_low": open_low} | ({"each": True} if each else {}) | per
+    bounds: dict[str, Any] = {"low": low, "high": high, "open_low": open_low} | more
     options: dict[str, Any] = {} if default is None else {"default": default}
     return Field(**options, json_schema_extra=bounds)
 
@@ -346,6 +345,8 @@ def check_bounds(distribution: Any, bounds: dict[str, Any]) -> Any:
     for end in distribution.support():
         if not is_within(end, bounds):
             raise ValueError(f"{end:g} is not in {interval(bounds)}.")
+        if isinstance(distribution, Constant) and bounds.get("whole") and end % 1:
+            raise ValueError(f"{end:g} is no whole number; give {math.floor(end)} or {math.ceil(end)}.")
     return distribution
 
 

@@ -1,7 +1,7 @@
 """JSON schema of a recipe, for editors that complete and check keys.
 
 pydantic writes the schema of the sections. Added here: ranges of quantities, entries of `faults` that leave keys to the defaults, and the
-choice among sections by their `kind`, of which an error names the key that is wrong and not the whole entry.
+choice among forms of a value by their type, and among sections by their `kind`, so that an error names the key that is wrong.
 """
 
 import json
@@ -21,40 +21,55 @@ def recipe_schema() -> str:
                 _add_range(described)
     entries = definitions["FaultList"]["properties"]["entries"]
     entries["items"] = _with_defaults(entries["items"], definitions)
-    _choose_by_kind(schema)
-    # of a list the errors of its entries are told, and not that it is no mapping
-    faults = schema["properties"]["faults"]
-    listed, mapped = faults.pop("anyOf")
-    faults |= {"if": {"type": "array"}, "then": listed, "else": mapped}
+    _choose(schema, definitions)
     return json.dumps({"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}, indent=1) + "\n"
 
 
 def _add_range(quantity: dict[str, Any]) -> None:
     """Give the number and the list of a quantity its range; a quantity that is not drawn for each item takes no list."""
-    low, high, open_low, each = (quantity.pop(key, None) for key in ("low", "high", "open_low", "each"))
-    number = {"type": "number", ("exclusiveMinimum" if open_low else "minimum"): low, "maximum": high}
+    low, high, open_low, whole, each = (quantity.pop(key, None) for key in ("low", "high", "open_low", "whole", "each"))
+    number = {
+        "type": "integer" if whole else "number",
+        ("exclusiveMinimum" if open_low else "minimum"): low,
+        "maximum": high,
+    }
     forms = {"number": number, "array": {"type": "array", "items": number}}
     quantity["anyOf"] = [forms.get(form["type"], form) for form in quantity["anyOf"] if each or form["type"] != "array"]
 
 
-def _choose_by_kind(schema: Any) -> None:
-    """Put a condition for each kind in place of all unions of sections that their `kind` tells apart, at any depth."""
+def _choose(schema: Any, definitions: dict[str, Any]) -> None:
+    """Put conditions in place of all unions, at any depth: on the `kind` of a section, or on the type of a value."""
     if isinstance(schema, dict):
-        union = schema.pop("discriminator", None)
+        union, forms = (schema.pop(key, None) for key in ("discriminator", "anyOf"))
         if union is not None:
             del schema["oneOf"]
             schema |= _by_kind({kind: {"$ref": place} for kind, place in union["mapping"].items()})
+        elif forms is not None:
+            schema |= _by_type(forms, definitions)
     for inner in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
-        _choose_by_kind(inner)
+        _choose(inner, definitions)
+
+
+def _by_type(forms: list[dict[str, Any]], definitions: dict[str, Any]) -> dict[str, Any]:
+    """Forms of a value by its type, and the last section for a value that fits none; a section before it by its kind."""
+    *others, schema = sorted(forms, key=lambda form: "type" not in form)
+    for form in reversed(others):
+        if "type" in form:
+            condition = {"type": form["type"]}
+        else:  # a bearing by its dimensions may leave its kind out, and is the last form
+            condition = _of_kind(definitions[form["$ref"].rpartition("/")[2]]["properties"]["kind"]["const"])
+        schema = {"if": condition, "then": form, "else": schema}
+    return schema
 
 
 def _by_kind(sections: Mapping[str, Any]) -> dict[str, Any]:
-    conditions = [
-        {"if": {"properties": {"kind": {"const": kind}}, "required": ["kind"]}, "then": section}
-        for kind, section in sections.items()
-    ]
+    conditions = [{"if": _of_kind(kind), "then": section} for kind, section in sections.items()]
     kinds = {"kind": {"enum": [*sections]}}
     return {"type": "object", "required": ["kind"], "properties": kinds, "allOf": conditions}
+
+
+def _of_kind(kind: str) -> dict[str, Any]:
+    return {"properties": {"kind": {"const": kind}}, "required": ["kind"]}
 
 
 def _with_defaults(union: dict[str, Any], definitions: dict[str, Any]) -> dict[str, Any]:

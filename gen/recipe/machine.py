@@ -63,11 +63,11 @@ class OwnBearing(Section):
     """Number of balls, or of rollers (`n_rollers`); BPFO and BPFI grow with it."""
     pitch_diameter_mm: Annotated[Number, Field(ge=5, le=1000)]
     """Diameter of the circle through the centres of the balls."""
-    ball_diameter_mm: Annotated[Number, Field(gt=0, le=500), _DIAMETER]
+    ball_diameter_mm: Annotated[Number, Field(ge=0.25, le=500), _DIAMETER]
     """Diameter of a ball, or of a roller (`roller_diameter_mm`); all of them must fit on the pitch circle."""
     contact_angle_deg: Annotated[Number, Field(ge=-40, le=40)] = 0.0
     """Contact angle on the drawing; it enters the fault frequencies."""
-    roller_length_mm: Annotated[Number, Field(gt=0, le=1000)] | None = None
+    roller_length_mm: Annotated[Number, Field(ge=0.25, le=1000)] | None = None
     """Length of a roller that touches the raceways; if given, the bearing has rollers instead of balls."""
 
     _keys = model_validator(mode="before")(_check_rollers)
@@ -157,11 +157,11 @@ class GeometryBearing(Section):
     """Takes a bearing by its dimensions, each of which can vary from rig to rig."""
     designation: Name = "geometry"
     """Name of the bearing in the corpus."""
-    n_balls: Annotated[Distribution, _COUNT] = within(5, MAX_BALLS)
-    """Number of balls, or of rollers (`n_rollers`), rounded to a whole number; BPFO and BPFI grow with it."""
+    n_balls: Annotated[Distribution, _COUNT] = within(5, MAX_BALLS, whole=True)
+    """Number of balls, or of rollers (`n_rollers`), of a range rounded to a whole number; BPFO and BPFI grow with it."""
     pitch_diameter_mm: Distribution = within(5, 1000, open_low=True)
     """Diameter of the circle through the centres of the balls."""
-    ball_diameter_mm: Annotated[Distribution, _DIAMETER] = within(0, 500, open_low=True)
+    ball_diameter_mm: Annotated[Distribution, _DIAMETER] = within(0.25, 500)
     """Diameter of a ball, or of a roller (`roller_diameter_mm`): 0.05 to 0.45 of the pitch diameter; of a range, reduced where neighbours
     would leave no room for a cage."""
     contact_angle_deg: Distribution = within(-40, 40, default=0.0)

@@ -36,7 +36,7 @@ class Spalls(BearingFault):
 
     n_spalls: Distribution = within(1, MAX_SPALLS, default=1)
     """Number of spalls, each with its own draws; rounded to a whole number."""
-    width_mm: Distribution = within(0, 60, open_low=True, each=True)
+    width_mm: Distribution = within(0.001, 60, each=True)
     """Width of a spall along the rolling direction; it sets how far the ball drops, and how hard it hits the trailing edge."""
     depth_um: Distribution = within(0, 5000, open_low=True, each=True, default=280.0)
     """Depth of the floor of a spall. A ball that bridges a narrow spall does not reach the floor."""

@@ -62,7 +62,7 @@ def test_a_plan_that_makes_no_records_tells_at_most_too_much(recipe_with, monkey
 
 
 def test_a_plan_tells_faults_that_cannot_be_seen_and_spalls_under_two_balls(recipe_with):
-    faults = [{"kind": "inner", "width_mm": 0.0005}, {"kind": "outer", "width_mm": 20, "profile": "half_sine"}]
+    faults = [{"kind": "inner", "width_mm": 0.001}, {"kind": "outer", "width_mm": 20, "profile": "half_sine"}]
     planned = plan(recipe_with({"faults": faults}))
     assert planned.seen["inner"][0] == 0 < planned.seen["inner"][1]
     assert planned.seen["outer"][0] == planned.seen["outer"][1] > 0
