@@ -109,7 +109,7 @@ def test_numbers_and_arrays_of_numpy_are_taken_as_numbers():
     ("make", "sentence"),
     [
         (gen.outer, "outer fault: width_mm: is missing; give it."),
-        (lambda: gen.ball(width_mm=0), "ball fault: width_mm: 0 is not in (0, 60]; for a bearing without a fault"),
+        (lambda: gen.ball(width_mm=0), "ball fault: width_mm: 0 is not in [0.001, 60]; for a bearing without a fault"),
         (
             lambda: gen.compound(gen.cage(), {"kind": "inner", "width_mm": 1, "depth": 1}),
             "compound fault: parts[1].depth: no such key; did you mean depth_um?",

@@ -171,7 +171,7 @@ def test_a_choice_is_copied_and_described(run, tones, tmp_path):
     [
         ("{one} --split train -o {other}", "exists and is not an empty folder"),
         ("{one} {one}/../{one_name} -o {out}", "is given twice; give each corpus once"),
-        ("{one} -o {out}.hdf5", "docs/sharing.md writes CSV and Zarr, and --to huggingface Parquet"),
+        ("{one} -o {out}.hdf5", "docs/sharing.md writes CSV, Zarr and Parquet"),
         ("{one} --rename-channel housing -o {out}", "give OLD=NEW, once for each channel"),
         ("-o {out}", "Missing argument"),
     ],
