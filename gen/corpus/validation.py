@@ -11,6 +11,8 @@ from gen.corpus.lazy import blocks_of, stored_records
 from gen.corpus.manifest import (
     INDEX_NAME,
     MANIFEST_NAME,
+    RECIPE_NAME,
+    RECIPE_TEXT,
     Manifest,
     facts_as_attributes,
     file_problems,
@@ -48,11 +50,16 @@ def _facts_problems(path: Path, manifest: Manifest, corpus: xr.Dataset) -> list[
     """Facts of ``manifest.json`` and ``recipe.yaml`` that ``index.nc`` has in another form."""
     if path.is_file():
         return []
-    wanted = facts_as_attributes(manifest.content, recipe_text(path))
+    problems, wanted = [], facts_as_attributes(manifest.content)
+    if recipe_text(path) != corpus.attrs.get(RECIPE_TEXT):
+        problems.append(
+            f"{path / RECIPE_NAME}: is missing or is not the recipe that {INDEX_NAME} has as {RECIPE_TEXT}; copy the corpus again."
+        )
     names = {*wanted, *(Manifest.model_fields.keys() & corpus.attrs.keys() - {"raceway_format"})}
-    wrong = sorted(name for name in names if str(corpus.attrs.get(name)) != wanted.get(name))
-    advice = "run raceway card again if a call of it was interrupted, or copy the corpus again"
-    return [f"{path}: {MANIFEST_NAME} and {INDEX_NAME} disagree about {', '.join(wrong)}; {advice}."] if wrong else []
+    if wrong := sorted(name for name in names if str(corpus.attrs.get(name)) != wanted.get(name)):
+        advice = "run raceway card again if a call of it was interrupted, or copy the corpus again"
+        problems.append(f"{path}: {MANIFEST_NAME} and {INDEX_NAME} disagree about {', '.join(wrong)}; {advice}.")
+    return problems
 
 
 def _records_problems(path: Path, manifest: Manifest) -> list[str]:

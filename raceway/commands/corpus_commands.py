@@ -289,9 +289,9 @@ def _kept(corpus: Path, recipe: "Recipe") -> "Callable[[], str]":
 def validate(corpus: Path, as_json: bool) -> int:
     """Check the records of the corpus in DIR.
 
-    Exits with 1 if anything is wrong. The checks cover the hash of each part, of index.nc and of the recipe, the manifest, the format,
-    all samples, and whether index.nc agrees with manifest and parts, and croissant.json with the corpus. They leave out README.md,
-    card.json, pictures and files that are no part of a corpus. It warns of records whose step was too coarse, and of
+    Exits with 1 if anything is wrong. The checks cover the hash of each part and of index.nc, the format, all samples, whether
+    index.nc agrees with manifest, recipe and parts, and croissant.json, if there, with the corpus. They leave out README.md, card.json,
+    pictures and files that are no part of a corpus. It warns of records whose step was too coarse, and of
     splits of an imported corpus that can leak: one recording under two specimens, each file a specimen of its own, a class of one
     specimen.
 
@@ -330,7 +330,7 @@ def info(corpus: Path, where: str | None, as_json: bool) -> None:
     """Show the contents of the corpus in DIR.
 
     Origin, state, classes with the range of their severities, operating conditions, size and versions. DIR may be generated or
-    imported, finished or not; its index.nc stands for the folder.
+    imported, and a folder unfinished; its index.nc stands for the folder.
 
       raceway info corpus
       raceway info corpus --where "fault == 'inner' and width_mm > 0.5"

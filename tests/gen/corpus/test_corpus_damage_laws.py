@@ -250,11 +250,12 @@ def test_a_changed_fact_of_the_manifest_is_found(copied_folder, fact):
 
 
 def test_a_changed_recipe_is_found(tiny_corpus, tmp_path):
-    folder = shutil.copytree(tiny_corpus, tmp_path / "c")
-    (folder / "recipe.yaml").write_bytes((folder / "recipe.yaml").read_bytes().replace(b"i", b"j", 1))
-    assert any(
-        "manifest.json and index.nc disagree about recipe_text" in problem for problem in validate_corpus(folder)
-    )
+    recipe = shutil.copytree(tiny_corpus, tmp_path / "c") / "recipe.yaml"
+    recipe.write_bytes(recipe.read_bytes().replace(b"i", b"j", 1))
+    (problem,) = validate_corpus(recipe.parent)
+    assert problem.startswith(f"{recipe}: is missing or is not the recipe that index.nc has")
+    recipe.unlink()
+    assert validate_corpus(recipe.parent) == [problem]
 
 
 @pytest.mark.parametrize("name", ["recipe_sha256", "sources_sha256"])
