@@ -102,8 +102,14 @@ def check_submission(
     submitted = submitted.sort_values("record", ignore_index=True)
     if (twice := submitted["record"].duplicated()).any():
         raise CorpusError(f"{path}: has record {submitted['record'][twice].iloc[0]:.20} twice; leave one row of each.")
+    missing = wanted["record"][~wanted["record"].isin(submitted["record"])].head(1)
     reasons = (
-        f"does not have the {len(frame)} records that are tested",
+        " ".join(
+            [
+                f"does not have the {len(frame)} records that are tested",
+                *(f"(no record {number})" for number in missing),
+            ]
+        ),
         "has records of another corpus",
         f"has other folds than the {folds} by {track} with seed {seed}",
     )
@@ -148,8 +154,7 @@ def _tested(table: xr.Dataset, splits: Sequence[Split]) -> pd.DataFrame:
 def _scores(tested: Records, predicted: pd.Series, where: str, seed: int) -> Scores:
     wrong = sorted({*predicted} - {*FAULTS})
     if wrong:
-        present = ", ".join(FAULTS[code] for code in np.unique(tested.fault))
-        raise CorpusError(f"{where}: {wrong[0]!r:.60} is no class; those of this corpus are {present}.")
+        raise CorpusError(f"{where}: {wrong[0]!r:.60} is no class; allowed are {', '.join(FAULTS)}.")
     codes = np.array([FAULTS.index(name) for name in predicted])
     _, recording = np.unique(tested.recording, return_inverse=True)
     told = predictions(np.eye(len(FAULTS))[codes], fault_names(np.arange(len(FAULTS))), recording, UNCALIBRATED)

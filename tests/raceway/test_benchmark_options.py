@@ -166,13 +166,13 @@ def test_a_missing_submission_is_told_before_any_feature_is_computed(run, tiny_c
     ("change", "sentence"),
     [
         (lambda text: text.replace(",0,", ",1,", 1), "has other folds than the 2 by rig with seed 0; give"),
-        (lambda text: "\n".join(text.splitlines()[:-1]), "does not have the 48 records that are tested"),
+        (lambda text: "\n".join(text.splitlines()[:-1]), "does not have the 48 records that are tested (no record 47);"),
         (
             lambda text: re.sub(r"^(\d+),[^,]*", r"\1,other", text, count=1, flags=re.MULTILINE),
             "records of another corpus",
         ),
         (lambda text: text.replace("identity", "name", 1), "does not begin with the columns record, identity, fold"),
-        (lambda text: text.replace("healthy", "wealthy"), "'wealthy' is no class; those of this corpus are healthy, "),
+        (lambda text: text.replace("healthy", "wealthy"), "'wealthy' is no class; allowed are healthy, "),
         (lambda text: text + text.splitlines()[-1], "has record 47 twice; leave one row of each"),
         (lambda text: "\n".join(line.rsplit(",", 1)[0] for line in text.splitlines()), "has no predictions"),
         (lambda _: "", "is no table of predictions"),
