@@ -1,4 +1,4 @@
-"""Compiled code that a recipe needs, compiled before its first record; the kernel takes about half a minute, once per machine."""
+"""Compiled code that a recipe needs, compiled before its first record; the kernel takes about half a minute, once per installation."""
 
 from collections.abc import Callable
 

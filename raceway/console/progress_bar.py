@@ -129,7 +129,7 @@ def next_step(step: str) -> None:
 
 @contextmanager
 def notice_compilation() -> Iterator[None]:
-    """Print a sentence when numba starts to compile a kernel, which happens once per machine."""
+    """Print a sentence when numba starts to compile a kernel, which happens once per installation."""
     from numba.core import event
 
     class Once(event.Listener):
