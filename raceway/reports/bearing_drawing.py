@@ -5,6 +5,7 @@ down and is the zero of all angles, which count counter-clockwise as those of fa
 """
 
 from collections.abc import Mapping
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ RING, HIGHEST = 0.45, 1.0  # thickness of a ring, and height of the load zone, i
 def plot_bearing(bearing: str | Mapping[str, Any], load_n: float = 500.0, clearance_um: float = 0.0) -> Figure:
     """Draw a bearing with its load zone, and the path of a point on a ball while the cage turns once.
 
-    Its angles count from the load, as those of faults in a recipe.
+    Its angles count from the load, as those of faults on the outer race in a recipe.
 
     A notebook shows the figure, and ``figure.savefig("bearing.png")`` writes it; it is none of pyplot, so ``plt.savefig`` writes another.
 
@@ -46,9 +47,9 @@ def plot_bearing(bearing: str | Mapping[str, Any], load_n: float = 500.0, cleara
         If there is no such bearing, its dimensions are not known, the load is not a positive number, or the clearance not finite.
     """
     drawn = bearing_of_label(bearing)
-    if not 0 < load_n < np.inf:
+    if not (isinstance(load_n, Real) and 0 < load_n < np.inf):
         raise ValueError(f"load_n: {load_n} is no positive number; give the radial load in N.")
-    if not np.isfinite(clearance_um):
+    if not (isinstance(clearance_um, Real) and np.isfinite(clearance_um)):
         raise ValueError(f"clearance_um: {clearance_um} is no finite number; give the diametral clearance in um.")
     if not np.isfinite(drawn.pitch_diameter):
         raise ValueError(f"bearing: of {bearing} only the orders are known; give dimensions.")
@@ -84,9 +85,11 @@ def plot_bearing(bearing: str | Mapping[str, Any], load_n: float = 500.0, cleara
     name = f"{drawn.n_balls} {drawn.rolling_element}s" if drawn.designation == "own" else drawn.designation
     title = f"{name}, {load_n:,.0f} N, clearance {clearance_um:g} um: load zone of {wide:.0f}°"
     figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+    element = drawn.rolling_element
     axes.set_title(
-        f"Per turn of the shaft: cage {ratios.ftf:.3f} turns, ball {ratios.bsf:.3f} turns. A point on a ball (orange)\n"
-        f"meets the races {2 * ratios.bsf:.2f} times, one on the outer race {ratios.bpfo:.2f} balls, one on the inner {ratios.bpfi:.2f}."
+        f"Per turn of the shaft: cage {ratios.ftf:.3f} turns, {element} {ratios.bsf:.3f} turns. A point on a {element} (orange)\n"
+        f"meets the races {2 * ratios.bsf:.2f} times, one on the outer race {ratios.bpfo:.2f} {element}s, "
+        f"one on the inner {ratios.bpfi:.2f}."
     )
     return figure
 

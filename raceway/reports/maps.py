@@ -50,8 +50,8 @@ def plot(
     record
         Place of the drawn record among several.
     orders
-        Nominal fault orders ``ftf, bpfo, bpfi, bsf`` whose lines are drawn over an order map, up to the third harmonics; without them it is
-        shown up to order 20, and ``axes.set_xlim`` shows more.
+        Nominal fault orders ``ftf, bpfo, bpfi, bsf`` whose lines are drawn over an order map, which ends beyond their third harmonics;
+        without them it ends at order 20, and ``axes.set_xlim`` shows more.
 
     Raises
     ------

@@ -26,7 +26,7 @@ from features.table.class_features import COMBS
 from features.table.indicators import Orders
 from features.table.record_batch import WHITENING_WIDTH
 from gen.corpus import GENERATOR, check_result, write_durably
-from gen.corpus.fault_classes import HEALTHY, SHAFT, fault_class, fundamentals
+from gen.corpus.fault_classes import HEALTHY, SHAFT, UNKNOWN, fault_class, fundamentals
 from gen.support.errors import CorpusError
 from gen.support.units import from_si
 from raceway.reports.class_colours import FAULT_COLOURS
@@ -162,7 +162,9 @@ def draw_record(shown: DrawnRecord, under: DrawnRecord | None = None) -> Figure:
 
 
 def looks(shown: DrawnRecord, under: DrawnRecord | None) -> list[tuple[DrawnRecord, Any]]:
-    """Records in the order in which they are drawn, each with its look."""
+    """Records in the order in which they are drawn, each with its look; ValueError if the one beneath is of another class than healthy."""
+    if under is not None and under.fault not in (HEALTHY, UNKNOWN):
+        raise ValueError(f"the record beneath is of class {under.fault}; give a healthy one.")
     return [(shown, OVER)] if under is None else [(under, UNDER), (shown, OVER)]
 
 

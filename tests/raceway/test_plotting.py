@@ -14,7 +14,7 @@ def recording(tmp_path):
 
 DRAWN = [
     ("{recording} --bearing 6205 --rpm 1797 --rate 12000 --view envelope --healthy {recording}", "pump.npy."),
-    ("{corpus} --record 1 --healthy 0 --view psd", "record 1"),
+    ("{corpus} --record 1 --healthy 6 --view psd", "record 1"),
     ("{corpus}", "a record of each class"),
 ]
 
@@ -65,6 +65,7 @@ def test_a_picture_of_several_axes_needs_a_channel(run, tmp_path):
         (("--rpm", 100), "--rpm is for a recording"),
         (("--record", 1, "--unit", "g"), "--unit is for a recording"),
         (("--record", 1, "--healthy", 0, "--speed-column", "n"), "--speed-column is for a recording"),
+        (("--record", 0, "--healthy", 1), "cannot be drawn as a record: the record beneath is of class"),
     ],
 )
 def test_options_that_do_not_act_on_a_corpus_are_refused(run, tiny_corpus, tmp_path, options, sentence):

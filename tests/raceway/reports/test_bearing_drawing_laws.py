@@ -55,10 +55,14 @@ def test_a_bearing_is_drawn_and_one_that_cannot_be_is_refused():
     figure = plot_bearing({"n_balls": 8, "pitch_diameter_mm": 33.5, "ball_diameter_mm": 7.938}, 300)
     assert figure.get_suptitle().startswith("8 balls, 300 N, clearance 0 um: load zone of 1")
     assert figure._repr_png_().startswith(b"\x89PNG")
+    assert "A point on a roller (orange)" in plot_bearing("NU206").axes[0].get_title("left")
     for bearing, load, sentence in (
         ("bpfo=3.585,bpfi=5.415,bsf=2.357,ftf=0.398", 500, "only the orders are known; give dimensions"),
         ("6205", 0, "load_n: 0 is no positive number"),
+        ("6205", "a", "load_n: a is no positive number"),
         ("62o5", 500, "is not in the catalogue"),
     ):
         with pytest.raises(ValueError, match=sentence):
             plot_bearing(bearing, load)
+    with pytest.raises(ValueError, match="clearance_um: a is no finite number"):
+        plot_bearing("6205", clearance_um="a")
