@@ -55,7 +55,7 @@ def _by_type(forms: list[dict[str, Any]], definitions: dict[str, Any]) -> dict[s
     *others, schema = sorted(forms, key=lambda form: "type" not in form)
     for form in reversed(others):
         if "type" in form:
-            condition = {"type": form["type"]}
+            condition = {"type": "number" if form["type"] == "integer" else form["type"]}
         else:  # a bearing by its dimensions may leave its kind out, and is the last form
             condition = _of_kind(definitions[form["$ref"].rpartition("/")[2]]["properties"]["kind"]["const"])
         schema = {"if": condition, "then": form, "else": schema}

@@ -33,7 +33,7 @@ def sentences(error: ValidationError, model: type[BaseModel]) -> list[str]:
 def _sentence(item: Any, model: type[BaseModel]) -> str | None:
     """Sentence about one error; None if another error says more about it."""
     place, value, kind, context = _place(item["loc"], model), item["input"], item["type"], item.get("ctx", {})
-    shown = reprlib.repr(value) if isinstance(value, str | int | float) or value is None else "this"
+    shown = "nothing" if value is None else reprlib.repr(value) if isinstance(value, str | int | float) else "this"
     match kind:
         case "extra_forbidden":
             guess, allowed = _guess(item["loc"], model), ", ".join(_siblings(item["loc"], model))

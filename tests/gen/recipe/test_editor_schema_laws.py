@@ -113,7 +113,7 @@ GEOMETRY = {"n_balls": 9, "pitch_diameter_mm": 39, "ball_diameter_mm": 7.9}
         ({"faults": [{"kind": "inner", "width_mm": 0.0005}]}, "faults[0].width_mm", "0.0005 is less than the minimum of 0.001"),
         ({"bearing": GEOMETRY | {"ball_diameter_in": 1}}, "bearing", "'ball_diameter_in' was unexpected"),
         ({"bearing": GEOMETRY | {"ball_diameter_mm": 0.0079}}, "bearing.ball_diameter_mm", "0.0079 is less than"),
-        ({"bearing": GEOMETRY | {"n_balls": 11.5}}, "bearing.n_balls", "11.5 is not "),
+        ({"bearing": GEOMETRY | {"n_balls": 11.5}}, "bearing.n_balls", "11.5 is not of type 'integer'"),
         ({"machine": {"resonator": {"mas_kg": 1}}}, "machine.resonator", "'mas_kg' was unexpected"),
     ],
 )  # fmt: skip
