@@ -163,7 +163,7 @@ def _doubts(recordings: Sequence[Recorded], drawing: Bearing, speeds: Sequence[f
     """Sentences on recordings that may be clipped, at another speed or not healthy; CorpusError if one tells nothing."""
     model, machine = reference_model(), given_of({drawing.designation: orders(drawing)}, speeds)
     for recorded in recordings:
-        diagnosis, name = diagnose_recording(recorded, machine, model), Path(recorded.name).name
+        diagnosis, name = diagnose_recording(recorded.used, machine, model), Path(recorded.name).name
         if diagnosis.spectrum is None:
             raise CorpusError(
                 f"{recorded.name}: cannot be imitated. {' '.join((diagnosis.sentence, *diagnosis.advice))}"
