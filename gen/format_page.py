@@ -24,8 +24,8 @@ The commands write `README.md` and `croissant.json`; from Python `raceway.descri
 The data card of a single file `NAME.nc` lies in `NAME.card/`. While a single file is being generated, its parts lie in
 `NAME.nc.parts/`. An unfinished corpus lists no parts in its manifest: every whole part that lies in `parts/` counts.
 
-**Checksum.** Every netCDF file of a corpus ends with a line `sha256:` and the SHA-256 of all bytes before that line.
-HDF5 ignores bytes behind its own, so [all readers](sharing.md#which-programs-read-what) open the file.
+**Checksum.** Every netCDF file of a corpus ends with a newline, then `sha256:` and the SHA-256 of all bytes before that
+newline. HDF5 ignores bytes behind its own, so [all readers](sharing.md#which-programs-read-what) open the file.
 `gen.open_corpus` compares files with their hashes before any library opens them, and refuses a missing or altered file.
 A file that another program has rewritten, such as a copy by `nccopy`, has no such line: open it with
 `gen.open_corpus(path, check="size")`. `sha256` in `manifest.json` is that of its other keys, as
@@ -33,7 +33,7 @@ A file that another program has rewritten, such as a copy by `nccopy`, has no su
 [all but data card and pictures](security.md).
 
 Facts about the records are fields of `manifest.json`, and global attributes of `index.nc` and of a single file, there
-as JSON where they are not text. A fact without content is left out:
+as JSON where they are not text:
 
 | fact | content |
 |---|---|

@@ -166,7 +166,10 @@ def test_a_missing_submission_is_told_before_any_feature_is_computed(run, tiny_c
     ("change", "sentence"),
     [
         (lambda text: text.replace(",0,", ",1,", 1), "has other folds than the 2 by rig with seed 0; give"),
-        (lambda text: "\n".join(text.splitlines()[:-1]), "does not have the 48 records that are tested (no record 47);"),
+        (
+            lambda text: "\n".join(text.splitlines()[:-1]),
+            "does not have the 48 records that are tested (no record 47);",
+        ),
         (
             lambda text: re.sub(r"^(\d+),[^,]*", r"\1,other", text, count=1, flags=re.MULTILINE),
             "records of another corpus",
