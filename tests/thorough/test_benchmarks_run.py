@@ -102,7 +102,6 @@ def test_features_are_compared_where_tsfel_is_installed():
 
 def test_functions_of_an_analyst_are_compared_with_scipy():
     found = finite_rows(analysis.rows(1, samples=20_000))
-    assert len(found) == 14
     assert found["analysis psd"].alternative == "welch"
 
 
