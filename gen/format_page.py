@@ -76,8 +76,8 @@ and `compare` leave such records out. Classes of [plug-ins](plugins.md) have cod
 
 Of imported corpora, two rigs can have a `specimen`, and two specimens a `recording`, of the same number.
 
-Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a
-`long_name` and a `role`:
+Every corpus has the variables below; `gen.open_corpus` adds `fault_name` and `split_name`. It can have further ones,
+numbers that are not packed or text, with a `long_name` and a `role`:
 
 """
 

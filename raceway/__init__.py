@@ -1,6 +1,7 @@
-"""The command line of Raceway; ``raceway --help`` lists the commands.
+"""The command line of Raceway, of which ``raceway --help`` lists the commands, and their calls from Python.
 
-From Python, ``raceway.reference_model()`` is its model, and ``raceway.show_progress()`` shows the progress of a call.
+``raceway.diagnose``, ``limit``, ``imitate``, ``publish`` and others are listed below; ``raceway.show_progress()`` shows the progress of a
+call.
 
 ============= ========================================================================
 module        responsibility

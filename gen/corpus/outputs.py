@@ -49,6 +49,8 @@ FILE_SUFFIXES = (
         ".xlsx",
         ".npy",
         ".npz",
+        ".wav",
+        ".tdms",
     ),
     *(".zip", ".tar", ".gz", ".json", ".yaml", ".html"),
 )

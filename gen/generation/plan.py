@@ -62,8 +62,8 @@ class Plan:
     drawn: int
     checked: int
     left_out: int
-    first_left_out: str | None
-    """The sentence about the first record that is left out."""
+    left_out_example: str | None
+    """The sentence about one record that is left out."""
     wide_spalls: int
     """Number of records with a spall that is wider than from ball to ball."""
     first_wide_spall: str | None
@@ -132,7 +132,7 @@ def plan(recipe: Path | str | Recipe, *, seed: int | None = None, records: int |
         drawn=len(drawn),
         checked=len(places),
         left_out=round(len(failures) * of_checked),
-        first_left_out=next(iter(failures), trial and trial.failure),
+        left_out_example=next(iter(failures), trial and trial.failure),
         wide_spalls=round(len(wide) * of_drawn),
         first_wide_spall=next(iter(wide), None),
         classes=_classes(whole, drawn, count),

@@ -149,8 +149,8 @@ def _show_plan(planned: "Plan") -> None:
             "kernel": "compiled" if planned.compiled else "will be compiled for this machine, in half a minute or so",
         }
     )
-    if planned.first_left_out is not None:
-        show.text("", f"The first record that is left out: {planned.first_left_out}")
+    if planned.left_out_example is not None:
+        show.text("", f"One record that is left out: {planned.left_out_example}")
     if planned.clipping is not None:
         show.text("", f"Of those that were made, {planned.clipping}")
     if planned.first_wide_spall is not None:

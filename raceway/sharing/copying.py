@@ -20,9 +20,9 @@ from xarray.conventions import encode_cf_variable
 
 from gen.corpus.choice import channel_names, chosen_channels, chosen_records
 from gen.corpus.index import open_corpus
-from gen.corpus.manifest import COUNTED, Manifest, read_manifest, recipe_text
+from gen.corpus.manifest import COUNTED, Manifest, read_manifest
 from gen.corpus.numbering import new_numbers
-from gen.corpus.schema import SIGNAL
+from gen.corpus.schema import RECIPE_TEXT, SIGNAL
 from gen.corpus.where import nearest
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
@@ -132,7 +132,7 @@ class Chosen:
     @property
     def recipe(self) -> str | None:
         """Recipe, if it is the same for all corpora."""
-        first, *others = map(recipe_text, self.paths)
+        first, *others = (corpus.attrs.get(RECIPE_TEXT) for corpus in self.corpora)
         return first if all(other == first for other in others) else None
 
     def facts(self) -> dict[str, Any]:

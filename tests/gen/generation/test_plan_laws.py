@@ -69,7 +69,7 @@ def test_a_plan_tells_faults_that_cannot_be_seen_and_spalls_under_two_balls(reci
     assert planned.wide_spalls == planned.classes["outer"]
     assert planned.first_wide_spall.endswith("20 mm on the outer race, where neighbouring balls are 16.4 mm apart.")
     redrawn = {"faults": [{"kind": "healthy"}, faults[0]], "truth.undetected": "redraw"}
-    assert "faults of class inner can be seen" in plan(recipe_with(redrawn)).first_left_out
+    assert "faults of class inner can be seen" in plan(recipe_with(redrawn)).left_out_example
 
 
 def test_splits_by_rig_of_a_large_corpus_are_those_that_it_will_have(recipe_with):

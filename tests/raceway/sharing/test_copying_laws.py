@@ -54,17 +54,18 @@ def test_a_whole_copy_has_every_record_bit_for_bit(tmp_path, name, kind, stored,
     assert_same(contents(tmp_path / name), contents(tmp_path / "source"))
 
 
-def test_copying_there_and_back_gives_the_same_bytes(source, tmp_path):
+def test_copying_there_and_back_gives_the_same_bytes_and_the_recipe_of_the_index(tiny_corpus, tmp_path):
     """A folder, a single file of it, a folder of that: nothing is lost on the way, and nothing is added."""
+    source = shutil.copytree(tiny_corpus, tmp_path / "source")
     publish(source, Publication(license="CC-BY-4.0", date="2026-01-02"))
-    (source / "recipe.yaml").write_text("name: small\n")
+    (source / "recipe.yaml").write_text("name: altered\n")
     copy(source, tmp_path / "one")
     copy(tmp_path / "one", tmp_path / "one.nc")
     copy(tmp_path / "one.nc", tmp_path / "two")
     copy(tmp_path / "two", tmp_path / "two.nc")
     assert files(tmp_path / "two") == files(tmp_path / "one")
     assert files(tmp_path / "two.nc") == files(tmp_path / "one.nc")
-    assert (tmp_path / "two" / "recipe.yaml").read_text() == "name: small\n"
+    assert (tmp_path / "two" / "recipe.yaml").read_bytes() == (tiny_corpus / "recipe.yaml").read_bytes()
     assert read_manifest(tmp_path / "two.nc").publication["license"] == "CC-BY-4.0"
 
 
