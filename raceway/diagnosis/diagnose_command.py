@@ -113,14 +113,16 @@ def diagnose(
     from raceway.importing.user_folder import readings_of, recordings_in, set_aside
 
     check_speed(speeds, reading, speed_table)
-    candidates = _bearings(bearings, speed_known=speeds is not None or speed_table is not None)
+    candidates = _bearings(bearings)
     several = recording.is_dir()
     unusable: dict[Path, str] = {}
     # a table of speeds may lie among the recordings
     tables = [] if speed_table is None else [speed_table]
     paths = recordings_in(recording, [*healthy, *tables]) if several else [recording]
     by_file = _speeds_by_file(speed_table, recording, paths, healthy)
-    readings = readings_of(paths, reading, unusable if several else None)
+    # the lines alone fit many bearings
+    needs_speed = not (bearings or speeds or by_file)
+    readings = readings_of(paths, reading, unusable if several else None, needs_speed=needs_speed)
     first = next(readings, None)  # before the model, so that whatever is missing is told at once
     if first is None:
         raise click.UsageError(f"no recording can be used; the first of {len(paths)}: {next(iter(unusable.values()))}")
@@ -146,7 +148,8 @@ def diagnose(
         own_speeds = by_file.get(path.name, speeds)
         of_file += _doubts(by_file.get(path.name))
         stated = recorded.rpm if own_speeds is None else None
-        if stated is not None:
+        # what was read of a measured course is told already
+        if stated is not None and used.speed_column is None:
             of_file = (*of_file, f"{path.name}: it states a speed of {stated:g} rpm, which is used.")
         own = _given(candidates, own_speeds if stated is None else (stated, stated))
         # channels have their names in this recording, also those of the healthy ones
@@ -221,14 +224,12 @@ def _doubts(speeds: Speeds | None) -> tuple[str, ...]:
     return (f"{typed} rpm is less than one turn a second; if it is Hz, give {meant} rpm.",)
 
 
-def _bearings(texts: tuple[str, ...], *, speed_known: bool) -> dict[str, "Bearing"]:
+def _bearings(texts: tuple[str, ...]) -> dict[str, "Bearing"]:
     """Bearings by name: those that are given, or the catalogue."""
     from gen.physics.bearing_text import bearing_from_text, geometry_text
     from gen.physics.catalogue import CATALOGUE
 
     if not texts:
-        if not speed_known:
-            raise click.UsageError("give --bearing, --rpm or both: the lines alone fit many bearings")
         return dict(CATALOGUE)
     bearings = map(bearing_from_text, texts)
     return {

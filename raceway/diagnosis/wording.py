@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from features.baselines.predictions import UNSURE
 from features.signal.speed import DISAGREEMENT, RIVALS_BEYOND
 from gen.corpus.fault_classes import HEALTHY, SIDES, families, fault_class
 from gen.support.units import from_si
@@ -115,12 +114,12 @@ def _pair(pair: Pair, machine: Given) -> str:
         beyond = f"or up to {100 * RIVALS_BEYOND:g} % beyond"
         return f"{bearing}shaft {speed} rpm as found between {low} and {high} rpm, {beyond}"
     if speed != low:
-        return f"{bearing}shaft {speed} rpm as found, {low} rpm as labelled"
-    return f"{bearing}shaft {low} rpm as labelled"
+        return f"{bearing}shaft {speed} rpm as found, {low} rpm as given"
+    return f"{bearing}shaft {low} rpm as given"
 
 
 def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
-    """Sentences on a speed at the end of the search, and on a label that does not fit the lines."""
+    """Sentences on a speed at the end of the search, and on a given speed that does not fit the lines."""
     (low, high), uncertainty, ends = machine.rates, from_si(pair.uncertainty, "rpm"), machine.searched
     sentences = ()
     # a maximum at the end of a search may lie beyond it
@@ -132,7 +131,7 @@ def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
     if low != high or abs(pair.rate - low) <= DISAGREEMENT * pair.uncertainty:
         return sentences
     sentence = (
-        f"The labelled speed of {from_si(low, 'rpm'):,.0f} rpm does not fit the lines of this recording; they fit "
+        f"The given speed of {from_si(low, 'rpm'):,.0f} rpm does not fit the lines of this recording; they fit "
         f"{from_si(pair.rate, 'rpm'):,.0f} rpm (± {uncertainty:.0f}), {100 * (pair.rate / low - 1):+.1f} %."
     )
     return (sentence, *sentences)
@@ -140,7 +139,7 @@ def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
 
 def different_classes(judged: Sequence[tuple[Pair, str]]) -> str:
     """Clause on pairs that cannot be told apart and give different classes."""
-    each = [f"{_place(pair)} ({'no answer' if verdict == UNSURE else verdict})" for pair, verdict in judged]
+    each = [f"{_place(pair)} ({verdict})" for pair, verdict in judged]
     return f"the lines cannot tell apart {listed(each, 'and')}"
 
 

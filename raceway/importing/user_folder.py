@@ -59,13 +59,19 @@ def _place(path: Path) -> list[tuple[int, str]]:
 
 
 def readings_of(
-    paths: Sequence[Path], reading: "Reading", unusable: dict[Path, str] | None
+    paths: Sequence[Path], reading: "Reading", unusable: dict[Path, str] | None, *, needs_speed: bool
 ) -> "Iterator[tuple[Path, Recorded, Reading, tuple[str, ...]]]":
-    """Recordings that can be read, one after the other; those of a folder as they state."""
+    """Recordings that can be read, one after the other; those of a folder as they state.
+
+    Where the file ``needs_speed``, one that states none is refused.
+    """
     read = read_recording if unusable is None else read_as_stated
     for path in paths:
         with set_aside(path, unusable):
-            yield path, *read(path, reading)
+            recorded, used, notes = read(path, reading)
+            if needs_speed and recorded.rpm is None:
+                raise CorpusError(f"{path}: states no speed; give --bearing, --rpm or both.")
+            yield path, recorded, used, notes
 
 
 @contextmanager

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.io import savemat
 
 from raceway.importing.user_folder import recordings_in
 from tests.diagnoses import FS, call, told, write_csv, write_wav
@@ -216,6 +217,19 @@ def test_a_table_of_speeds_that_does_not_fit_the_folder_is_one_sentence(text, op
     assert (result.exit_code, result.stdout) == (2, "")
     assert sentence in result.stderr
     assert len(result.stderr.strip().splitlines()) == 1
+
+
+def test_a_speed_that_a_file_states_counts_as_given_and_without_a_bearing_a_file_needs_one(model, recordings, tmp_path):
+    signal, rpm = recordings["outer"]
+    for name, stated in (("1", {"X001RPM": rpm}), ("2", {})):
+        savemat(tmp_path / f"{name}.mat", {"X001_DE_time": signal, **stated})
+    options = ("--rate", FS, "--unit", "m/s2", "--model", model)
+    searched, refused = told(tmp_path, *options)
+    assert searched["given_rpm"] == pytest.approx([rpm, rpm])
+    sentence = "2.mat: states no speed; give --bearing, --rpm or both."
+    assert refused["error"].endswith(sentence)
+    alone = call(tmp_path / "2.mat", *options)
+    assert (alone.exit_code, alone.stdout, sentence in alone.stderr) == (2, "", True)
 
 
 def test_a_table_of_speeds_needs_a_folder(tmp_path):

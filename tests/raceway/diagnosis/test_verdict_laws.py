@@ -221,7 +221,7 @@ def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
     assert found.verdict == UNSURE
     assert "as well" not in found.sentence
     assert "cannot tell apart 6205 at 1,500 rpm (outer) and 6205 at 1,560 rpm (inner)" in found.sentence
-    assert "6205 at 1,560 rpm (no answer)" in concluded("outer", UNSURE, given=given).sentence
+    assert "6205 at 1,560 rpm (unsure)" in concluded("outer", UNSURE, given=given).sentence
 
 
 @pytest.mark.parametrize(
@@ -237,7 +237,7 @@ def test_four_bearings_that_no_line_tells_apart_are_named_or_three_of_more_at_on
     several = Given(dict.fromkeys(("6004", *alike, "other"), ORDERS), (RATE, RATE))
     each = [judged("outer", pair(RATE + 0.001, "6004")._replace(alike=alike))]
     answer = _conclude(USED, several, Model(), each, (), None, compared=True)
-    assert answer.sentence.endswith(f"; bearing {named} as found, shaft 1,500 rpm as labelled.")
+    assert answer.sentence.endswith(f"; bearing {named} as found, shaft 1,500 rpm as given.")
 
 
 @pytest.mark.parametrize("name", ["healthy", "outer"])

@@ -97,6 +97,10 @@ def test_the_diagnosis_of_a_run_up_is_right_with_its_course(run_up, model, tmp_p
     assert answer["verdict"] == "outer"
     assert answer["shaft_rpm"] == pytest.approx(RPM, rel=1e-2)
     assert any("equal angles of its shaft" in sentence for sentence in answer["warnings"])
+    assert not any("states a speed" in sentence for sentence in answer["warnings"])
+    # the measured speed is enough to search the catalogue
+    searched = told(path, "--rate", RATE, "--speed-column", "speed", "--model", model)
+    assert searched["given_rpm"] == answer["given_rpm"]
     assert (
         told(path, "--bearing", "6205", "--rate", RATE, "--channel", 0, "--rpm", RPM, "--model", model)["verdict"]
         != "outer"
