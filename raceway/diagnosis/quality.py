@@ -21,6 +21,8 @@ POSSIBLE = (
     1e9,
 )  # m s-2, spread of a signal in whatever unit; fourth powers of more leave the range of single precision
 ENOUGH = 10.0  # s, duration to be recorded
+GOOD_RATE = "20 kHz"  # sample rate to be recorded
+KILO = 1000.0  # Hz; lower sample rates may be meant in kHz
 TURNS = 20  # shaft revolutions to be recorded
 FEWEST_TURNS = 8  # shaft revolutions below which no verdict is given: a speed in Hz given as rpm leaves so few, too
 
@@ -71,7 +73,8 @@ def _useless(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> tup
         return "the values only rise or only fall, as in a column of times", "choose another column"
     if fs < LOWEST_RATE:
         reason = f"the sample rate of {fs:,.0f} Hz is below {LOWEST_RATE:,.0f} Hz, so no band with the impacts of a bearing is left"
-        return reason, "record at 10,000 Hz or more"
+        in_kilohertz = f"; if it is {fs:g} kHz, give {1000 * fs:g} Hz" if fs < KILO else ""
+        return reason, f"record at {GOOD_RATE} or more{in_kilohertz}"
     # the lines of every part must lie in the band that is used
     highest, top = shaft_rate * max(orders.bpfo, orders.bpfi, 2 * orders.bsf), min(DEFAULT_BAND.high, fs / 2)
     if highest > top:
@@ -95,7 +98,7 @@ def _warnings(x: FloatArray, fs: float, duration: float, shaft_rate: float) -> l
     if fs < 2 * DEFAULT_BAND.high:
         warnings.append(
             f"The sample rate of {fs:,.0f} Hz leaves out part of the band up to {DEFAULT_BAND.high:,.0f} Hz that the classifier was "
-            f"trained on; record at {2 * DEFAULT_BAND.high:,.0f} Hz or more."
+            f"trained on; record at {GOOD_RATE} or more."
         )
     if duration < 1.0 or duration * shaft_rate < TURNS:
         warnings.append(

@@ -35,6 +35,7 @@ def test_the_share_of_clipped_samples_is_told(limit):
         (-np.arange(X.size) / FS, FS, RATE, "only rise or only fall, as in a column of times", "another column"),
         (1e-30 * X, FS, RATE, "is no vibration", "check unit"),
         (1e30 * X, FS, RATE, "is no vibration", "check unit"),
+        (X, 12.0, RATE, "of 12 Hz is below 3,000 Hz", "record at 20 kHz or more; if it is 12 kHz, give 12000 Hz"),
         (X, FS, 1500.0, "a fault line lies at 8,123 Hz, and the signal is used up to 5,000 Hz", "check speed"),
     ],
 )
@@ -51,7 +52,7 @@ def test_a_signal_that_tells_nothing_is_useless_for_a_reason_and_with_advice(x, 
         (np.clip(X, -0.5, 0.5), FS, "clipped"),
         (1e-4 * X, FS, "implausible"),
         (X[:6000], FS, "The recording is short"),
-        (X, 8000.0, "leaves out part of the band"),
+        (X, 8000.0, "record at 20 kHz or more"),
     ],
 )
 def test_a_signal_to_be_read_with_care_has_one_warning_and_others_have_none(x, fs, sentence):
