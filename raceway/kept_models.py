@@ -2,7 +2,7 @@
 
 It is trained on records of the recipe domain_randomised that last 2 s, in which lines rise higher above the floor than in the half seconds
 of the recipe. It holds a model trained on those for shorter recordings, and one for recordings that are sampled at 20 kHz or more, of a
-wider band. The feature tables of all three ship with Raceway, so that the training takes seconds. ``make reference`` writes them
+wider band. The feature tables of all three ship with Raceway, so that the training takes half a minute. ``make reference`` writes them
 (`benchmarks.reference_table`); unlike a model file they depend on no version of scikit-learn.
 
 The kept file is named after the versions of Raceway and scikit-learn, and a hash of all that it was made from: table, sources and

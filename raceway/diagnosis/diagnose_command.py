@@ -16,7 +16,6 @@ from raceway.importing.reading_options import Reading, Speeds, check_speed, read
 
 if TYPE_CHECKING:
     from gen.physics.bearing import Bearing
-    from raceway.diagnosis import Given
     from raceway.importing.recorded import Recorded
 
 ONE_TURN = 60.0  # rpm; lower speeds may be meant in Hz
@@ -106,7 +105,7 @@ def diagnose(
     --json prints, of a FOLDER in a list, verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic,
     band), levels and explanations (bearing, alike, shaft_rpm, uncertainty_rpm, lines, as_given), and further facts.
 
-    The first call trains the reference model, in some ten seconds.
+    The first call trains the three parts of the reference model, in about half a minute.
     docs/diagnose.md tells how to record and how to read the page.
     """
     from gen.corpus import make_result_folder
@@ -136,13 +135,14 @@ def diagnose(
 
     # the libraries of the model hold much that is never freed, and collecting garbage among it takes time
     with keep_garbage():
-        from raceway.diagnosis import diagnose_recording
+        from gen.physics.bearing import orders
+        from raceway.diagnosis import diagnose_recording, given_of
         from raceway.diagnosis.diagnosis_facts import assumptions, diagnosis_facts
         from raceway.kept_models import open_model
 
         loaded, source = open_model(model)
 
-    answers = []
+    nominal, answers = {name: orders(bearing) for name, bearing in candidates.items()}, []
     # one recording at a time, read when its turn comes
     for path, recorded, used, of_file in chain((first,), readings):
         own_speeds = by_file.get(path.name, speeds)
@@ -151,7 +151,7 @@ def diagnose(
         # what was read of a measured course is told already
         if stated is not None and used.speed_column is None:
             of_file = (*of_file, f"{path.name}: it states a speed of {stated:g} rpm, which is used.")
-        own = _given(candidates, own_speeds if stated is None else (stated, stated))
+        own = given_of(nominal, own_speeds if stated is None else (stated, stated))
         # channels have their names in this recording, also those of the healthy ones
         recorded, *alike = [each.renamed(recorded.matched) for each in (recorded, *references)]
         with set_aside(path, unusable if several else None), notice_compilation():
@@ -235,10 +235,3 @@ def _bearings(texts: tuple[str, ...]) -> dict[str, "Bearing"]:
     return {
         geometry_text(bearing) if bearing.designation == "own" else bearing.designation: bearing for bearing in bearings
     }
-
-
-def _given(bearings: dict[str, "Bearing"], speeds: Speeds | None) -> "Given":
-    from gen.physics.bearing import orders
-    from raceway.diagnosis import given_of
-
-    return given_of({name: orders(bearing) for name, bearing in bearings.items()}, speeds)
