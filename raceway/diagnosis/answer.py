@@ -232,7 +232,6 @@ def _conclude(
 ) -> Diagnosis:
     """Diagnosis at the first pair; no part is named if others give another class or if a strong comb is not explained."""
     first = judged[0]
-    differing = len({each.verdict for each in judged}) > 1
     why, advice = first.why, ["Measure the speed during the recording, and check the bearing designation."]
     # the strongest doubt first: lines that this bearing and speed do not explain
     if elsewhere or strange is not None:
@@ -240,9 +239,11 @@ def _conclude(
         advice = [
             "Measure the speed, check the bearing, and give them as ranges or alternatives if they are not known."
         ]
-    elif differing:
+    elif len({each.verdict for each in judged}) > 1:
         why = different_classes([(each.pair, each.verdict) for each in judged])
         advice = ["Measure the speed during the recording, or give a narrower range."]
+        if len({each.pair.bearing for each in judged}) > 1:
+            advice = ["Give the bearing (--bearing; in Python orders)."]
     verdict = first.verdict
     # its kind may be unsure, and a fault certain
     if why:
@@ -254,8 +255,10 @@ def _conclude(
     else:
         answer = answer_in_words(verdict, first.probabilities, first.lines)
         advice = [WATCH] if verdict == HEALTHY and first.lines else []
-    # speeds and bearings that give the same answer are named beside the first
-    clauses = [answer, pair_in_words(first.pair, machine, [each.pair for each in judged[1:] if not differing])]
+    clauses = [answer]
+    # pairs that give the same answer are named; those that leave a doubt are in its reason
+    if why == first.why:
+        clauses.append(pair_in_words(first.pair, machine, [each.pair for each in judged[1:]]))
     if len(used.signals) > 1:
         clauses.append(f"channels {listed([*used.signals], 'and')}, as axes of one housing")
     # a healthy verdict says how often such verdicts were wrong, which was counted for the reference model: it alone has a wide part
@@ -263,14 +266,14 @@ def _conclude(
     if verdict == HEALTHY and model.wide is None:
         clauses.append("how often this model calls faulty recordings healthy was not measured")
     elif verdict == HEALTHY:
-        missed, of = missed_faults(used.duration, compared=compared)
+        length, missed, of = missed_faults(used.duration, compared=compared)
         faulty = "comparisons of faulty recordings" if compared else "faulty recordings"
-        clauses.append(f"{missed} of {of} {faulty} of about this length from three machines were called healthy")
-    if verdict in (UNSURE, DAMAGED, HEALTHY):
-        if used.duration < (seconds := enough(first.pair.rate)):
-            advice.append(f"Record longer: {seconds:,.0f} s instead of {used.duration:.2g} s.")
-        if not compared:
-            advice.append(f"Give a recording of the machine with a healthy bearing {BY_HEALTHY}.")
+        clauses.append(f"{missed} of {of} {faulty} of {length:g} s from three machines were called healthy")
+    # healthy answers from ten seconds were not wrong less often than those from two
+    if verdict in (UNSURE, DAMAGED) and used.duration < (seconds := enough(first.pair.rate)):
+        advice.append(f"Record longer: {seconds:,.0f} s instead of {used.duration:.2g} s.")
+    if verdict in (UNSURE, DAMAGED, HEALTHY) and not compared:
+        advice.append(f"Give a recording of the machine with a healthy bearing {BY_HEALTHY}.")
     return Diagnosis(
         verdict=verdict,
         probabilities=first.probabilities,

@@ -43,12 +43,10 @@ def reasons(verdict: str, lines: Sequence[Line]) -> str:
     own = families.pop(verdict, None)
     others = "; ".join(family_in_words(held) for held in families.values())
     if verdict == HEALTHY:
-        if others:
-            return f"although {others}"
-        return NO_LINE
+        return f"{others}, too few lines or too faint ones for a fault" if others else NO_LINE
     if own:
         return family_in_words(own) + (f"; also {others}" if others else "")
-    return others or f"although {NO_LINE}"
+    return others or f"{NO_LINE}, as often with balls"
 
 
 def line_of(fault: str) -> str:
@@ -95,27 +93,24 @@ def damaged_in_words(probabilities: Mapping[str, float], why: str) -> str:
     return f"Damaged (probability of a fault {probability_in_words(faulty(probabilities))}), but the part is not known: {why}"
 
 
-def missed_faults(seconds: float, *, compared: bool) -> tuple[int, int]:
-    """Number of faulty recordings of about this length that were called healthy, and of all."""
-    row = min(MISSED, key=lambda row: abs(math.log(row[0] / seconds)))
-    return row[2] if compared else row[1]
+def missed_faults(seconds: float, *, compared: bool) -> tuple[float, int, int]:
+    """The nearest measured length [s], the number of faulty recordings of it that were called healthy, and of all."""
+    length, alone, beside = min(MISSED, key=lambda row: abs(math.log(row[0] / seconds)))
+    return length, *(beside if compared else alone)
 
 
 def pair_in_words(pair: Pair, machine: Given, others: Sequence[Pair]) -> str:
     """Bearing, if several are given, and speed of the shaft with its source; then other pairs that fit the lines as well."""
+    if any(other.bearing != pair.bearing for other in others):
+        return f"bearing not known: the lines fit {listed([_place(each) for each in (pair, *others)], 'or')}"
     fitting = f", and the lines fit {listed([_place(other) for other in others], 'and')} as well" if others else ""
-    return _pair(pair, machine) + fitting
-
-
-def _pair(pair: Pair, machine: Given) -> str:
     bearing = "" if len(machine.bearings) == 1 else f"bearing {_bearing(pair)} as found, "
     speed, low, high = (f"{from_si(rate, 'rpm'):,.0f}" for rate in (pair.rate, *machine.rates))
     if low != high:
-        beyond = f"or up to {100 * RIVALS_BEYOND:g} % beyond"
-        return f"{bearing}shaft {speed} rpm as found between {low} and {high} rpm, {beyond}"
-    if speed != low:
-        return f"{bearing}shaft {speed} rpm as found, {low} rpm as given"
-    return f"{bearing}shaft {low} rpm as given"
+        between = f"between {low} and {high} rpm, or up to {100 * RIVALS_BEYOND:g} % beyond"
+        return f"{bearing}shaft {speed} rpm as found {between}{fitting}"
+    at_speed = "" if speed == low else f"{speed} rpm as found, "
+    return f"{bearing}shaft {at_speed}{low} rpm as given{fitting}"
 
 
 def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
@@ -147,7 +142,7 @@ def unexplained(pair: Pair, elsewhere: Sequence[Pair], strange: float | None) ->
     """Clause on a strong comb that a pair does not explain, and on those that would explain it."""
     if not elsewhere:
         return (
-            f"a line at {strange:.2f} orders and its harmonics stand out, and no part of {pair.bearing} has that order, so that the "
+            f"a line at {strange:.2f} orders and its harmonics stand out, and no part of {_place(pair)} has that order, so that the "
             "bearing or the speed may be another, or the lines come from another part of the machine"
         )
     each = [f"{_place(other)} ({other.lines.upper()})" for other in elsewhere]

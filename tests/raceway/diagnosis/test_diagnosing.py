@@ -43,7 +43,8 @@ def test_a_simulated_recording_of_each_class_is_diagnosed(fault, suffix, model, 
     if fault == "healthy":
         assert found["evidence"] == []
         assert found["sentence"].startswith("Healthy (probability ")
-        assert any(sentence.startswith("Record longer: 10 s") for sentence in found["advice"])
+        # longer recordings were not called healthy less often
+        assert not any("Record longer" in sentence for sentence in found["advice"])
         assert any("--healthy FILE" in sentence for sentence in found["advice"])
         return
     first = found["evidence"][0]
@@ -65,9 +66,7 @@ def test_the_share_of_missed_faults_is_that_of_the_reference_model_alone(model, 
     own.wide = own  # as the reference model has
     answer = raceway.diagnose(signal, FS, orders="6205", rpm=rpm, model=own)
     assert 0 < answer.missed < 0.5
-    assert answer.sentence.endswith(
-        "of 86 faulty recordings of about this length from three machines were called healthy."
-    )
+    assert answer.sentence.endswith("; 4 of 86 faulty recordings of 2 s from three machines were called healthy.")
 
 
 @pytest.mark.parametrize("fault", ["healthy", "inner"])

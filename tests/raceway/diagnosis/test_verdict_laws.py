@@ -13,7 +13,7 @@ from raceway.diagnosis import Given, Pair
 from raceway.diagnosis.answer import Judged, _conclude, _usable
 from raceway.diagnosis.evidence import Line
 from raceway.diagnosis.verdict import ANSWER, CERTAIN, OBVIOUS, PLAIN, SURE, WITHOUT_LINES, certainly_faulty, judge
-from raceway.diagnosis.wording import MISSED, missed_faults
+from raceway.diagnosis.wording import MISSED, answer_in_words, missed_faults
 from raceway.importing.recorded import LONGEST, Recorded
 
 FS, RATE = 12_000.0, 25.0
@@ -181,9 +181,10 @@ def test_lines_that_plain_are_answered_although_the_classifier_says_healthy(like
 def test_missed_faults_are_told_for_the_nearest_length():
     for seconds, alone, compared in MISSED:
         for near in (0.9 * seconds, 1.1 * seconds):
-            assert (missed_faults(near, compared=False), missed_faults(near, compared=True)) == (alone, compared)
-    assert missed_faults(1e-3, compared=False) == MISSED[0][1]
-    assert missed_faults(1e3, compared=False) == MISSED[-1][1]
+            assert missed_faults(near, compared=False) == (seconds, *alone)
+            assert missed_faults(near, compared=True) == (seconds, *compared)
+    assert missed_faults(1e-3, compared=False) == (MISSED[0][0], *MISSED[0][1])
+    assert missed_faults(1e3, compared=False) == (MISSED[-1][0], *MISSED[-1][1])
 
 
 def judged(name, pair):
@@ -221,6 +222,7 @@ def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
     assert found.verdict == UNSURE
     assert "as well" not in found.sentence
     assert "cannot tell apart 6205 at 1,500 rpm (outer) and 6205 at 1,560 rpm (inner)" in found.sentence
+    assert found.advice[0] == "Measure the speed during the recording, or give a narrower range."
     assert "6205 at 1,560 rpm (unsure)" in concluded("outer", UNSURE, given=given).sentence
 
 
@@ -252,6 +254,19 @@ def test_a_comb_that_is_not_explained_makes_every_verdict_unsure_and_names_what_
     assert "4.21 orders" in found.sentence
 
 
+@pytest.mark.parametrize("doubt", [False, True])
+def test_of_bearings_that_fit_alike_none_is_called_found(doubt):
+    several = Given({"6004": ORDERS, "6205": ORDERS}, (RATE, RATE))
+    each = [judged("outer", pair(RATE, "6004")), judged(UNSURE if doubt else "outer", pair(RATE))]
+    answer = _conclude(USED, several, Model(), each, (), None, compared=True)
+    assert "as found" not in answer.sentence
+    if doubt:
+        assert answer.sentence.endswith("cannot tell apart 6004 at 1,500 rpm (outer) and 6205 at 1,500 rpm (unsure).")
+        assert answer.advice[0].startswith("Give the bearing")
+    else:
+        assert answer.sentence.endswith("; bearing not known: the lines fit 6004 at 1,500 rpm or 6205 at 1,500 rpm.")
+
+
 def test_damaged_tells_the_probability_of_any_fault_and_why_no_part_is_named():
     answer = _conclude(
         USED, GIVEN, Model(), [judged(UNSURE, pair(RATE))._replace(probabilities=chance(0.02))], (), None, compared=True
@@ -264,7 +279,14 @@ def test_damaged_tells_the_probability_of_any_fault_and_why_no_part_is_named():
 
 def test_a_ball_without_lines_says_that_there_are_none():
     assert concluded("ball").sentence.startswith(
-        "Ball fault (probability 0.88): although no line of inner race, outer race, balls or cage stands 10 dB above"
+        "Ball fault (probability 0.88): no line of inner race, outer race, balls or cage stands 10 dB above the floor, as often with balls;"
+    )
+
+
+def test_a_healthy_answer_says_why_lines_do_not_count():
+    told = answer_in_words("healthy", probabilities("healthy"), PLAIN_OUTER)
+    assert told.endswith(
+        "orders and 1 further harmonic stand up to 24 dB above the floor, too few lines or too faint ones for a fault"
     )
 
 
