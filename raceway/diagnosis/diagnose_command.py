@@ -147,11 +147,12 @@ def diagnose(
     for path, recorded, used, of_file in chain((first,), readings):
         own_speeds = by_file.get(path.name, speeds)
         of_file += _doubts(by_file.get(path.name))
-        stated = recorded.rpm if own_speeds is None else None
-        # what was read of a measured course is told already
-        if stated is not None and used.speed_column is None:
-            of_file = (*of_file, f"{path.name}: it states a speed of {stated:g} rpm, which is used.")
-        own = given_of(nominal, own_speeds if stated is None else (stated, stated))
+        if own_speeds is None and (rpm := recorded.rpm):
+            own_speeds = rpm, rpm
+            # the mean of a measured course is told already
+            if not used.speed_column:
+                of_file += (f"{path.name}: it states a speed of {rpm:g} rpm, which is used.",)
+        own = given_of(nominal, own_speeds)
         # channels have their names in this recording, also those of the healthy ones
         recorded, *alike = [each.renamed(recorded.matched) for each in (recorded, *references)]
         with set_aside(path, unusable if several else None), notice_compilation():
@@ -229,9 +230,8 @@ def _bearings(texts: tuple[str, ...]) -> dict[str, "Bearing"]:
     from gen.physics.bearing_text import bearing_from_text, geometry_text
     from gen.physics.catalogue import CATALOGUE
 
-    if not texts:
-        return dict(CATALOGUE)
-    bearings = map(bearing_from_text, texts)
-    return {
-        geometry_text(bearing) if bearing.designation == "own" else bearing.designation: bearing for bearing in bearings
+    bearings = {
+        geometry_text(bearing) if bearing.designation == "own" else bearing.designation: bearing
+        for bearing in map(bearing_from_text, texts)
     }
+    return bearings or dict(CATALOGUE)

@@ -115,7 +115,7 @@ def pair_in_words(pair: Pair, machine: Given, others: Sequence[Pair]) -> str:
 
 def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
     """Sentences on a speed at the end of the search, and on a given speed that does not fit the lines."""
-    (low, high), uncertainty, ends = machine.rates, from_si(pair.uncertainty, "rpm"), machine.searched
+    (low, high), ends = machine.rates, machine.searched
     sentences = ()
     # a maximum at the end of a search may lie beyond it
     if pair.strength > STRONG_COMB and not ends[0] * (1 + AT_END) < pair.rate < ends[1] * (1 - AT_END):
@@ -127,15 +127,14 @@ def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
         return sentences
     sentence = (
         f"The given speed of {from_si(low, 'rpm'):,.0f} rpm does not fit the lines of this recording; they fit "
-        f"{from_si(pair.rate, 'rpm'):,.0f} rpm (± {uncertainty:.0f}), {100 * (pair.rate / low - 1):+.1f} %."
+        f"{from_si(pair.rate, 'rpm'):,.0f} rpm (± {from_si(pair.uncertainty, 'rpm'):.0f}), {100 * (pair.rate / low - 1):+.1f} %."
     )
     return (sentence, *sentences)
 
 
 def different_classes(judged: Sequence[tuple[Pair, str]]) -> str:
     """Clause on pairs that cannot be told apart and give different classes."""
-    each = [f"{_place(pair)} ({verdict})" for pair, verdict in judged]
-    return f"the lines cannot tell apart {listed(each, 'and')}"
+    return f"the lines cannot tell apart {listed([f'{_place(pair)} ({verdict})' for pair, verdict in judged], 'and')}"
 
 
 def unexplained(pair: Pair, elsewhere: Sequence[Pair], strange: float | None) -> str:

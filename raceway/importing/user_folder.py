@@ -69,7 +69,7 @@ def readings_of(
     for path in paths:
         with set_aside(path, unusable):
             recorded, used, notes = read(path, reading)
-            if needs_speed and recorded.rpm is None:
+            if needs_speed and not recorded.rpm:
                 raise CorpusError(f"{path}: states no speed; give --bearing, --rpm or both.")
             yield path, recorded, used, notes
 
