@@ -242,8 +242,9 @@ def _conclude(
     elif len({each.verdict for each in judged}) > 1:
         why = different_classes([(each.pair, each.verdict) for each in judged])
         advice = ["Measure the speed during the recording, or give a narrower range."]
-        if len({each.pair.bearing for each in judged}) > 1:
-            advice = ["Give the bearing (--bearing; in Python orders)."]
+    # whatever the doubt is, several bearings fit
+    if len({each.pair.bearing for each in judged}) > 1:
+        advice = ["Give the bearing (--bearing; in Python orders)."]
     verdict = first.verdict
     # its kind may be unsure, and a fault certain
     if why:

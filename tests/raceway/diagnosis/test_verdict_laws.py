@@ -263,6 +263,9 @@ def test_of_bearings_that_fit_alike_none_is_called_found(doubt):
     if doubt:
         assert answer.sentence.endswith("cannot tell apart 6004 at 1,500 rpm (outer) and 6205 at 1,500 rpm (unsure).")
         assert answer.advice[0].startswith("Give the bearing")
+        strange = _conclude(USED, several, Model(), each, (), 4.21, compared=True)
+        assert strange.advice[0] == answer.advice[0]
+        assert "as found" not in strange.sentence
     else:
         assert answer.sentence.endswith("; bearing not known: the lines fit 6004 at 1,500 rpm or 6205 at 1,500 rpm.")
 
