@@ -47,14 +47,10 @@ def validate_corpus(path: Path | str) -> list[str]:
 
 
 def _facts_problems(path: Path, manifest: Manifest, corpus: xr.Dataset) -> list[str]:
-    """Facts of ``manifest.json`` and ``recipe.yaml`` that ``index.nc`` has in another form, and parts that are not listed."""
+    """Facts of ``manifest.json`` and ``recipe.yaml`` that ``index.nc`` has in another form."""
     if path.is_file():
         return []
-    wanted = facts_as_attributes(manifest.content)
-    unlisted = {file.name for file in (path / "parts").glob("*.nc")} - {row.name for row in manifest.parts}
-    problems = [
-        f"{path / 'parts' / name}: is not listed in {MANIFEST_NAME}; move it elsewhere." for name in sorted(unlisted)
-    ]
+    problems, wanted = [], facts_as_attributes(manifest.content)
     if recipe_text(path) != corpus.attrs.get(RECIPE_TEXT):
         problems.append(
             f"{path / RECIPE_NAME}: is missing or is not the recipe that {INDEX_NAME} has as {RECIPE_TEXT}; copy the corpus again."

@@ -258,13 +258,6 @@ def test_a_changed_recipe_is_found(tiny_corpus, tmp_path):
     assert validate_corpus(recipe.parent) == [problem]
 
 
-def test_a_part_that_is_not_listed_is_found(tiny_corpus, tmp_path):
-    parts = shutil.copytree(tiny_corpus, tmp_path / "c") / "parts"
-    shutil.copy(min(parts.glob("*.nc")), parts / "part-00009.nc")
-    (problem,) = validate_corpus(parts.parent)
-    assert problem == f"{parts / 'part-00009.nc'}: is not listed in manifest.json; move it elsewhere."
-
-
 @pytest.mark.parametrize("name", ["recipe_sha256", "sources_sha256"])
 def test_a_part_of_another_recipe_or_of_other_sources_is_found(tiny_corpus, tmp_path, name):
     folder = shutil.copytree(tiny_corpus, tmp_path / "c")
