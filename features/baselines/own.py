@@ -126,7 +126,9 @@ class OwnClassifier:
             return getattr(self.fitted if method != "fit" else self.classifier, method)(*arguments)
         except (Exception, SystemExit) as error:
             features = isinstance(arguments[0], pd.DataFrame)
-            told = "a table of features; features.open_waveforms gives signals" if features else "signals"
+            told = (
+                "a table of features; features.open_waveforms, or --waveforms, gives signals" if features else "signals"
+            )
             raise EstimatorError(
                 f"{self.name}: {method} failed ({_brief(error)}; it got {told}); RACEWAY_TRACEBACK=1 shows where."
             ) from error
