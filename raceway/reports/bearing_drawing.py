@@ -109,9 +109,9 @@ def forces_at(angles: FloatArray, bearing: Bearing, load: float, clearance: floa
     balls = 2 * np.pi * np.arange(bearing.n_balls) / bearing.n_balls
     # at this shift the one ball in the direction of the load carries more than all of it
     most = (2 * load / factor) ** (1 / exponent) + abs(clearance)
-    shift: Any = brentq(
-        lambda tried: float(force(tried, balls) @ np.cos(balls)) - load, 0.0, most / np.cos(bearing.contact_angle) ** 3
-    )
+    highest = most / np.cos(bearing.contact_angle) ** 3
+    # the tolerance is far below the shift of a roller under 1 N, some nanometres
+    shift: Any = brentq(lambda tried: float(force(tried, balls) @ np.cos(balls)) - load, 0.0, highest, xtol=1e-18)
     return force(shift, angles)
 
 

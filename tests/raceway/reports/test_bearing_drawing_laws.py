@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from gen.physics.bearing import orders
@@ -18,6 +18,7 @@ def balls_of(bearing):
 
 
 @given(st.sampled_from([*DRAWN]), st.floats(1, 1e5), st.floats(-50e-6, 100e-6))
+@example("NU206", 1.0, 0.0)
 def test_the_balls_carry_the_load_and_no_ball_pulls(name, load, clearance):
     bearing = DRAWN[name]
     forces = forces_at(balls_of(bearing), bearing, load, clearance)
