@@ -213,6 +213,34 @@ def test_a_plugin_that_cannot_be_loaded_is_named_and_the_others_work(tmp_path):
     )
 
 
+@pytest.mark.parametrize(
+    ("code", "entries", "said"),
+    [
+        (
+            'class Tones(Hiss):\n    place = "tones"',
+            {"raceway.mechanisms": {"hum": "mine:Tones"}},
+            "mine 1.0: its hum in raceway.mechanisms cannot be used (tones is taken)",
+        ),
+        (
+            'class Rusty(Brinelled):\n    kind: Literal["rusty"]\n\nRUSTY = FaultClass("rusty", BPFO)',
+            {"raceway.mechanisms": {"rusty": "mine:Rusty"}, "raceway.classes": {"rosty": "mine:RUSTY"}},
+            "mine 1.0: its rosty in raceway.classes cannot be used (it is named rusty",
+        ),
+        (
+            'class Rusty(Spalls):\n    kind: Literal["rusty"]',
+            {"raceway.mechanisms": {"rusty": "mine:Rusty"}},
+            "mine 1.0: its rusty in raceway.mechanisms cannot be used (fault kind rusty is no class and has no site)",
+        ),
+    ],
+)
+def test_a_plugin_that_takes_a_key_or_names_no_class_is_refused_with_every_recipe(
+    installed, tmp_path, code, entries, said
+):
+    (tmp_path / "mine.py").write_text(f"from raceway_example import *\n\n{code}\n")
+    ((ended, told),) = run(tmp_path, ["plan quickstart"], installed, distribution(tmp_path, "mine", "1.0", entries))
+    assert (ended, told[: len(said)]) == (2, said)
+
+
 FAILING = """
 import click
 import numpy as np

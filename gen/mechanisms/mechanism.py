@@ -1,6 +1,6 @@
 """What a mechanism of a recipe is: a section that some rigs or records have, with its key, its effect and its labels."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from typing import Any, ClassVar, TypeVar, get_args
 
 import numpy as np
@@ -31,8 +31,10 @@ class Mechanism(Section):
         """Compile what the mechanism needs, or fetch it from numba's cache on disk."""
 
 
-def with_plugins(base: type[Base], built_in: tuple[type[Base], ...]) -> tuple[type[Base], ...]:
-    """Classes that are built in, and those of plug-ins with the same base, each with a key of its own.
+def with_plugins(
+    base: type[Base], built_in: tuple[type[Base], ...], others: Container[str] = ()
+) -> tuple[type[Base], ...]:
+    """Classes that are built in, and those of plug-ins with the same base, each with a key of its own, which is none of the ``others``.
 
     Raises
     ------
@@ -44,7 +46,7 @@ def with_plugins(base: type[Base], built_in: tuple[type[Base], ...]) -> tuple[ty
         mechanism = plugin("mechanisms", name, type)
         if not issubclass(mechanism, base):
             continue
-        if (key := _key(mechanism)) in map(_key, classes):
+        if (key := _key(mechanism)) in others or key in map(_key, classes):
             raise unusable("mechanisms", name, f"{key} is taken")
         if (level := getattr(mechanism, "drawn_per", None)) not in (None, *get_args(Level)):
             raise unusable("mechanisms", name, f"drawn_per is {level!r} and not {', '.join(get_args(Level)[1:])}")

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args
 from pydantic import Field
 
 from gen.corpus import FAULTS
+from gen.corpus.fault_classes import fault_class
 from gen.drawing import Weight, composed
 from gen.mechanisms.faults.bearing_fault import BearingFault
 from gen.mechanisms.faults.kinds import KINDS
 from gen.recipe.changes import LevelChanges, OperationChanges
-from gen.support.errors import RecipeError
+from gen.support.plugins import plugin, plugins, unusable
 
 
 class FaultEntry(BearingFault):
@@ -34,10 +35,14 @@ OF_KIND = {kind: entry for entry in _ENTRIES for kind in get_args(entry.model_fi
 """Entry of each kind."""
 
 for _kind, _model in OF_KIND.items():
-    if _kind not in FAULTS and "site" not in {*_model.model_fields, *_model.__class_vars__}:
-        raise RecipeError(
-            f"fault kind {_kind}: is no class and has no site; its plug-in must add it to raceway.classes, or give it one."
-        )
+    _added = [name for name in plugins("mechanisms") if issubclass(_model, plugin("mechanisms", name, type))]
+    if _kind in FAULTS or not _added:
+        continue
+    # a class that is not named as its entry point would be taken for that of the site
+    for _name in plugins("classes"):
+        fault_class(_name)
+    if "site" not in {*_model.model_fields, *_model.__class_vars__}:
+        raise unusable("mechanisms", _added[0], f"fault kind {_kind} is no class and has no site")
 
 if TYPE_CHECKING:
     Fault = FaultEntry

@@ -36,7 +36,7 @@ class Split(Section):
     validation: Annotated[Number, Field(ge=0, lt=1)] = 0.0
     """Share of the specimens or rigs for validation."""
     test: Annotated[Number, Field(ge=0, lt=1)] = 0.2
-    """Share of the specimens or rigs for testing; the rest is for training."""
+    """Share of the specimens or rigs for testing, of rigs rounded up; the rest is for training."""
 
 
 class TruthSection(Section):

@@ -23,7 +23,7 @@ from raceway.importing.reading_options import Reading, Speeds, reading_options, 
 @click.option(
     "--load-n", type=click.FloatRange(1, 1e7), callback=finite, metavar="N", help="Radial load of the bearing."
 )
-@click.option("--synthetic", is_flag=True, help="Estimate the background, and keep nothing of the recording.")
+@click.option("--synthetic", is_flag=True, help="Estimate the background; the page alone then shows the recording.")
 @reading_options
 @file_option(
     "RECIPE", "The recipe, .yaml. Its page has the same name, and so has the recording that is kept.", (".yaml",)

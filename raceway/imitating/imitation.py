@@ -119,7 +119,7 @@ def imitate(
             fs=first.fs,
             rate_given=how.rate is not None,
             duration=duration,
-            channels=[re.sub(r"[^A-Za-z0-9_.-]", "_", name)[:64] or "sensor" for name in first.signals],
+            channels=[re.sub(r"[^A-Za-z0-9_.-]", "_", name).strip("_")[:64] or "sensor" for name in first.signals],
             bearing=geometry or dict(part.split("=") for part in bearing.split(",")),
             speeds=speeds,
             given=rpm is not None,

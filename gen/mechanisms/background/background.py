@@ -15,9 +15,10 @@ from gen.mechanisms.mechanism import mechanisms_of, section_with, with_plugins
 
 SOURCES: tuple[type[BackgroundSource], ...] = (RecordedBackground, Tones)
 """Sources that the measurement adds."""
+_KEYS = (*Noise.model_fields, *(source.place for source in SOURCES))
 _OF_MACHINE = [
     source
-    for source in with_plugins(MachineSource, (Harmonics, Impulses, Knocks, GearMesh, Bursts))
+    for source in with_plugins(MachineSource, (Harmonics, Impulses, Knocks, GearMesh, Bursts), _KEYS)
     if not issubclass(source, MachineCondition)
 ]
 MACHINE_SOURCES: tuple[type[MachineSource], ...] = (*_OF_MACHINE, *CONDITIONS)
