@@ -35,7 +35,7 @@ _level = partial(
 )
 RANDALL = "Randall, Vibration-based Condition Monitoring (2021)"
 _shape = partial(Feature, parameters="band, shaft rate", source=RANDALL, least=0.0)
-_raw = partial(Feature, parameters="end of the band", source=RANDALL, least=1.0)
+_raw = partial(Feature, parameters="band end", source=RANDALL, least=1.0)
 
 _ORDERS = dict(zip(FAMILIES, ("BPFO", "BPFI", "2 BSF"), strict=True))
 _SIDES = dict(zip(FAMILIES, ("fr", "fr", "FTF"), strict=True))

@@ -38,8 +38,8 @@ TIMES = (
 def _energies(band: Band) -> Iterator[Feature]:
     """Yield the energies between frequencies, and then those between orders."""
     for edges, unit, place, parameters in (
-        (band.energy_edges, "Hz", "Hz", "band"),
-        (ENERGY_ORDERS, "orders", "fr", "end of the band, shaft rate"),
+        (band.energy_edges, "Hz", "Hz", "band end"),
+        (ENERGY_ORDERS, "orders", "fr", "band end, shaft rate"),
     ):
         for low, high in pairwise(edges):
             yield _energy(

@@ -25,6 +25,7 @@ from gen.simulation.truth import width_share
 from gen.support.errors import SimulationError
 
 MOST_DRAWN = 2000  # records, about 0.6 s; from a larger corpus whole parts are drawn, spread evenly over it
+MOST_OF_LIVES = 30_000  # records, about 6 s; a few lives tell neither classes nor splits of all
 MOST_CHECKED = 64  # of the drawn records; one of some seconds with a changing speed takes 10 ms
 AT_ONCE = 8  # records: a schedule of a minute takes 10 MB
 
@@ -188,11 +189,11 @@ def _scaled(values: Iterable[Any], order: Iterable[Any], scale: float) -> dict[A
 
 
 def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
-    """Start and stop of the records that are drawn: all parts, or parts of ``MOST_DRAWN`` records together, spread over the corpus."""
-    size = recipe.storage.records_per_part
-    parts = min(recipe.n_parts, max(1, MOST_DRAWN // size))
+    """Start and stop of the records that are drawn: all parts, or parts of so many records together, spread over the corpus."""
+    most, size = MOST_DRAWN if recipe.life is None else MOST_OF_LIVES, recipe.storage.records_per_part
+    parts = min(recipe.n_parts, max(1, most // size))
     firsts = [place * recipe.n_parts // parts * size for place in range(parts)]
-    return [(first, min(first + min(size, MOST_DRAWN), recipe.n_records)) for first in firsts]
+    return [(first, min(first + min(size, most), recipe.n_records)) for first in firsts]
 
 
 def _wide_spall(scenario: Scenario) -> str | None:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from gen.generation.corpus import generate
 from gen.generation.plan import MOST_CHECKED, MOST_DRAWN, plan, some_ranges
+from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
 
 
@@ -20,6 +21,11 @@ def test_the_parts_a_plan_looks_at_are_in_the_corpus_and_do_not_overlap(recipe_w
     assert all(stop <= following for (_, stop), (following, _) in pairwise(ranges))
     drawn = sum(stop - first for first, stop in ranges)
     assert drawn == recipe.n_records or 0 < drawn <= MOST_DRAWN
+
+
+def test_all_lives_are_looked_at():
+    recipe = read_recipe("run_to_failure")
+    assert sum(stop - first for first, stop in some_ranges(recipe)) == recipe.n_records > MOST_DRAWN
 
 
 def test_a_large_corpus_is_counted_from_a_part_of_it(write_recipe, tmp_path):
