@@ -7,7 +7,8 @@ in the file.
 import re
 import struct
 import zipfile
-from collections.abc import Iterable, Mapping, Sequence
+import zlib
+from collections.abc import Container, Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 
 from gen.corpus.trust import LIBRARY_LOCK, ForeignStorageError, own_dataset
 from gen.support.display import first_few
-from gen.support.limits import check_limit
+from gen.support.limits import check_limit, limit
 from raceway.importing.axes import axes_of
 from raceway.importing.header import Header, unit_said
 from raceway.importing.numerals import number_in
@@ -29,6 +30,9 @@ _FEWEST = 100  # values of a signal; speeds and rates have one
 _REAL = "biuf"  # kinds of NumPy types
 _TABLES = (b"table", b"timetable", "table", "timetable")
 _RATE = re.compile(r"sr|fs|samp(?:le|ling)?_?(?:rate|freq(?:uency)?)", re.IGNORECASE)
+_MATRIX, _COMPRESSED = 14, 15  # types of elements of level 5
+_TYPES_OF_VALUES = {1, 2, 3, 4, 5, 6, 7, 9, 12, 13, 16, 17, 18}
+_CLASSES_OF_NUMBERS = range(4, 16)  # text and sparse ones too
 _BYTES_OF_LEVEL_4 = (8, 4, 4, 2, 2, 1)  # of a value, by the type of the numbers
 
 
@@ -111,6 +115,10 @@ def _content(path: Path) -> dict[str, NDArray[Any]]:
 
     if matfile_version(path)[0] == 0:
         _check_level_4(path)
+    else:
+        content = path.read_bytes()
+        order = "<" if content[126:128] == b"IM" else ">"
+        _check_elements(memoryview(content)[128:], order, {_MATRIX, _COMPRESSED})
     variables: dict[str, NDArray[Any]] = {}
 
     def add(name: str, value: Any) -> None:
@@ -139,6 +147,28 @@ def _check_level_4(path: Path) -> None:
                 raise ValueError("a variable has no name or no size")
             size = rows * columns * _BYTES_OF_LEVEL_4[kind // 10 % 10] * (2 if imaginary else 1)
             stream.seek(length + size, 1)
+
+
+def _check_elements(content: memoryview, order: str, allowed: Container[int]) -> None:
+    """Refuse elements of another type than their place has: of a number of no known type, SciPy ends the process."""
+    place = 0
+    while place + 8 <= len(content):
+        kind, size = struct.unpack_from(f"{order}2I", content, place)
+        place += 8
+        if kind >> 16:  # at most four bytes lie beside the type
+            kind, size = kind & 0xFFFF, 0
+        if kind not in allowed:
+            raise ValueError(f"a value has the type {kind}")
+        inner = content[place : place + size]
+        place += size if kind == _COMPRESSED else size + -size % 8
+        if kind == _COMPRESSED:
+            most = limit("file_bytes")
+            unpacked = zlib.decompressobj().decompress(inner, most + 1)
+            check_limit("file_bytes", len(unpacked), "is unpacked", UnusableError)
+            _check_elements(memoryview(unpacked), order, {_MATRIX})
+        elif kind == _MATRIX and size:
+            numbers = inner[8 if order == "<" else 11] in _CLASSES_OF_NUMBERS
+            _check_elements(inner, order, _TYPES_OF_VALUES if numbers else {*_TYPES_OF_VALUES, _MATRIX})
 
 
 def _datasets(file: h5py.File, variable: str | None) -> dict[str, h5py.Dataset]:

@@ -2,6 +2,8 @@
 
 import math
 import re
+import struct
+import zlib
 
 import numpy as np
 import pytest
@@ -10,6 +12,8 @@ from scipy.io import wavfile
 
 from gen.support.errors import CorpusError
 from raceway.importing import import_generic, read_signal
+from raceway.importing.matlab import read_variable
+from raceway.importing.refused_files import UnusableError
 from tests.labels import import_labelled, write_labels
 from tests.raceway.importing.test_labels import COMMON, FS, SIGNAL, imported, noise, write_matlab_7_3
 
@@ -173,3 +177,19 @@ def test_rows_of_different_rates_are_refused(tmp_path):
         CorpusError, match=r"row 3: has sample_rate_hz 4000.0, and .*row 2 has 2000.0; give resample_hz"
     ):
         import_generic(table, tmp_path / "corpus")
+
+
+@pytest.mark.parametrize("compressed", [False, True])
+@pytest.mark.parametrize("kind", [0, 14, 640])
+def test_numbers_of_no_known_type_in_a_matlab_file_are_refused(tmp_path, compressed, kind):
+    """SciPy would end the process."""
+    path = tmp_path / "x.mat"
+    scipy.io.savemat(path, {"x": np.arange(200.0)})
+    content = path.read_bytes()
+    body = content[128:].replace(struct.pack("<2I", 9, 1600), struct.pack("<2I", kind, 1600))
+    if compressed:
+        packed = zlib.compress(body)
+        body = struct.pack("<2I", 15, len(packed)) + packed
+    path.write_bytes(content[:128] + body)
+    with pytest.raises(UnusableError, match=f"a value has the type {kind}"):
+        read_variable(path, None)
