@@ -268,8 +268,8 @@ def _conclude(
         clauses.append("how often this model calls faulty recordings healthy was not measured")
     elif verdict == HEALTHY:
         length, missed, of = missed_faults(used.duration, compared=compared)
-        faulty = "comparisons of faulty recordings" if compared else "faulty recordings"
-        clauses.append(f"{missed} of {of} {faulty} of {length:g} s from three machines were called healthy")
+        faulty, machines = ("comparisons of faulty recordings", "two") if compared else ("faulty recordings", "three")
+        clauses.append(f"{missed} of {of} {faulty} of up to {length:g} s from {machines} machines were called healthy")
     # healthy answers from ten seconds were not wrong less often than those from two
     if verdict in (UNSURE, DAMAGED) and used.duration < (seconds := enough(first.pair.rate)):
         advice.append(f"Record longer: {seconds:,.0f} s instead of {used.duration:.2g} s.")

@@ -46,8 +46,8 @@ class Diagnosis(Shown):
     windows
         Number of windows that the classifier used.
     missed
-        Share of faulty recordings of the nearest length that was measured, on three machines, that were called healthy; NaN unless the
-        verdict is healthy and the model is the reference model, for which it was measured.
+        Share of faulty recordings of the nearest length that was measured that were called healthy; NaN unless the verdict
+        is healthy and the model is the reference model, for which it was measured.
     levels
         Of each channel of the recording, then of the healthy ones.
     spectrum

@@ -12,8 +12,8 @@ from raceway.diagnosis.search import STRONG_COMB, Given, Pair
 AT_END = 0.002  # distance of a speed from the end of the search, relative
 NAMED = 3  # bearings alike
 MISSED = ((0.5, (15, 86), (1, 288)), (2.0, (4, 86), (0, 288)), (10.0, (7, 86), (0, 288)))
-"""Length of recordings [s], and how many faulty ones of how many were called healthy, without and with a healthy recording of the
-machine: of CWRU, MFPT and UESTC, by ``python -m benchmarks.verdicts REAL --missed``."""
+"""Most seconds of recordings, and how many faulty ones of how many were called healthy, by ``python -m benchmarks.verdicts REAL
+--missed``: of CWRU, MFPT (3 s at most) and UESTC alone, and in comparisons with a healthy recording, which MFPT has none of."""
 
 
 def family_in_words(lines: Sequence[Line]) -> str:

@@ -66,7 +66,10 @@ def test_the_share_of_missed_faults_is_that_of_the_reference_model_alone(model, 
     own.wide = own  # as the reference model has
     answer = raceway.diagnose(signal, FS, orders="6205", rpm=rpm, model=own)
     assert 0 < answer.missed < 0.5
-    assert answer.sentence.endswith("; 4 of 86 faulty recordings of 2 s from three machines were called healthy.")
+    assert answer.sentence.endswith("; 4 of 86 faulty recordings of up to 2 s from three machines were called healthy.")
+    healthy = [np.roll(signal, signal.size // 3)]
+    compared = raceway.diagnose(signal, FS, orders="6205", rpm=rpm, model=own, healthy=healthy).sentence
+    assert "; 0 of 288 comparisons of faulty recordings of up to 2 s from two machines were called healthy." in compared
 
 
 @pytest.mark.parametrize("fault", ["healthy", "inner"])
