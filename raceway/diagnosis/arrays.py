@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from features.baselines.models import Model
-from features.signal.arguments import as_records, fault_orders
+from features.signal.arguments import as_records, check_positive, fault_orders
 from gen.physics.bearing_text import bearing_orders
 from raceway.diagnosis.answer import diagnose_recording
 from raceway.diagnosis.result import Diagnosis
 from raceway.diagnosis.search import given_of
+from raceway.importing.reading_options import speeds_in
 from raceway.importing.recorded import Recorded
 from raceway.kept_models import reference_model
 
@@ -47,7 +48,8 @@ def diagnose(
     Raises
     ------
     ValueError
-        If a recording has other dimensions or values that are not finite, or ``fs``, ``rpm`` or an order is not a positive number.
+        If a recording has other dimensions or values that are not finite, ``fs`` or an order is not a positive number, or ``rpm`` is no
+        speed and no ascending range.
     CorpusError
         If a bearing is not known, or the model cannot take the features of the recording or the healthy recording.
     """
@@ -56,10 +58,12 @@ def diagnose(
         name: fault_orders(bearing_orders(bearing) if isinstance(bearing, str) else bearing, f"orders of {name}")
         for name, bearing in bearings.items()
     }
-    machine = given_of(nominal, None if rpm is None else np.broadcast_to(rpm, 2).tolist())
-    low, high = machine.rates
-    if not (0 < fs < np.inf and 0 < low <= high < np.inf):
-        raise ValueError(f"fs and rpm: {fs} and {rpm} are not positive numbers; give Hz, and revolutions per minute.")
+    check_positive(fs=fs)
+    try:
+        speeds = None if rpm is None else speeds_in("-".join(f"{each}" for each in np.ravel(rpm)))
+    except ValueError as error:
+        raise ValueError(f"rpm: {error}.") from None
+    machine = given_of(nominal, speeds)
     if model is None:
         model = reference_model()
     classifier = model if isinstance(model, Model) else Model.load(model)

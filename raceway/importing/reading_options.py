@@ -57,7 +57,7 @@ def speeds_in(text: str) -> Speeds:
         first, last = math.nan, math.nan
     if not SLOWEST <= first <= last <= FASTEST:
         raise ValueError(
-            f"{text!r:.40} is no speed and no range such as 1400-1900, of {SLOWEST:g} to {FASTEST:,.0f} rpm"
+            f"{text!r:.40} is no speed and no range such as 1400-1900, the lower first, of {SLOWEST:g} to {FASTEST:,.0f} rpm"
         )
     return first, last
 

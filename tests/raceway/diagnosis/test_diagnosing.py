@@ -249,8 +249,13 @@ def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
         sentence = f"an array of shape {shape} is given in place of (channel, time) or (time,), with at least 8 samples in time."
         with pytest.raises(ValueError, match=re.escape(sentence)):
             raceway.diagnose(wrong, FS, rpm=rpm, **known)
-    with pytest.raises(ValueError, match="not positive numbers"):
-        raceway.diagnose(signal, FS, rpm=-rpm, **known)
+    for speed in (-rpm, (1900, 1400)):
+        with pytest.raises(
+            ValueError, match=r"^rpm: .* is no speed and no range such as 1400-1900, the lower first, of "
+        ):
+            raceway.diagnose(signal, FS, rpm=speed, **known)
+    with pytest.raises(ValueError, match=r"^fs: None is not a finite number above 0"):
+        raceway.diagnose(signal, None, rpm=rpm, **known)
 
 
 def test_an_array_needs_no_model_and_a_bearing_of_the_catalogue(model, recordings, monkeypatch):
