@@ -76,7 +76,7 @@ def assumptions(
         "bearing": f"{bearing.designation}: {geometry_text(bearing)}, outer ring fixed",
         "orders": orders,
         "given bearings": ", ".join(bearings) if len(bearings) > 1 else "",
-        "given speed": f"{low} rpm" if low == high else f"{low} to {high} rpm",
+        "speed": f"{low} rpm" if low == high else f"{low} to {high} rpm",
         "channels": ", ".join(recorded.signals),
         "sample rate": f"{recorded.fs:,.6g} Hz, {'as given' if reading.rate is not None else 'as the file states'}",
         "unit": f"{reading.unit or recorded.unit}{sensitivity}",

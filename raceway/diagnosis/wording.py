@@ -100,7 +100,7 @@ def missed_faults(seconds: float, *, compared: bool) -> tuple[float, int, int]:
 
 
 def pair_in_words(pair: Pair, machine: Given, others: Sequence[Pair]) -> str:
-    """Bearing, if several are given, and speed of the shaft with its source; then other pairs that fit the lines as well."""
+    """Bearing, if several are given, and speed of the shaft; then other pairs that fit the lines as well."""
     if any(other.bearing != pair.bearing for other in others):
         return f"bearing not known: the lines fit {listed([_place(each) for each in (pair, *others)], 'or')}"
     fitting = f", and the lines fit {listed([_place(other) for other in others], 'and')} as well" if others else ""
@@ -109,8 +109,8 @@ def pair_in_words(pair: Pair, machine: Given, others: Sequence[Pair]) -> str:
     if low != high:
         between = f"between {low} and {high} rpm, or up to {100 * RIVALS_BEYOND:g} % beyond"
         return f"{bearing}shaft {speed} rpm as found {between}{fitting}"
-    at_speed = "" if speed == low else f"{speed} rpm as found, "
-    return f"{bearing}shaft {at_speed}{low} rpm as given{fitting}"
+    near = "" if speed == low else f" as found near {low} rpm"
+    return f"{bearing}shaft {speed} rpm{near}{fitting}"
 
 
 def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
@@ -126,7 +126,7 @@ def speed_warning(pair: Pair, machine: Given) -> tuple[str, ...]:
     if low != high or abs(pair.rate - low) <= DISAGREEMENT * pair.uncertainty:
         return sentences
     sentence = (
-        f"The given speed of {from_si(low, 'rpm'):,.0f} rpm does not fit the lines of this recording; they fit "
+        f"The speed of {from_si(low, 'rpm'):,.0f} rpm does not fit the lines of this recording; they fit "
         f"{from_si(pair.rate, 'rpm'):,.0f} rpm (± {from_si(pair.uncertainty, 'rpm'):.0f}), {100 * (pair.rate / low - 1):+.1f} %."
     )
     return (sentence, *sentences)

@@ -239,7 +239,7 @@ def test_four_bearings_that_no_line_tells_apart_are_named_or_three_of_more_at_on
     several = Given(dict.fromkeys(("6004", *alike, "other"), ORDERS), (RATE, RATE))
     each = [judged("outer", pair(RATE + 0.001, "6004")._replace(alike=alike))]
     answer = _conclude(USED, several, Model(), each, (), None, compared=True)
-    assert answer.sentence.endswith(f"; bearing {named} as found, shaft 1,500 rpm as given.")
+    assert answer.sentence.endswith(f"; bearing {named} as found, shaft 1,500 rpm.")
 
 
 @pytest.mark.parametrize("name", ["healthy", "outer"])
