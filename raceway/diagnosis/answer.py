@@ -35,7 +35,7 @@ from raceway.diagnosis.quality import Quality, enough, quality_of
 from raceway.diagnosis.result import Diagnosis
 from raceway.diagnosis.search import Given, Pair, find_pairs, mean_spectra, strange_comb
 from raceway.diagnosis.spectrum import BandSpectrum, band_spectra
-from raceway.diagnosis.verdict import certainly_faulty, judge
+from raceway.diagnosis.verdict import certainly_faulty, judge, strange_colour
 from raceway.diagnosis.wording import (
     answer_in_words,
     candidates,
@@ -50,11 +50,12 @@ from raceway.diagnosis.wording import (
 from raceway.importing.recorded import LONGEST, Recorded
 
 BY_HEALTHY = "(--healthy FILE; in Python healthy)"
+SAME_STATE = f"Check load, mounting and sensor, and give a healthy recording of the same state {BY_HEALTHY}."
 WATCH = f"The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one {BY_HEALTHY}."
 
 
 class Judged(NamedTuple):
-    """Verdict, probabilities and evidence at one pair of bearing and speed; ``why`` is the reason of "unsure"."""
+    """Verdict, probabilities and evidence at one pair; ``why`` is the reason of "unsure", ``distance`` that of the colour."""
 
     pair: Pair
     verdict: str
@@ -64,6 +65,7 @@ class Judged(NamedTuple):
     windows: int
     lines: list[Line]
     spectra: list[BandSpectrum]
+    distance: float = 0.0
 
 
 def diagnose_recording(
@@ -193,8 +195,10 @@ def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[R
     whole = predicted.by_recording
     assert whole is not None  # noqa: S101 - only the predictions by recording have none
     probabilities = dict(zip(whole.classes, map(float, whole.probabilities[0]), strict=True))
-    verdict, why = judge(probabilities, whole.threshold, lines, float(whole.distance[0]))
-    return Judged(pair, verdict, why, probabilities, whole.threshold, len(predicted.probabilities), lines, spectra)
+    distance = float(whole.distance[0])
+    verdict, why = judge(probabilities, whole.threshold, lines, distance)
+    windows = len(predicted.probabilities)
+    return Judged(pair, verdict, why, probabilities, whole.threshold, windows, lines, spectra, distance)
 
 
 def _predict(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Predictions:
@@ -233,7 +237,10 @@ def _conclude(
     """Diagnosis at the first pair; no part is named if others give another class or if a strong comb is not explained."""
     first = judged[0]
     why, advice = first.why, ["Measure the speed during the recording, and check the bearing designation."]
-    # the strongest doubt first: lines that this bearing and speed do not explain
+    # neither speed nor bearing changes the colour
+    if strange_colour(first.probabilities, first.distance):
+        advice = [SAME_STATE]
+    # the strongest doubt goes before: lines that this bearing and speed do not explain
     if elsewhere or strange is not None:
         why = unexplained(first.pair, elsewhere, strange)
         advice = [

@@ -37,6 +37,11 @@ def certainly_faulty(probabilities: Iterable[Mapping[str, float]]) -> bool:
     return all(each.get(HEALTHY, 1.0) <= 1 - CERTAIN for each in probabilities)
 
 
+def strange_colour(probabilities: Mapping[str, float], distance: float) -> bool:
+    """Whether healthy is the likeliest, and the colour is none of the healthy recordings."""
+    return distance > 1 and max(probabilities, key=lambda name: probabilities[name]) == HEALTHY
+
+
 def judge(
     probabilities: Mapping[str, float], threshold: float, lines: Sequence[Line], distance: float = 0.0
 ) -> tuple[str, str]:
@@ -50,7 +55,7 @@ def judge(
     if likely == HEALTHY and families and _answers(next(iter(families.values()))):
         return next(iter(families)), ""
     # many faults change the colour of a machine and show no line
-    if likely == HEALTHY and distance > 1:
+    if strange_colour(probabilities, distance):
         return UNSURE, (
             f"healthy is the likeliest, but the spectral colour differs {distance:.1f} times as much from that of the healthy recording "
             "as healthy recordings of one machine usually differ"

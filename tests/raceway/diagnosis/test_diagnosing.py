@@ -196,6 +196,9 @@ def test_a_healthy_verdict_needs_the_colour_of_a_healthy_recording(model, record
     assert near["verdict"] == "healthy"
     assert far["verdict"] == "unsure"
     assert "the spectral colour differs" in far["sentence"]
+    assert far["advice"][0].startswith(
+        "Check load, mounting and sensor, and give a healthy recording of the same state "
+    )
     both = told(paths["tested"], *options, "--healthy", paths["same"], "--healthy", paths["other"])
     assert [Path(levels["recording"]).stem for levels in both["levels"]] == ["tested", "same", "other"]
 
