@@ -248,7 +248,7 @@ def _conclude(
         ]
     elif len({each.verdict for each in judged}) > 1:
         why = different_classes([(each.pair, each.verdict) for each in judged])
-        advice = ["Measure the speed during the recording, or give a narrower range."]
+        advice = ["Measure the speed during the recording, and give it as a narrow range (--rpm; in Python rpm)."]
     # whatever the doubt is, several bearings fit
     if len({each.pair.bearing for each in judged}) > 1:
         advice = ["Give the bearing (--bearing; in Python orders)."]

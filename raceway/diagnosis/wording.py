@@ -72,9 +72,13 @@ def probability_in_words(probability: float) -> str:
 
 
 def candidates(probabilities: Mapping[str, float]) -> str:
-    """The two most probable classes, such as "inner 0.45, ball 0.38"."""
+    """The two most probable classes.
+
+    >>> candidates({"healthy": 0.001, "inner": 0.45, "ball": 0.38}), candidates({"healthy": 0.001, "inner": 0.999})
+    ('inner 0.45, ball 0.38', 'inner above 0.99, healthy below 0.01')
+    """
     ranked = sorted(probabilities, key=lambda name: -probabilities[name])[:2]
-    return ", ".join(f"{name} {probabilities[name]:.2f}" for name in ranked)
+    return ", ".join(f"{name} {probability_in_words(probabilities[name])}" for name in ranked)
 
 
 def answer_in_words(verdict: str, probabilities: Mapping[str, float], lines: Sequence[Line]) -> str:
