@@ -250,6 +250,8 @@ def checked_pages(_context: click.Context, _option: click.Parameter, path: Path 
 
     if path.exists() and not path.is_dir():
         raise click.BadParameter(f"{path} is a file; give a folder")
+    if path.suffix == ".html":
+        raise click.BadParameter(f"{path} is the name of a page; give that of a folder")
     check_result_folder(path)
     return path
 

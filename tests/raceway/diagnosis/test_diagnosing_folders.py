@@ -121,6 +121,7 @@ def test_a_file_of_a_folder_that_states_another_rate_or_unit_is_read_as_it_state
         (("a.txt",), (), "no recording can be used; the first of 1: campaign/a.txt: has no row of numbers"),
         (("a.txt",), ("-o", "mine"), "page.html: was not made by raceway"),
         (("a.txt",), ("-o", "mine/page.html"), "is a file; give a folder"),
+        (("a.txt",), ("-o", "new.html"), "new.html is the name of a page; give that of a folder"),
         (("a.txt",), ("-o", "list"), "diagnoses.csv: exists and is no list of diagnoses of raceway"),
         (("a.txt",), ("-o", "./campaign"), "campaign is the folder of the recordings; give another one for the pages"),
     ],
