@@ -60,7 +60,8 @@ def _checked_output(context: click.Context, option: click.Parameter, path: Path 
     type=A_PATH,
     multiple=True,
     metavar="FILE",
-    help="Recording of the same machine with a healthy bearing, read in the same way; give the option again for further ones.",
+    help="Recording of the same machine with a healthy bearing, for which --rate, --unit and --channel hold, too; give the option again "
+    "for further ones.",
 )
 @model_option
 @click.option(
