@@ -350,6 +350,9 @@ def _missing(dataset: "xr.Dataset") -> list[str]:
 
 def operating_problems(columns: Mapping[str, NDArray[Any]]) -> list[str]:
     """Sample rates, shaft rates, loads and orders that no analysis can use, one sentence each."""
+    texts = [name for name in ("sample_rate", *_RATES) if name in columns and columns[name].dtype.kind not in "fiu"]
+    if texts:
+        return [f"{name} holds no numbers." for name in texts]
     rates = np.unique(columns.get("sample_rate", 1.0))
     if len(rates) != 1 or not 1 <= rates[0] <= _HIGHEST:
         shown = ", ".join(f"{rate:g}" for rate in rates[:3])

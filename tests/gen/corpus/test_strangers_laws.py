@@ -12,6 +12,7 @@ import pytest
 
 from features.table.corpus_features import feature_table
 from gen.corpus import SIGNAL, open_corpus, part_name, read_manifest, validate_corpus
+from gen.corpus.schema import operating_problems
 from gen.support.errors import CorpusError, RacewayError
 from raceway.console.summary import corpus_facts
 from raceway.sharing.card.additions import CardAdditions, CardPicture, write_additions
@@ -272,3 +273,8 @@ def test_no_fact_of_a_manifest_is_an_internal_error(copied, name):
     for value in (None, True, -1, 1e308, 10**40, "", "\0", [], {}, [[]], {"a": []}, "x" * 10**5):
         edit_manifest(copied / "c", **{name: value})
         assert not any("\n" in problem for problem in validate_corpus(copied / "c"))
+
+
+@pytest.mark.parametrize("name", ["sample_rate", "shaft_rate", "bpfo"])
+def test_a_rate_that_is_text_is_told(name):
+    assert operating_problems({name: np.array(["25"])}) == [f"{name} holds no numbers."]
