@@ -116,9 +116,9 @@ def _content(path: Path) -> dict[str, NDArray[Any]]:
     if matfile_version(path)[0] == 0:
         _check_level_4(path)
     else:
-        content = path.read_bytes()
+        content = np.memmap(path, mode="r").data  # of which the types alone are read
         order = "<" if content[126:128] == b"IM" else ">"
-        _check_elements(memoryview(content)[128:], order, {_MATRIX, _COMPRESSED})
+        _check_elements(content[128:], order, {_MATRIX, _COMPRESSED})
     variables: dict[str, NDArray[Any]] = {}
 
     def add(name: str, value: Any) -> None:
