@@ -103,13 +103,9 @@ def check_submission(
     if (twice := submitted["record"].duplicated()).any():
         raise CorpusError(f"{path}: has record {submitted['record'][twice].iloc[0]:.20} twice; leave one row of each.")
     missing = wanted["record"][~wanted["record"].isin(submitted["record"])].head(1)
+    example = "".join(f" (no record {number})" for number in missing)
     reasons = (
-        " ".join(
-            [
-                f"does not have the {len(frame)} records that are tested",
-                *(f"(no record {number})" for number in missing),
-            ]
-        ),
+        f"does not have the {len(frame)} records that are tested{example}",
         "has records of another corpus",
         f"has other folds than the {folds} by {track} with seed {seed}",
     )
