@@ -312,14 +312,17 @@ def within(
     *,
     open_low: bool = False,
     default: float | str | None = None,
-    **more: Any,
+    each: bool = False,
+    whole: bool = False,
+    **per: str,
 ) -> Any:
     """Field of a distribution whose values all lie between ``low`` and ``high``; required if it has no default.
 
-    ``each=True`` is for a key that is drawn for each of the items that its section counts, ``whole=True`` for a count whose fixed numbers
-    are whole, and ``per`` for a key that is drawn at another level than its section.
+    ``each`` is for a key that is drawn for each of the items that its section counts, ``whole`` for a count whose fixed numbers are whole,
+    and ``per`` for a key that is drawn at another level than its section.
     """
-    bounds: dict[str, Any] = {"low": low, "high": high, "open_low": open_low} | more
+    kinds = {name: True for name, chosen in (("each", each), ("whole", whole)) if chosen}
+    bounds: dict[str, Any] = {"low": low, "high": high, "open_low": open_low} | kinds | per
     options: dict[str, Any] = {} if default is None else {"default": default}
     return Field(**options, json_schema_extra=bounds)
 
